@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "gradation/law.h"
+#include "gradation/node_graph.h"
+#include "metric/metric.h"
+
+namespace controlspace {
+
+/// In which order the law is applied to pairs of neighbours.
+enum class GradationSchedule {
+    /// Until nothing changes (paper §3.2): what is left is within the ratio asked for.
+    queue,
+    /// At most ten passes over the nodes that are still too steep, in tree order: what the paper's
+    /// tables were made with. May leave pairs above the ratio.
+    passes,
+};
+
+struct GradationOptions {
+    GradationLaw law = GradationLaw::cone;
+    GradationSchedule schedule = GradationSchedule::queue;
+    double ratio = 1.25;  ///< g_r of the paper, >= 1
+};
+
+struct GradationReport {
+    std::uint64_t operations = 0;   ///< metrics made smaller
+    double largest_ratio_left = 1;  ///< over all neighbours, under the law that was applied
+};
+
+/// Makes the metrics of the control nodes grow smoothly, in place; they only ever get smaller.
+/// `metrics.size()` must be the graph's size. Throws InputError for a ratio below 1 or not finite.
+GradationReport grade(const ControlGraph& graph, std::span<Metric> metrics,
+                      const GradationOptions& options);
+
+}  // namespace controlspace

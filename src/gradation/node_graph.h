@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "geometry/point.h"
+
+namespace controlspace {
+
+using NodeIndex = std::uint32_t;
+
+/// Which control nodes gradation compares with which.
+///
+/// | neighbourhood     | leaf storages                         | vertex storages           |
+/// |-------------------|---------------------------------------|---------------------------|
+/// | faces             | all leaves across the six faces       | vertices joined by an     |
+/// |                   |                                       | edge of a leaf            |
+/// | nearest_per_face  | across each face the one leaf nearest | the same                  |
+/// |                   | to the leaf's centre; not always      |                           |
+/// |                   | mutual (the paper's tables)           |                           |
+///
+/// Grids have six neighbours a node with either.
+enum class Neighbourhood { faces, nearest_per_face };
+
+/// Control nodes and their neighbours as flat arrays: node i has the neighbours
+/// `neighbours[first[i]] .. neighbours[first[i + 1] - 1]`.
+struct NodeGraph {
+    std::vector<Point> positions;
+    std::vector<std::size_t> first;  ///< positions.size() + 1 entries
+    std::vector<NodeIndex> neighbours;
+
+    std::size_t size() const { return positions.size(); }
+    const Point& position(NodeIndex i) const { return positions[i]; }
+    template <class Visit>
+    void for_each_neighbour(NodeIndex i, Visit&& visit) const {
+        for (std::size_t k = first[i]; k < first[i + 1]; ++k) visit(neighbours[k]);
+    }
+};
+
+/// Control nodes on a regular lattice, x fastest, six neighbours each; nothing is stored per node.
+struct Lattice {
+    Point origin;   ///< position of node 0
+    Vector spacing;
+    std::array<std::uint32_t, 3> nodes;  ///< number of nodes along x, y and z
+
+    std::size_t size() const { return std::size_t{nodes[0]} * nodes[1] * nodes[2]; }
+    NodeIndex index(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
+        return (k * nodes[1] + j) * nodes[0] + i;
+    }
+    std::array<std::uint32_t, 3> coordinates(NodeIndex n) const {
+        return {n % nodes[0], n / nodes[0] % nodes[1], n / nodes[0] / nodes[1]};
+    }
+    Point position(NodeIndex n) const {
+        const auto [i, j, k] = coordinates(n);
+        return origin + spacing.cwiseProduct(Vector(i, j, k));
+    }
+    template <class Visit>
+    void for_each_neighbour(NodeIndex n, Visit&& visit) const {
+        const auto c = coordinates(n);
+        NodeIndex stride = 1;
+        for (std::size_t a = 0; a < 3; ++a) {
+            if (c[a] > 0) visit(n - stride);
+            if (c[a] + 1 < nodes[a]) visit(n + stride);
+            stride *= nodes[a];
+        }
+    }
+};
+
+using ControlGraph = std::variant<NodeGraph, Lattice>;
+
+}  // namespace controlspace

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "geometry/box.h"
+#include "measure/reference.h"
+#include "sources/point_source.h"
+#include "spaces/control_space.h"
+
+namespace controlspace {
+
+/// Centres of n x n x n equal cells of `box`, x fastest: coordinate k is
+/// low + edge / (2n) + k edge / n, in this order of operations (paper §5.2, n = 30).
+std::vector<Point> cell_centres(const Box& box, int n);
+
+/// Places where the reference is known; computed once and shared by all structures.
+struct Probes {
+    std::vector<Point> points;
+    std::vector<Metric> reference;
+};
+Probes make_probes(const ReferenceField& field, std::vector<Point> points);
+
+/// Non-conformity δ between a structure and its reference over a set of places.
+struct Accuracy {
+    double max = 0;
+    double mean = 0;
+    double p95 = 0;             ///< 95th percentile (nearest rank)
+    double p99 = 0;             ///< 99th percentile (nearest rank)
+    double riemannian_max = 0;  ///< maximum of δ on the Riemannian metrics
+    Point worst = Point::Zero();  ///< where max is; the first such place
+};
+
+/// δ_R of the paper (§5.2).
+Accuracy accuracy(const ControlSpace& space, const Probes& probes);
+
+/// δ_S of the paper (§5.2): largest δ between a source's metric and the structure's value there.
+double source_accuracy(const ControlSpace& space, std::span<const PointSource> sources);
+
+}  // namespace controlspace

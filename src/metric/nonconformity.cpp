@@ -1,0 +1,40 @@
+#include "metric/nonconformity.h"
+
+#include "metric/decompose.h"
+
+namespace controlspace {
+
+namespace {
+
+// k + 1/k - 2, without the cancellation near k = 1.
+double excess(double k) { return (k - 1) * (k - 1) / k; }
+
+double norm_of_excess(double x, double y, double z) {
+    return std::sqrt(excess(x) * excess(x) + excess(y) * excess(y) + excess(z) * excess(z));
+}
+
+}  // namespace
+
+double nonconformity(const Metric& a, const Metric& b) {
+    if (is_axis_aligned(a) && is_axis_aligned(b)) {
+        return norm_of_excess(a.xx / b.xx, a.yy / b.yy, a.zz / b.zz);
+    }
+    return (Cholesky(a).solve(b.matrix()) + Cholesky(b).solve(a.matrix()) -
+            2 * Eigen::Matrix3d::Identity())
+        .norm();
+}
+
+double riemannian_nonconformity(const Metric& a, const Metric& b) {
+    if (is_axis_aligned(a) && is_axis_aligned(b)) {
+        const auto square = [](double k) { return k * k; };
+        return norm_of_excess(square(a.xx / b.xx), square(a.yy / b.yy), square(a.zz / b.zz));
+    }
+    const Cholesky fa(a);
+    const Cholesky fb(b);
+    // Both terms transposed, which leaves the norm as it is: (a a b^-1 b^-1)^T = b^-1 b^-1 a a.
+    const Eigen::Matrix3d ab = fb.solve(fb.solve(Eigen::Matrix3d(a.matrix() * a.matrix())));
+    const Eigen::Matrix3d ba = fa.solve(fa.solve(Eigen::Matrix3d(b.matrix() * b.matrix())));
+    return (ab + ba - 2 * Eigen::Matrix3d::Identity()).norm();
+}
+
+}  // namespace controlspace

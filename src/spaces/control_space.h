@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geometry/box.h"
+#include "gradation/grade.h"
+#include "gradation/node_graph.h"
+#include "metric/metric.h"
+#include "sources/point_source.h"
+#include "spaces/insertion.h"
+
+namespace controlspace {
+
+/// What a structure consists of and what it holds in memory, in bytes that are really allocated
+/// (capacities, not sizes). The object itself and the allocator's own overhead are not counted.
+struct Footprint {
+    std::size_t elements = 0;       ///< leaves and inner nodes of a tree; cells of a grid
+    std::size_t leaves = 0;         ///< 0 where the structure has none
+    std::size_t control_nodes = 0;  ///< places that carry a metric
+    int depth = 0;                  ///< levels, the root being level 1; 1 for a grid
+    std::size_t bytes_payload = 0;    ///< the metrics
+    std::size_t bytes_topology = 0;   ///< what finds them
+    std::size_t bytes_auxiliary = 0;  ///< what only speeds something up, or serves insertion alone
+    /// Bytes as the paper's Table 1 counts them (see published_bytes); none outside its structures.
+    std::optional<std::size_t> bytes_published;
+    /// What the structure had to give up, or nothing: "512^3; 1024^3 would need 51 GB".
+    std::string remark;
+
+    std::size_t bytes_total() const { return bytes_payload + bytes_topology + bytes_auxiliary; }
+};
+
+/// Control nodes with their metrics, detached from the structure that they came from.
+struct ControlNodes {
+    ControlGraph graph;
+    std::vector<Metric> metrics;
+};
+
+/// A metric at every point of a box, learnt from point sources (paper §2-3).
+///
+/// A new control space holds M_max = H I everywhere, H the half diagonal of its domain. Points
+/// outside the domain are answered as the nearest point of the domain would be.
+/// Reading is thread-safe as long as nobody writes.
+class ControlSpace {
+public:
+    virtual ~ControlSpace() = default;
+
+    /// Metrics at `x`; out.size() == x.size(). The access time t_a of the paper is this call's
+    /// duration divided by x.size().
+    virtual void sample(std::span<const Point> x, std::span<Metric> out) const = 0;
+
+    /// Paper §3.1 steps 1-6 for one source. Throws InputError if it lies outside the domain.
+    virtual Insertion insert(const PointSource& source) = 0;
+
+    /// The same as inserting one by one, in order; a structure may do it faster, never differently.
+    virtual InsertionReport insert(std::span<const PointSource> sources);
+
+    /// Control nodes in the structure's own order (trees: depth first), for gradation; and the way
+    /// back: metrics in that very order.
+    virtual ControlNodes control_nodes(Neighbourhood neighbourhood) const = 0;
+    virtual void assign(std::span<const Metric> metrics) = 0;
+
+    virtual const Box& domain() const = 0;
+    virtual Footprint footprint() const = 0;
+};
+
+/// Metric at one point; for many, `sample` is far faster.
+Metric sample_at(const ControlSpace& space, const Point& x);
+
+/// Grades the control nodes of `space` (paper §3.2), with the neighbourhood that belongs to the
+/// schedule: `faces` for the queue, `nearest_per_face` for the passes of the paper's tables.
+GradationReport grade(ControlSpace& space, const GradationOptions& options);
+
+/// Throws InputError, naming the source by `index` (0-based), if its position is outside `domain`
+/// or its metric not positive definite.
+void require_valid(const PointSource& source, std::size_t index, const Box& domain);
+
+}  // namespace controlspace
