@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "geometry/point.h"
 #include "metric/metric.h"
 
@@ -16,28 +19,59 @@ enum class GradationLaw {
 };
 
 /// Gradation ratio g that gives an isotropic field the growth of MMG's `-hgrad`: 1 + ln(hgrad).
+/// Throws InputError for a value below 1 or not finite; so does the next.
 double gradation_ratio_from_mmg(double hgrad);
 
 /// Gradation ratio g of refine's metric-space gradation β: 1 + ln(β).
 double gradation_ratio_from_refine(double beta);
 
-/// Growth ratios of two metrics along their eigenvectors (paper §3.2): `first_smaller` is how much
-/// larger the second is than the first at most, `second_smaller` the reverse; 1 where it is not.
-struct GrowthRatios {
-    double first_smaller = 1;
-    double second_smaller = 1;
-};
-GrowthRatios growth_ratios(const Metric& m0, const Metric& m1);
+/// How a metric grows towards a neighbour, in the measures of one law.
+struct Growth {
+    double ratio = 1;   ///< how many times larger the neighbour is, at most; 1 where it is not
+    double length = 0;  ///< the law's distance between the two, in metric lengths (λ)
 
-/// The gradation ratio that two metrics apart by `v` show under `law`: the least g >= 1 that would
-/// leave both as they are. Paper §3.2: 1 + (max ratio - 1) / λ for the mean-length law.
-double gradation_ratio(GradationLaw law, const Metric& m0, const Metric& m1, const Vector& v);
+    /// The largest ratio that gradation ratio g allows at this distance.
+    double allowed(double g) const { return 1 + (g - 1) * length; }
+    /// The gradation ratio that this growth shows (paper §3.2).
+    double gradation() const { return ratio > 1 ? 1 + (ratio - 1) / length : 1; }
+    bool exceeds(double g) const { return ratio > allowed(g) * (1 + settled); }
+
+    /// Relative growth that counts as none: rounding of strongly anisotropic metrics stays below.
+    static constexpr double settled = 1e-9;
+};
+
+/// Growth from metric `from` to metric `to`, which lie apart by `v`.
+///   cone:        ratio = least k with `to` within k `from`; length = |from^-1 v|
+///   mean_length: ratio over the eigenvectors of both; length = (|from^-1 v| + |to^-1 v|) / 2
+Growth growth_between(GradationLaw law, const Metric& from, const Metric& to, const Vector& v);
+
+/// Which of two metrics a law made smaller.
+struct Limited {
+    bool first = false;
+    bool second = false;
+};
+
+/// The general case of limit_growth.
+Limited limit_anisotropic_growth(GradationLaw law, double g, const Vector& v, Metric& m0,
+                                 Metric& m1);
 
 /// Applies `law` to two metrics apart by `v`: makes either smaller where the other asks for it.
-struct Limited {
-    bool first = false;   ///< m0 was made smaller
-    bool second = false;  ///< m1 was made smaller
-};
-Limited limit_growth(GradationLaw law, double g, const Vector& v, Metric& m0, Metric& m1);
+///
+/// For isotropic metrics under the cone law the limit is h0 + (g-1)|v| in floating point, which is
+/// monotone in h0: so the fixed point of a whole graph is unique, to the bit, in whatever order its
+/// pairs are visited.
+inline Limited limit_growth(GradationLaw law, double g, const Vector& v, Metric& m0, Metric& m1) {
+    if (!is_isotropic(m0) || !is_isotropic(m1)) {
+        return limit_anisotropic_growth(law, g, v, m0, m1);
+    }
+    const bool second = m0.xx < m1.xx;
+    const double small = second ? m0.xx : m1.xx;
+    Metric& large = second ? m1 : m0;
+    double limit = small + (g - 1) * v.norm();
+    if (law == GradationLaw::mean_length) limit = small + 0.5 * (limit - small) * (1 + small / large.xx);
+    if (large.xx <= limit) return {};
+    large = Metric::isotropic(limit);
+    return {!second, second};
+}
 
 }  // namespace controlspace

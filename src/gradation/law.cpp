@@ -1,0 +1,72 @@
+#include "gradation/law.h"
+
+#include <fmt/format.h>
+
+#include "error.h"
+#include "metric/intersection.h"
+
+namespace controlspace {
+
+namespace {
+
+double one_plus_log(const char* name, double value) {
+    if (!std::isfinite(value) || value < 1) {
+        throw InputError(fmt::format("{} is {}: give a finite value of at least 1", name, value));
+    }
+    return 1 + std::log(value);
+}
+
+// Growth ratios along the eigenvectors of both metrics: how much larger each is than the other.
+struct EigenRatios {
+    double second_over_first = 1;
+    double first_over_second = 1;
+};
+
+void compare_along(const EigenFrame& frame, const Metric& other, double& other_larger,
+                   double& other_smaller) {
+    for (int i = 0; i < 3; ++i) {
+        const double d = frame.lengths[static_cast<std::size_t>(i)];
+        const double h = (other.matrix() * frame.directions.col(i)).norm();
+        other_larger = std::max(other_larger, h / d);
+        other_smaller = std::max(other_smaller, d / h);
+    }
+}
+
+EigenRatios eigen_ratios(const Metric& m0, const Metric& m1) {
+    EigenRatios ratios;
+    compare_along(eigen_frame(m0), m1, ratios.second_over_first, ratios.first_over_second);
+    compare_along(eigen_frame(m1), m0, ratios.first_over_second, ratios.second_over_first);
+    return ratios;
+}
+
+bool limit(Metric& m, double factor, const Metric& by) {
+    m = intersection(m, factor * by);
+    return true;
+}
+
+}  // namespace
+
+double gradation_ratio_from_mmg(double hgrad) { return one_plus_log("hgrad", hgrad); }
+double gradation_ratio_from_refine(double beta) { return one_plus_log("beta", beta); }
+
+Growth growth_between(GradationLaw law, const Metric& from, const Metric& to, const Vector& v) {
+    if (law == GradationLaw::cone) {
+        return {std::max(1.0, growth(to, from)), metric_length(from, v)};
+    }
+    const double length = 0.5 * (metric_length(from, v) + metric_length(to, v));
+    if (is_isotropic(from) && is_isotropic(to)) return {std::max(1.0, to.xx / from.xx), length};
+    return {eigen_ratios(from, to).second_over_first, length};
+}
+
+Limited limit_anisotropic_growth(GradationLaw law, double g, const Vector& v, Metric& m0,
+                                 Metric& m1) {
+    const Growth to_second = growth_between(law, m0, m1, v);
+    const Growth to_first = growth_between(law, m1, m0, v);
+    const Metric old0 = m0;
+    Limited limited;
+    if (to_first.exceeds(g)) limited.first = limit(m0, to_first.allowed(g), m1);
+    if (to_second.exceeds(g)) limited.second = limit(m1, to_second.allowed(g), old0);
+    return limited;
+}
+
+}  // namespace controlspace

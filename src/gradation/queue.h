@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "gradation/law.h"
+#include "gradation/node_graph.h"
+
+namespace controlspace {
+
+/// First in, first out; every node is in it at most once, so a ring of as many places as nodes
+/// never overflows.
+class NodeQueue {
+public:
+    /// All of `nodes` nodes, in order.
+    explicit NodeQueue(std::size_t nodes) : ring_(nodes), waits_(nodes, 1), size_(nodes) {
+        std::iota(ring_.begin(), ring_.end(), NodeIndex{0});
+    }
+    bool empty() const { return size_ == 0; }
+    NodeIndex pop() {
+        const NodeIndex node = ring_[head_];
+        head_ = next(head_);
+        --size_;
+        waits_[node] = 0;
+        return node;
+    }
+    void push(NodeIndex node) {
+        if (waits_[node] != 0) return;
+        waits_[node] = 1;
+        ring_[tail_] = node;
+        tail_ = next(tail_);
+        ++size_;
+    }
+
+private:
+    std::size_t next(std::size_t i) const { return i + 1 == ring_.size() ? 0 : i + 1; }
+
+    std::vector<NodeIndex> ring_;
+    std::vector<std::uint8_t> waits_;
+    std::size_t head_ = 0, tail_ = 0, size_;
+};
+
+/// The queue schedule (paper §3.2): applies the law to every node and its neighbours, and again to
+/// those that changed, until nothing changes. Returns the number of metrics made smaller.
+template <class Graph>
+std::uint64_t grade_by_queue(const Graph& graph, std::span<Metric> metrics, GradationLaw law,
+                             double g) {
+    std::uint64_t operations = 0;
+    NodeQueue queue(graph.size());
+    while (!queue.empty()) {
+        const NodeIndex i = queue.pop();
+        const Point p = graph.position(i);
+        graph.for_each_neighbour(i, [&](NodeIndex j) {
+            const Limited limited =
+                limit_growth(law, g, graph.position(j) - p, metrics[i], metrics[j]);
+            if (limited.first) {
+                ++operations;
+                queue.push(i);
+            }
+            if (limited.second) {
+                ++operations;
+                queue.push(j);
+            }
+        });
+    }
+    return operations;
+}
+
+}  // namespace controlspace

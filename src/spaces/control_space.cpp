@@ -1,0 +1,47 @@
+#include "spaces/control_space.h"
+
+#include <fmt/format.h>
+
+#include "error.h"
+
+namespace controlspace {
+
+InsertionReport ControlSpace::insert(std::span<const PointSource> sources) {
+    InsertionReport report;
+    for (const PointSource& source : sources) {
+        require_valid(source, report.sources++, domain());
+        if (insert(source) == Insertion::inserted) ++report.inserted;
+    }
+    return report;
+}
+
+Metric sample_at(const ControlSpace& space, const Point& x) {
+    Metric m;
+    space.sample({&x, 1}, {&m, 1});
+    return m;
+}
+
+GradationReport grade(ControlSpace& space, const GradationOptions& options) {
+    ControlNodes nodes = space.control_nodes(options.schedule == GradationSchedule::queue
+                                                 ? Neighbourhood::faces
+                                                 : Neighbourhood::nearest_per_face);
+    const GradationReport report = grade(nodes.graph, nodes.metrics, options);
+    space.assign(nodes.metrics);
+    return report;
+}
+
+void require_valid(const PointSource& source, std::size_t index, const Box& domain) {
+    if (!domain.contains(source.position)) {
+        throw InputError(fmt::format(
+            "source {} at ({}, {}, {}) lies outside the domain {}: enlarge the domain or drop it",
+            index, source.position.x(), source.position.y(), source.position.z(),
+            to_string(domain)));
+    }
+    if (!is_positive_definite(source.metric)) {
+        throw InputError(fmt::format(
+            "source {} has the metric {} (xx yy zz xy xz yz), which is not positive definite", index,
+            to_string(source.metric)));
+    }
+}
+
+}  // namespace controlspace
