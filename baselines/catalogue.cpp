@@ -1,0 +1,50 @@
+#include "baselines/catalogue.h"
+
+#include <iterator>
+#include <vector>
+
+#include "baselines/uniform_grid.h"
+#ifdef CONTROLSPACE_OPENVDB
+#include "baselines/openvdb_grid.h"
+#endif
+
+namespace controlspace {
+
+namespace {
+
+using Make = std::unique_ptr<ControlSpace> (*)(const SpaceOptions&, Interpolation);
+
+template <Make make, Interpolation interpolation>
+CatalogueEntry grid(std::string id, std::string description) {
+    CatalogueEntry entry;
+    entry.id = std::move(id);
+    entry.description = std::move(description);
+    entry.order = interpolation == Interpolation::nearest ? 0 : 1;
+    entry.make = [](const SpaceOptions& options) { return make(options, interpolation); };
+    return entry;
+}
+
+std::vector<CatalogueEntry> all_structures() {
+    const std::span<const CatalogueEntry> trees = tree_catalogue();
+    std::vector<CatalogueEntry> all(trees.begin(), trees.end());
+    all.push_back(grid<make_uniform_grid, Interpolation::nearest>(
+        "uniform-nearest", "uniform grid, a metric per cell, constant"));
+    all.push_back(grid<make_uniform_grid, Interpolation::trilinear>(
+        "uniform-trilinear", "uniform grid, a metric per vertex, trilinear"));
+#ifdef CONTROLSPACE_OPENVDB
+    all.push_back(grid<make_openvdb_grid, Interpolation::nearest>(
+        "openvdb-nearest", "OpenVDB 5-4-3 tree, dense, a metric per voxel, constant"));
+    all.push_back(grid<make_openvdb_grid, Interpolation::trilinear>(
+        "openvdb-trilinear", "OpenVDB 5-4-3 tree, dense, a metric per voxel, trilinear"));
+#endif
+    return all;
+}
+
+}  // namespace
+
+std::span<const CatalogueEntry> structures() {
+    static const std::vector<CatalogueEntry> all = all_structures();
+    return all;
+}
+
+}  // namespace controlspace

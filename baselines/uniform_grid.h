@@ -1,0 +1,16 @@
+#pragma once
+
+#include <memory>
+
+#include "baselines/voxels.h"
+#include "spaces/catalogue.h"
+#include "spaces/control_space.h"
+
+namespace controlspace {
+
+/// Uniform Cartesian grid over the domain, its metrics in one flat array, x fastest: what a user
+/// writes who wants no tree. Voxels as `choose_voxels` has them; throws InputError as it does.
+std::unique_ptr<ControlSpace> make_uniform_grid(const SpaceOptions& options,
+                                                Interpolation interpolation);
+
+}  // namespace controlspace
