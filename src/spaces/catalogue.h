@@ -9,15 +9,9 @@
 
 #include "geometry/box.h"
 #include "spaces/control_space.h"
+#include "spaces/split_rule.h"
 
 namespace controlspace {
-
-/// Where a kd-tree cuts a leaf (paper §3.1.1).
-enum class SplitRule {
-    middle,  ///< s_L: middle of the longest axis
-    golden,  ///< s_G: the golden section of the longest axis that is nearer to the source
-    metric,  ///< s_M: so that the part with the source is l_min long in the source's metric
-};
 
 /// What a structure is made with.
 struct SpaceOptions {

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "metric/blend.h"
+#include "metric/intersection.h"
+#include "spaces/adjacency.h"
+#include "spaces/control_space.h"
+#include "spaces/topology.h"
+
+namespace controlspace {
+
+// A storage says where the control nodes of a tree are and how the metric between them is made.
+// What Tree asks of one:
+//   value(tree, x)                       metric at x
+//   split(subdivision, leaf, first_new)  a leaf was cut; the field stays as it was
+//   lower(leaf, metric)                  intersects what governs the leaf with `metric`
+//   control_nodes(tree, neighbourhood), assign(tree, metrics), describe(footprint), shrink_to_fit()
+
+/// One metric a leaf, constant over it (K_L, K_oL): a control node stands at the leaf's centre.
+class LeafValues {
+public:
+    static constexpr bool exact_at_nodes = true;
+    static constexpr int order = 0;
+
+    LeafValues(const Box&, const Metric& initial) : metrics_{initial} {}
+
+    template <class Node>
+    Metric value(const Topology<Node>& tree, const Point& x) const {
+        return metrics_[tree.find(x)];
+    }
+
+    void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex) {
+        const Metric inherited = metrics_[leaf];
+        metrics_.insert(metrics_.end(), static_cast<std::size_t>(subdivision.children() - 1),
+                        inherited);
+    }
+
+    void lower(LeafIndex leaf, const Metric& metric) {
+        metrics_[leaf] = intersection(metrics_[leaf], metric);
+    }
+
+    template <class Node>
+    ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const;
+
+    template <class Node>
+    void assign(const Topology<Node>& tree, std::span<const Metric> metrics) {
+        auto next = metrics.begin();
+        tree.for_each_leaf([&](LeafIndex leaf, const Box&) { metrics_[leaf] = *next++; });
+    }
+
+    void describe(Footprint& footprint) const {
+        footprint.control_nodes = metrics_.size();
+        footprint.bytes_payload = metrics_.capacity() * sizeof(Metric);
+    }
+    void shrink_to_fit() { metrics_.shrink_to_fit(); }
+
+protected:
+    std::vector<Metric> metrics_;
+};
+
+template <class Node>
+ControlNodes LeafValues::control_nodes(const Topology<Node>& tree,
+                                       Neighbourhood neighbourhood) const {
+    std::vector<NodeIndex> rank(tree.leaves());  // of a leaf in depth-first order
+    std::vector<Point> centres;
+    std::vector<Metric> metrics;
+    centres.reserve(tree.leaves());
+    metrics.reserve(tree.leaves());
+    tree.for_each_leaf([&](LeafIndex leaf, const Box& box) {
+        rank[leaf] = static_cast<NodeIndex>(centres.size());
+        centres.push_back(box.centre());
+        metrics.push_back(metrics_[leaf]);
+    });
+
+    NodeGraph graph;
+    if (neighbourhood == Neighbourhood::faces) {
+        std::vector<std::pair<NodeIndex, NodeIndex>> pairs;
+        pairs.reserve(3 * tree.leaves());
+        for_each_face_pair(tree, [&](LeafIndex low, LeafIndex high) {
+            pairs.emplace_back(rank[low], rank[high]);
+        });
+        graph = graph_from_pairs(centres.size(), pairs);
+    } else {
+        graph.first.reserve(centres.size() + 1);
+        graph.first.push_back(0);
+        tree.for_each_leaf([&](LeafIndex, const Box& box) {
+            LeafPlace across;
+            for (int face = 0; face < 6; ++face) {
+                if (locate_across(tree, box, face, box.centre(), across)) {
+                    graph.neighbours.push_back(rank[across.leaf]);
+                }
+            }
+            graph.first.push_back(graph.neighbours.size());
+        });
+    }
+    graph.positions = std::move(centres);
+    return {std::move(graph), std::move(metrics)};
+}
+
+}  // namespace controlspace

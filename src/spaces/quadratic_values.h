@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+
+#include "spaces/leaf_values.h"
+
+namespace controlspace {
+
+/// Metric inside a leaf, interpolated from its own metric and those of its six face neighbours.
+///
+/// `own` is the leaf's metric; across[2 a] and across[2 a + 1] are the neighbours' on the low and
+/// high side of axis a (the leaf's own at the domain's border); `t` is the place in the leaf, each
+/// coordinate in [-1, 1]. The 27 nodes of a hexahedron are set to: centre: own; face: mean of own
+/// and the neighbour's; edge: mean of its two faces; corner: mean of its three faces; between them
+/// the triquadratic Lagrange functions (paper §3.1.2, its coordinates put right).
+///
+/// Answers `own` at the centre and reproduces a constant. No node is smaller than own / 2, but
+/// quadratic functions undershoot; where the result would fall below own / 2 along any direction,
+/// its departure from `own` is scaled down until it does not. So it is always positive definite.
+Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, const Vector& t);
+
+/// One metric a leaf, interpolated with those of the neighbours when asked (K_Li).
+class QuadraticValues : public LeafValues {
+public:
+    static constexpr int order = 2;
+
+    using LeafValues::LeafValues;
+
+    template <class Node>
+    Metric value(const Topology<Node>& tree, const Point& place) const {
+        const Point x = place.cwiseMax(tree.domain().low).cwiseMin(tree.domain().high);
+        const LeafPlace here = tree.locate(x);
+        const Metric& own = metrics_[here.leaf];
+        std::array<Metric, 6> across;
+        for (int face = 0; face < 6; ++face) {
+            LeafPlace neighbour;
+            const bool inside = locate_across(tree, here.box, face, x, neighbour);
+            across[static_cast<std::size_t>(face)] = inside ? metrics_[neighbour.leaf] : own;
+        }
+        const Vector t = 2 * (x - here.box.centre()).cwiseQuotient(here.box.edges());
+        return triquadratic(own, across, t);
+    }
+};
+
+}  // namespace controlspace

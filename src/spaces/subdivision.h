@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+
+#include "geometry/box.h"
+
+namespace controlspace {
+
+/// A box and the planes that cut it: one for a kd-tree, three for an octree. A tree of either kind
+/// is a box subdivided again and again.
+///
+/// Children are numbered by one bit per cut axis, x lowest: 1 is the high side. A place on a plane
+/// belongs to the low side. Children's faces are copies of the parent's and of `at`, never
+/// computed, so faces that coincide are equal to the bit.
+struct Subdivision {
+    Box box;
+    Point at = Point::Zero();           ///< where the planes stand; only cut axes count
+    std::array<bool, 3> cuts{};         ///< which axes are cut
+
+    int children() const { return 1 << (cuts[0] + cuts[1] + cuts[2]); }
+
+    /// Which side of axis `a` child `c` lies on: 0 low, 1 high; 0 for an axis that is not cut.
+    int side(int c, Axis a) const {
+        int bit = 0;
+        for (int b = 0; b < a; ++b) bit += cuts[static_cast<std::size_t>(b)];
+        return cuts[static_cast<std::size_t>(a)] ? (c >> bit) & 1 : 0;
+    }
+
+    Box child(int c) const {
+        Box part = box;
+        for (Axis a = 0; a < 3; ++a) {
+            if (!cuts[static_cast<std::size_t>(a)]) continue;
+            (side(c, a) == 0 ? part.high : part.low)[a] = at[a];
+        }
+        return part;
+    }
+
+    /// Whether every plane stands strictly inside the box: floating point ends somewhere.
+    bool is_proper() const {
+        for (Axis a = 0; a < 3; ++a) {
+            if (cuts[static_cast<std::size_t>(a)] && !(box.low[a] < at[a] && at[a] < box.high[a])) {
+                return false;
+            }
+        }
+        return true;
+    }
+};
+
+/// The three planes through the middle of `box`.
+inline Subdivision octants(const Box& box) { return {box, box.centre(), {true, true, true}}; }
+
+/// One plane across axis `a` of `box`, at coordinate `cut`.
+inline Subdivision halves(const Box& box, Axis a, double cut) {
+    Subdivision s{box, Point::Constant(cut), {}};
+    s.cuts[static_cast<std::size_t>(a)] = true;
+    return s;
+}
+
+}  // namespace controlspace

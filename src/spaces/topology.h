@@ -1,0 +1,202 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/box.h"
+#include "spaces/subdivision.h"
+
+namespace controlspace {
+
+using LeafIndex = std::uint32_t;
+
+/// A leaf as a descent finds it.
+struct LeafPlace {
+    LeafIndex leaf = 0;
+    std::size_t slot = 0;  ///< where the tree refers to it
+    int level = 0;         ///< the root is level 0
+    Box box;
+};
+
+/// Reference to a part of a tree: a leaf, or an inner node; 30 bits of index. The remaining bit is
+/// free for the node that holds the reference.
+class Ref {
+public:
+    static constexpr std::uint32_t leaf_bit = 1u << 31;
+    static constexpr std::uint32_t spare_bit = 1u << 30;
+    static constexpr std::uint32_t max_index = spare_bit - 1;
+
+    static Ref leaf(LeafIndex i) { return Ref(i | leaf_bit); }
+    static Ref inner(std::size_t i) { return Ref(static_cast<std::uint32_t>(i)); }
+    Ref() : bits_(leaf_bit) {}
+
+    bool is_leaf() const { return (bits_ & leaf_bit) != 0; }
+    std::uint32_t index() const { return bits_ & max_index; }
+    bool spare() const { return (bits_ & spare_bit) != 0; }
+    Ref with_spare(bool on) const { return Ref((bits_ & ~spare_bit) | (on ? spare_bit : 0)); }
+
+private:
+    explicit Ref(std::uint32_t bits) : bits_(bits) {}
+    std::uint32_t bits_;
+};
+
+/// Inner node of a kd-tree: a plane and two children, 16 bytes. The axis sits in the spare bits of
+/// the children's references.
+struct KdNode {
+    static constexpr int arity = 2;
+    double at = 0;
+    std::array<Ref, 2> children;
+
+    KdNode() = default;
+    KdNode(const Subdivision& s) {
+        const Axis axis = s.cuts[0] ? 0 : s.cuts[1] ? 1 : 2;
+        at = s.at[axis];
+        children = {Ref().with_spare((axis & 1) != 0), Ref().with_spare((axis & 2) != 0)};
+    }
+    Axis axis() const { return (children[0].spare() ? 1 : 0) + (children[1].spare() ? 2 : 0); }
+    void set_child(int c, Ref ref) {
+        Ref& child = children[static_cast<std::size_t>(c)];
+        child = ref.with_spare(child.spare());
+    }
+    Subdivision subdivision(const Box& box) const { return halves(box, axis(), at); }
+
+    /// Number of the child that holds `x`.
+    int child_with(const Point& x) const { return x[axis()] > at ? 1 : 0; }
+    /// The same, and narrows `box` to that child.
+    int descend(const Point& x, Box& box) const {
+        const int c = child_with(x);
+        (c == 1 ? box.low : box.high)[axis()] = at;
+        return c;
+    }
+};
+
+/// Inner node of an octree: eight children, 32 bytes; the planes go through the middle of the box.
+struct OctreeNode {
+    static constexpr int arity = 8;
+    std::array<Ref, 8> children;
+
+    OctreeNode() = default;
+    OctreeNode(const Subdivision&) {}
+    void set_child(int c, Ref ref) { children[static_cast<std::size_t>(c)] = ref; }
+    Subdivision subdivision(const Box& box) const { return octants(box); }
+
+    int descend(const Point& x, Box& box) const {
+        int c = 0;
+        for (Axis a = 0; a < 3; ++a) {
+            const double middle = 0.5 * (box.low[a] + box.high[a]);
+            const bool high = x[a] > middle;
+            (high ? box.low : box.high)[a] = middle;
+            c |= (high ? 1 : 0) << a;
+        }
+        return c;
+    }
+};
+
+/// Where the leaves of a tree are; what they hold is a storage's affair. Flat: inner nodes in one
+/// array, leaves as numbers without gaps.
+template <class Node>
+class Topology {
+public:
+    static constexpr int arity = Node::arity;
+
+    explicit Topology(const Box& domain) : domain_(domain) {}
+
+    const Box& domain() const { return domain_; }
+    Ref root() const { return root_; }
+    const Node& node(Ref inner) const { return nodes_[inner.index()]; }
+    std::size_t leaves() const { return leaves_; }
+    std::size_t inner_nodes() const { return nodes_.size(); }
+    /// Deepest level of any leaf; the root is level 0.
+    int deepest_level() const { return deepest_; }
+    std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
+    void shrink_to_fit() { nodes_.shrink_to_fit(); }
+
+    /// The leaf that holds `x`; a place outside the domain is taken for the nearest one inside.
+    LeafPlace locate(const Point& x) const { return descend(root_, {0, root_slot, 0, domain_}, x); }
+
+    /// The same, starting at the place of a former leaf that has been split since.
+    LeafPlace locate_from(const LeafPlace& parent, const Point& x) const {
+        const Ref ref = parent.slot == root_slot
+                            ? root_
+                            : nodes_[parent.slot / arity].children[parent.slot % arity];
+        return descend(ref, parent, x);
+    }
+
+    /// The number alone of the leaf that holds `x`.
+    LeafIndex find(const Point& x) const {
+        if constexpr (requires(const Node& n) { n.child_with(x); }) {
+            Ref ref = root_;
+            while (!ref.is_leaf()) {
+                const Node& inner = nodes_[ref.index()];
+                ref = inner.children[static_cast<std::size_t>(inner.child_with(x))];
+            }
+            return ref.index();
+        } else {
+            return locate(x).leaf;
+        }
+    }
+
+    /// Cuts a leaf. Child 0 keeps the leaf's number, the others get the next ones:
+    /// child c > 0 is leaf `leaves() - children + c` afterwards.
+    void split(const LeafPlace& place, const Subdivision& subdivision) {
+        const Ref inner = Ref::inner(nodes_.size());
+        Node node(subdivision);
+        node.set_child(0, Ref::leaf(place.leaf));
+        for (int c = 1; c < arity; ++c) node.set_child(c, Ref::leaf(leaves_++));
+        nodes_.push_back(node);
+        if (place.slot == root_slot) {
+            root_ = inner;
+        } else {
+            nodes_[place.slot / arity].set_child(static_cast<int>(place.slot % arity), inner);
+        }
+        deepest_ = std::max(deepest_, place.level + 1);
+    }
+
+    /// Whether one more split would outgrow the references.
+    bool is_full() const { return leaves_ + arity > Ref::max_index; }
+
+    /// Calls visit(leaf, box) for all leaves, depth first, children in their order.
+    template <class Visit>
+    void for_each_leaf(Visit&& visit) const {
+        visit_leaves(root_, domain_, visit);
+    }
+
+private:
+    static constexpr std::size_t root_slot = ~std::size_t{0};
+
+    LeafPlace descend(Ref ref, LeafPlace place, const Point& x) const {
+        while (!ref.is_leaf()) {
+            const std::size_t inner = ref.index();
+            const auto c = static_cast<std::size_t>(nodes_[inner].descend(x, place.box));
+            place.slot = inner * arity + c;
+            ref = nodes_[inner].children[c];
+            ++place.level;
+        }
+        place.leaf = ref.index();
+        return place;
+    }
+
+    template <class Visit>
+    void visit_leaves(Ref ref, const Box& box, Visit& visit) const {
+        if (ref.is_leaf()) {
+            visit(LeafIndex{ref.index()}, box);
+            return;
+        }
+        const Node& inner = node(ref);
+        const Subdivision subdivision = inner.subdivision(box);
+        for (int c = 0; c < arity; ++c) {
+            visit_leaves(inner.children[static_cast<std::size_t>(c)], subdivision.child(c), visit);
+        }
+    }
+
+    Box domain_;
+    std::vector<Node> nodes_;
+    Ref root_;
+    LeafIndex leaves_ = 1;
+    int deepest_ = 0;
+};
+
+}  // namespace controlspace

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <type_traits>
+
+#include "error.h"
+#include "spaces/adjacency.h"
+#include "spaces/catalogue.h"
+#include "spaces/control_space.h"
+#include "spaces/leaf_values.h"
+#include "spaces/published_bytes.h"
+#include "spaces/split_rule.h"
+#include "spaces/topology.h"
+
+namespace controlspace {
+
+/// A tree over a box as control space: the paper's table with one switch, how a box is cut (`Node`)
+/// and where the control nodes are (`Storage`). Insertion (§3.1) is the same for all.
+template <class Node, class Storage>
+class Tree final : public ControlSpace {
+public:
+    /// With `balanced`, no leaf ever has a neighbour across a face that is more than one level
+    /// coarser (octrees).
+    explicit Tree(const SpaceOptions& options, bool balanced = false)
+        : options_(options),
+          balanced_(balanced),
+          topology_(options.domain),
+          storage_(options.domain, Metric::isotropic(options.domain.half_diagonal())) {}
+
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+        for (std::size_t i = 0; i < x.size(); ++i) out[i] = storage_.value(topology_, x[i]);
+    }
+
+    Insertion insert(const PointSource& source) override {
+        const Point& q = source.position;
+        if (!calls_for_change(source.metric, storage_.value(topology_, q), options_.tolerance)) {
+            return Insertion::already_met;
+        }
+        LeafPlace place = topology_.locate(q);
+        while (place.level < max_depth() && is_too_long(source.metric, place.box)) {
+            const Subdivision subdivision = subdivide(place.box, source);
+            if (!subdivision.is_proper()) break;
+            split(place, subdivision);
+            place = topology_.locate_from(place, q);
+        }
+        storage_.lower(place.leaf, source.metric);
+        return Insertion::inserted;
+    }
+
+    InsertionReport insert(std::span<const PointSource> sources) override {
+        const InsertionReport report = ControlSpace::insert(sources);
+        topology_.shrink_to_fit();
+        storage_.shrink_to_fit();
+        return report;
+    }
+
+    ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
+        return storage_.control_nodes(topology_, neighbourhood);
+    }
+    void assign(std::span<const Metric> metrics) override { storage_.assign(topology_, metrics); }
+
+    const Box& domain() const override { return topology_.domain(); }
+
+    Footprint footprint() const override {
+        Footprint footprint;
+        footprint.leaves = topology_.leaves();
+        footprint.elements = topology_.leaves() + topology_.inner_nodes();
+        footprint.depth = topology_.deepest_level() + 1;
+        footprint.bytes_topology = topology_.bytes();
+        storage_.describe(footprint);
+        footprint.bytes_published =
+            published_bytes({is_octree, !std::is_base_of_v<LeafValues, Storage>,
+                             topology_.leaves(), topology_.inner_nodes(), footprint.control_nodes});
+        return footprint;
+    }
+
+private:
+    static constexpr bool is_octree = std::is_same_v<Node, OctreeNode>;
+
+    int max_depth() const { return is_octree ? options_.octree_depth : options_.kd_depth; }
+
+    // Whether any edge of `box` is longer than l_min in the metric.
+    bool is_too_long(const Metric& metric, const Box& box) const {
+        const auto lengths = metric_edge_lengths(metric, box.edges());
+        return std::max({lengths[0], lengths[1], lengths[2]}) > options_.l_min;
+    }
+
+    Subdivision subdivide(const Box& box, const PointSource& source) const {
+        if constexpr (is_octree) {
+            return octants(box);
+        } else {
+            return cut(options_.split, box, source, options_.l_min);
+        }
+    }
+
+    void split(const LeafPlace& place, const Subdivision& subdivision) {
+        if (topology_.is_full()) {
+            throw InputError("the tree would have more than 2^30 leaves: raise l_min or lower the depth");
+        }
+        if constexpr (is_octree) {
+            if (balanced_) refine_coarser_neighbours(place);
+        }
+        const auto first_new = static_cast<LeafIndex>(topology_.leaves());
+        topology_.split(place, subdivision);
+        storage_.split(subdivision, place.leaf, first_new);
+    }
+
+    // Brings all face neighbours to the leaf's own level at least, so that it may be split.
+    void refine_coarser_neighbours(const LeafPlace& place) {
+        for (int face = 0; face < 6; ++face) {
+            LeafPlace neighbour;
+            if (!locate_across(topology_, place.box, face, place.box.centre(), neighbour)) continue;
+            if (neighbour.level < place.level) split(neighbour, octants(neighbour.box));
+        }
+    }
+
+    SpaceOptions options_;
+    bool balanced_;
+    Topology<Node> topology_;
+    Storage storage_;
+};
+
+}  // namespace controlspace

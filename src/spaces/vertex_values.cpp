@@ -1,0 +1,108 @@
+#include "spaces/vertex_values.h"
+
+#include <utility>
+
+namespace controlspace {
+
+VertexValues::VertexValues(const Box& domain, const Metric& initial) : corners_(1) {
+    for (int i = 0; i < 8; ++i) {
+        const Point x = corner(domain, i);
+        corners_[0][static_cast<std::size_t>(i)] =
+            places_.find_or_enter(x, static_cast<NodeIndex>(i), positions_);
+        positions_.push_back(x);
+        metrics_.push_back(initial);
+    }
+}
+
+// The control node at `x`, a place on the border or inside of a leaf with this box and these
+// corners; it is as large as the leaf's field there at most.
+NodeIndex VertexValues::vertex_at(const Point& x, const Box& box, const Corners& corners) {
+    const Metric here = interpolate(corners, corner_weights(box, x));
+    const auto next = static_cast<NodeIndex>(positions_.size());
+    const NodeIndex node = places_.find_or_enter(x, next, positions_);
+    if (node == next) {
+        positions_.push_back(x);
+        metrics_.push_back(here);
+    } else {
+        metrics_[node] = intersection(metrics_[node], here);
+    }
+    return node;
+}
+
+void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new) {
+    // The children's corners stand on a lattice of up to 3 x 3 x 3 places: per axis the low face,
+    // the cut and the high face. Those that are not corners of the leaf are looked up, once each.
+    const Corners old = corners_[leaf];
+    const Box& box = subdivision.box;
+    constexpr NodeIndex unknown = ~NodeIndex{0};
+    std::array<NodeIndex, 27> lattice;
+    lattice.fill(unknown);
+    const auto node_at = [&](const std::array<int, 3>& step) {
+        NodeIndex& node =
+            lattice[static_cast<std::size_t>(step[0] + 3 * step[1] + 9 * step[2])];
+        if (node != unknown) return node;
+        Point x;
+        int old_corner = 0;
+        bool is_old = true;
+        for (Axis a = 0; a < 3; ++a) {
+            const int s = step[static_cast<std::size_t>(a)];
+            x[a] = s == 0 ? box.low[a] : s == 1 ? subdivision.at[a] : box.high[a];
+            old_corner |= (s / 2) << a;
+            is_old = is_old && s != 1;
+        }
+        node = is_old ? old[static_cast<std::size_t>(old_corner)] : vertex_at(x, box, old);
+        return node;
+    };
+
+    const int children = subdivision.children();
+    corners_.resize(corners_.size() + static_cast<std::size_t>(children - 1));
+    for (int c = 0; c < children; ++c) {
+        const LeafIndex child = c == 0 ? leaf : first_new + static_cast<LeafIndex>(c - 1);
+        for (int i = 0; i < 8; ++i) {
+            std::array<int, 3> step{};
+            for (Axis a = 0; a < 3; ++a) {
+                const auto axis = static_cast<std::size_t>(a);
+                const int bit = i >> a & 1;
+                step[axis] = subdivision.cuts[axis] ? subdivision.side(c, a) + bit : 2 * bit;
+            }
+            corners_[child][static_cast<std::size_t>(i)] = node_at(step);
+        }
+    }
+}
+
+void VertexValues::lower(LeafIndex leaf, const Metric& metric) {
+    for (const NodeIndex node : corners_[leaf]) {
+        metrics_[node] = intersection(metrics_[node], metric);
+    }
+}
+
+NodeGraph VertexValues::graph_of_edges() const {
+    std::vector<std::pair<NodeIndex, NodeIndex>> edges;
+    edges.reserve(12 * corners_.size());
+    for (const Corners& corners : corners_) {
+        for (std::size_t i = 0; i < 8; ++i) {
+            for (const std::size_t bit : {1u, 2u, 4u}) {
+                if ((i & bit) == 0) edges.emplace_back(corners[i], corners[i | bit]);
+            }
+        }
+    }
+    NodeGraph graph = graph_from_pairs(positions_.size(), edges);
+    sort_rows_uniquely(graph);
+    graph.positions = positions_;
+    return graph;
+}
+
+void VertexValues::describe(Footprint& footprint) const {
+    footprint.control_nodes = metrics_.size();
+    footprint.bytes_payload = metrics_.capacity() * sizeof(Metric);
+    footprint.bytes_topology += corners_.capacity() * sizeof(Corners);
+    footprint.bytes_auxiliary = positions_.capacity() * sizeof(Point) + places_.bytes();
+}
+
+void VertexValues::shrink_to_fit() {
+    corners_.shrink_to_fit();
+    metrics_.shrink_to_fit();
+    positions_.shrink_to_fit();
+}
+
+}  // namespace controlspace

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "metric/blend.h"
+#include "metric/intersection.h"
+#include "spaces/adjacency.h"
+#include "spaces/control_space.h"
+#include "spaces/place_index.h"
+#include "spaces/topology.h"
+
+namespace controlspace {
+
+/// Place of `x` in `box`, each coordinate from 0 to 1, as the weights of its eight corners.
+inline std::array<double, 8> corner_weights(const Box& box, const Point& x) {
+    const Vector t = (x - box.low).cwiseQuotient(box.edges());
+    const std::array<double, 2> wx{1 - t.x(), t.x()}, wy{1 - t.y(), t.y()}, wz{1 - t.z(), t.z()};
+    std::array<double, 8> weights{};
+    for (std::size_t i = 0; i < 8; ++i) weights[i] = wx[i & 1] * wy[i >> 1 & 1] * wz[i >> 2];
+    return weights;
+}
+
+/// A metric at each vertex of the leaves, trilinear between the eight of a leaf (K_V, K_oV).
+///
+/// A vertex is one control node for all leaves that have a corner there, hanging vertices included.
+/// A new vertex of a split gets the interpolated metric; where a control node stands already, it is
+/// intersected with that. So a split changes the field only where it makes a finer neighbour's
+/// vertex count, and never makes it larger.
+class VertexValues {
+public:
+    static constexpr bool exact_at_nodes = true;
+    static constexpr int order = 1;
+
+    VertexValues(const Box& domain, const Metric& initial);
+
+    template <class Node>
+    Metric value(const Topology<Node>& tree, const Point& place) const {
+        const Point x = place.cwiseMax(tree.domain().low).cwiseMin(tree.domain().high);
+        const LeafPlace here = tree.locate(x);
+        return interpolate(corners_[here.leaf], corner_weights(here.box, x));
+    }
+
+    void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new);
+    void lower(LeafIndex leaf, const Metric& metric);
+
+    template <class Node>
+    ControlNodes control_nodes(const Topology<Node>&, Neighbourhood) const {
+        return {graph_of_edges(), metrics_};
+    }
+    template <class Node>
+    void assign(const Topology<Node>&, std::span<const Metric> metrics) {
+        metrics_.assign(metrics.begin(), metrics.end());
+    }
+
+    void describe(Footprint& footprint) const;
+    void shrink_to_fit();
+
+private:
+    using Corners = std::array<NodeIndex, 8>;
+
+    Metric interpolate(const Corners& corners, const std::array<double, 8>& weights) const {
+        return blend_lengths(weights,
+                             [&](std::size_t i) -> const Metric& { return metrics_[corners[i]]; });
+    }
+    NodeIndex vertex_at(const Point& x, const Box& box, const Corners& corners);
+    NodeGraph graph_of_edges() const;
+
+    std::vector<Corners> corners_;  // of a leaf, in the order of controlspace::corner
+    std::vector<Metric> metrics_;
+    std::vector<Point> positions_;
+    PlaceIndex places_;
+};
+
+}  // namespace controlspace
