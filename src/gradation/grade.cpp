@@ -36,7 +36,7 @@ GradationReport grade(const ControlGraph& graph, std::span<Metric> metrics,
             GradationReport report;
             report.operations = options.schedule == GradationSchedule::queue
                                     ? grade_by_queue(g, metrics, options.law, options.ratio)
-                                    : grade_by_passes(g, metrics, options.law, options.ratio);
+                                    : PassSchedule(g, metrics, options.law, options.ratio).run();
             report.largest_ratio_left = largest_ratio(g, metrics, options.law);
             return report;
         },

@@ -14,62 +14,86 @@
 namespace controlspace {
 
 /// The pass schedule, which the paper's tables were made with though its text describes the queue:
-/// at most ten passes over the active nodes, in their order. A node is first limited by all its
-/// neighbours, as they were, and then limits them; it stays active while the steepest of the pairs
-/// is more than 5 % above g. Nodes whose neighbours are all alike are left alone.
-/// Returns the number of metrics made smaller.
+/// at most ten passes over the active nodes, in their order. In its turn a node is limited by all
+/// its neighbours, as they were, and then limits them, unless all are alike. After a pass, those
+/// nodes are active that are more than 5 % steeper than g towards any neighbour.
 template <class Graph>
-std::uint64_t grade_by_passes(const Graph& graph, std::span<Metric> metrics, GradationLaw law,
-                              double g) {
-    constexpr int max_passes = 10;
-    constexpr double alike = 0.01;  // non-conformity
-    constexpr double slack = 1.05;
+class PassSchedule {
+public:
+    PassSchedule(const Graph& graph, std::span<Metric> metrics, GradationLaw law, double g)
+        : graph_(graph), metrics_(metrics), law_(law), g_(g) {}
 
+    /// Returns the number of metrics made smaller.
+    std::uint64_t run() {
+        constexpr int max_passes = 10;
+        std::vector<NodeIndex> active(graph_.size());
+        std::iota(active.begin(), active.end(), NodeIndex{0});
+        std::uint64_t operations = 0;
+        for (int pass = 0; pass < max_passes; ++pass) {
+            const std::uint64_t before = operations;
+            for (const NodeIndex i : active) operations += limit_around(i);
+            if (operations == before) break;  // as all later passes would be
+            active.clear();
+            for (NodeIndex i = 0; i < graph_.size(); ++i) {
+                if (is_too_steep(i)) active.push_back(i);
+            }
+        }
+        return operations;
+    }
+
+private:
     struct Link {
         NodeIndex node;
         Vector v;
-        Growth growth;  // from the neighbour to the node
+        Growth inwards;  // from the neighbour to the node whose turn it is
     };
-    std::vector<Link> links;
-    std::uint64_t operations = 0;
-    std::vector<NodeIndex> active(graph.size());
-    std::iota(active.begin(), active.end(), NodeIndex{0});
 
-    for (int pass = 0; pass < max_passes && !active.empty(); ++pass) {
-        std::vector<NodeIndex> still_active;
-        for (const NodeIndex i : active) {
-            Metric& m0 = metrics[i];
-            links.clear();
-            bool all_alike = true;
-            const Point p = graph.position(i);
-            graph.for_each_neighbour(i, [&](NodeIndex j) {
-                const Vector v = graph.position(j) - p;
-                links.push_back({j, v, growth_between(law, metrics[j], m0, v)});
-                all_alike = all_alike && nonconformity(m0, metrics[j]) < alike;
-            });
-            if (all_alike) continue;
+    std::uint64_t limit_around(NodeIndex i) {
+        constexpr double alike = 0.01;  // non-conformity
+        Metric& m0 = metrics_[i];
+        const Point p = graph_.position(i);
+        bool all_alike = true;
+        links_.clear();
+        graph_.for_each_neighbour(i, [&](NodeIndex j) {
+            const Vector v = graph_.position(j) - p;
+            links_.push_back({j, v, growth_between(law_, metrics_[j], m0, v)});
+            all_alike = all_alike && nonconformity(m0, metrics_[j]) < alike;
+        });
+        if (all_alike) return 0;
 
-            for (const Link& link : links) {
-                if (!link.growth.exceeds(g)) continue;
-                m0 = intersection(m0, link.growth.allowed(g) * metrics[link.node]);
-                ++operations;
-            }
-            double steepest = 1;
-            for (const Link& link : links) {
-                Metric& m1 = metrics[link.node];
-                const Growth outwards = growth_between(law, m0, m1, link.v);
-                if (outwards.exceeds(g)) {
-                    m1 = intersection(m1, outwards.allowed(g) * m0);
-                    ++operations;
-                }
-                steepest = std::max({steepest, growth_between(law, m0, m1, link.v).gradation(),
-                                     growth_between(law, m1, m0, link.v).gradation()});
-            }
-            if (steepest > slack * g) still_active.push_back(i);
+        std::uint64_t operations = 0;
+        const auto limit = [&](Metric& m, const Growth& growth, const Metric& by) {
+            if (!growth.exceeds(g_)) return;
+            m = intersection(m, growth.allowed(g_) * by);
+            ++operations;
+        };
+        for (const Link& link : links_) limit(m0, link.inwards, metrics_[link.node]);
+        for (const Link& link : links_) {
+            Metric& m1 = metrics_[link.node];
+            limit(m1, growth_between(law_, m0, m1, link.v), m0);
         }
-        active = std::move(still_active);
+        return operations;
     }
-    return operations;
-}
+
+    bool is_too_steep(NodeIndex i) const {
+        constexpr double slack = 1.05;
+        const Point p = graph_.position(i);
+        const Metric& m0 = metrics_[i];
+        bool steep = false;
+        graph_.for_each_neighbour(i, [&](NodeIndex j) {
+            const Vector v = graph_.position(j) - p;
+            const Metric& m1 = metrics_[j];
+            steep = steep || growth_between(law_, m0, m1, v).gradation() > slack * g_ ||
+                    growth_between(law_, m1, m0, v).gradation() > slack * g_;
+        });
+        return steep;
+    }
+
+    const Graph& graph_;
+    std::span<Metric> metrics_;
+    GradationLaw law_;
+    double g_;
+    std::vector<Link> links_;
+};
 
 }  // namespace controlspace
