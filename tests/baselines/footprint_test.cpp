@@ -15,9 +15,10 @@ constexpr std::size_t header = alignof(std::max_align_t);
 
 }  // namespace
 
-void* operator new(std::size_t bytes) {
+// All forms but the aligned ones are replaced, since sanitizers replace each form on its own.
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
     void* const block = std::malloc(bytes + header);
-    if (block == nullptr) throw std::bad_alloc();
+    if (block == nullptr) return nullptr;
     *static_cast<std::size_t*>(block) = bytes;
     const std::size_t live = live_bytes += bytes;
     std::size_t peak = peak_bytes;
@@ -25,6 +26,15 @@ void* operator new(std::size_t bytes) {
     }
     return static_cast<char*>(block) + header;
 }
+void* operator new(std::size_t bytes) {
+    void* const memory = operator new(bytes, std::nothrow);
+    if (memory == nullptr) throw std::bad_alloc();
+    return memory;
+}
+void* operator new[](std::size_t bytes, const std::nothrow_t&) noexcept {
+    return operator new(bytes, std::nothrow);
+}
+void* operator new[](std::size_t bytes) { return operator new(bytes); }
 void operator delete(void* memory) noexcept {
     if (memory == nullptr) return;
     void* const block = static_cast<char*>(memory) - header;
@@ -32,6 +42,8 @@ void operator delete(void* memory) noexcept {
     std::free(block);
 }
 void operator delete(void* memory, std::size_t) noexcept { operator delete(memory); }
+void operator delete[](void* memory) noexcept { operator delete(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { operator delete(memory); }
 
 namespace controlspace {
 namespace {
