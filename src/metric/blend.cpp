@@ -1,7 +1,5 @@
 #include "metric/blend.h"
 
-#include <Eigen/Eigenvalues>
-
 namespace controlspace {
 
 namespace {
@@ -12,13 +10,6 @@ Metric spectral(const Metric& m, Function f) {
     EigenFrame frame = eigen_frame(m);
     for (double& length : frame.lengths) length = f(length);
     return metric_from_frame(frame.lengths, frame.directions);
-}
-
-// The eigenvalues of log M may have any sign: not a metric, so not one for `eigen_frame`.
-Metric exponential(const Metric& m) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m.matrix());
-    const Vector lengths = solver.eigenvalues().array().exp();
-    return metric_from_frame({lengths[0], lengths[1], lengths[2]}, solver.eigenvectors());
 }
 
 template <class Forward>
@@ -40,7 +31,8 @@ Metric blend(std::span<const double> weights, std::span<const Metric> metrics, B
             return spectral(mean(weights, metrics, [](double h) { return h * h; }),
                             [](double r) { return std::sqrt(r); });
         case Blend::log_euclidean:
-            return exponential(mean(weights, metrics, [](double h) { return std::log(h); }));
+            return spectral(mean(weights, metrics, [](double h) { return std::log(h); }),
+                            [](double l) { return std::exp(l); });
     }
     return blend_lengths(weights, [&](std::size_t i) -> const Metric& { return metrics[i]; });
 }

@@ -25,14 +25,15 @@ Metric left_polar_factor(const Eigen::Matrix3d& b);
 /// it loses all digits at an anisotropy of 1e6.
 class Cholesky {
 public:
-    explicit Cholesky(const Metric& m)
-        : i0_(1 / m.xx), l10_(m.xy * i0_), l20_(m.xz * i0_) {
+    explicit Cholesky(const Metric& m) : i0_(1 / m.xx), l10_(m.xy * i0_), l20_(m.xz * i0_) {
         i1_ = 1 / (m.yy - l10_ * m.xy);
         const double yz = m.yz - l20_ * m.xy;
         l21_ = yz * i1_;
         i2_ = 1 / (m.zz - l20_ * m.xz - l21_ * yz);
     }
-    bool is_positive_definite() const { return i0_ > 0 && i1_ > 0 && i2_ > 0; }
+    bool is_positive_definite() const {
+        return i0_ > 0 && i1_ > 0 && i2_ > 0 && std::isfinite(i0_ + i1_ + i2_);
+    }
 
     /// M^-1 v.
     Vector solve(const Vector& v) const {
@@ -47,9 +48,19 @@ public:
         for (int c = 0; c < 3; ++c) x.col(c) = solve(Vector(b.col(c)));
         return x;
     }
+    double trace_of_inverse() const {
+        const double l = l10_ * l21_ - l20_;
+        return i0_ + i1_ * (1 + l10_ * l10_) + i2_ * (1 + l21_ * l21_ + l * l);
+    }
 
 private:
     double i0_, l10_, l20_, i1_, l21_, i2_;
 };
+
+/// Anisotropy of `m`, the ratio of its largest to its smallest eigenvalue, or down to a ninth of
+/// it; 1 for isotropic ones. `factor` must be the factorisation of `m`.
+/// The six numbers of a metric fix the lengths along its directions to a relative
+/// `condition * 1e-16` only: no algorithm gives more.
+double condition(const Metric& m, const Cholesky& factor);
 
 }  // namespace controlspace

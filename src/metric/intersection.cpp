@@ -1,14 +1,12 @@
 #include "metric/intersection.h"
 
-#include <algorithm>
-
 #include "metric/decompose.h"
 
 namespace controlspace {
 
 namespace {
 
-// Singular values this close to 1 mean "equal along this direction".
+// Relative difference of lengths that rounding may make where the condition is 1; it grows with it.
 constexpr double rounding = 1e-14;
 
 // h I against any metric: the principal lengths cut off at h, the frame kept.
@@ -20,28 +18,48 @@ Metric cut_off(const Metric& m, double h) {
     return metric_from_frame(frame.lengths, frame.directions);
 }
 
+// Simultaneous reduction: C = b^-1 a = U diag(s) V^T. The reduced problem a b^-2 a is C^T C, and
+// working on C itself keeps the digits that squaring would lose. The result's square is H H^T with
+// H = a V min(1, 1/s), and a v_i / s_i = b u_i, so each column comes from the metric that is the
+// shorter there.
+struct Reduction {
+    std::array<double, 3> s;
+    Eigen::Matrix3d av, bu;
+};
+
+Reduction reduce(const Metric& a, const Metric& b, const Cholesky& factor) {
+    const Svd c = svd(factor.solve(a.matrix()));
+    return {c.s, a.matrix() * c.v, b.matrix() * c.u};
+}
+
+// The same between the eigenframes, where C is an orthogonal matrix with scaled rows and columns:
+// rounding then tilts the frames by 1e-16, as storing the metrics does, and nothing else.
+Reduction reduce_between_frames(const Metric& a, const Metric& b) {
+    const EigenFrame fa = eigen_frame(a);
+    const EigenFrame fb = eigen_frame(b);
+    const auto la = Eigen::Map<const Vector>(fa.lengths.data()).asDiagonal();
+    const auto lb = Eigen::Map<const Vector>(fb.lengths.data()).asDiagonal();
+    const Svd c = svd(lb.inverse() * (fb.directions.transpose() * fa.directions) * la);
+    return {c.s, fa.directions * (la * c.v), fb.directions * (lb * c.u)};
+}
+
 }  // namespace
 
-Metric intersection(const Metric& a, const Metric& b) {
-    const bool a_aligned = is_axis_aligned(a);
-    const bool b_aligned = is_axis_aligned(b);
-    if (a_aligned && b_aligned) {
-        return {std::min(a.xx, b.xx), std::min(a.yy, b.yy), std::min(a.zz, b.zz), 0, 0, 0};
-    }
-    if (a_aligned && is_isotropic(a)) return cut_off(b, a.xx);
-    if (b_aligned && is_isotropic(b)) return cut_off(a, b.xx);
+Metric intersection_of_tensors(const Metric& a, const Metric& b) {
+    if (a == b) return a;
+    if (is_isotropic(a)) return cut_off(b, a.xx);
+    if (is_isotropic(b)) return cut_off(a, b.xx);
 
-    // With C = b^-1 a, the reduced problem a b^-2 a is C^T C: its eigenvalues are the squares of
-    // C's singular values, and working on C itself keeps the digits that squaring would lose.
-    // The result's square is B B^T, B = a V min(1, 1/s); where s > 1, a v / s = b u is the more
-    // accurate of the two.
-    const Svd c = svd(Cholesky(b).solve(a.matrix()));
-    if (c.s[0] <= 1 + rounding) return a;
-    if (c.s[2] >= 1 - rounding) return b;
-    Eigen::Matrix3d half;
+    const Cholesky factor(b);
+    const double condition_b = condition(b, factor);
+    Reduction r = reduce(a, b, factor);
+    // The plain way loses the digits of b's condition times C's.
+    if (condition_b * r.s[0] > 1e4 * r.s[2]) r = reduce_between_frames(a, b);
+    if (r.s[0] <= 1 + rounding * condition_b) return a;
+    if (r.s[2] >= 1 - rounding * condition_b) return b;
+    Eigen::Matrix3d half = r.av;
     for (int i = 0; i < 3; ++i) {
-        half.col(i) = c.s[static_cast<std::size_t>(i)] <= 1 ? a.matrix() * c.v.col(i)
-                                                             : b.matrix() * c.u.col(i);
+        if (r.s[static_cast<std::size_t>(i)] > 1) half.col(i) = r.bu.col(i);
     }
     return left_polar_factor(half);
 }
@@ -54,11 +72,11 @@ double growth(const Metric& a, const Metric& b) {
 }
 
 bool is_within(const Metric& a, double factor, const Metric& b) {
-    if (is_axis_aligned(a) && is_axis_aligned(b)) {
-        const double f = factor * (1 + rounding);
-        return a.xx <= f * b.xx && a.yy <= f * b.yy && a.zz <= f * b.zz;
-    }
-    return growth(a, b) <= factor * (1 + rounding);
+    const double k = growth(a, b);
+    if (k <= factor * (1 + rounding)) return true;
+    if (is_axis_aligned(a) && is_axis_aligned(b)) return false;
+    const double worst = std::max(condition(a, Cholesky(a)), condition(b, Cholesky(b)));
+    return k <= factor * (1 + rounding * worst);
 }
 
 }  // namespace controlspace

@@ -46,7 +46,7 @@ bool is_positive_definite(const Metric& m);
 /// Equal lengths give exactly `Metric::isotropic`, whatever the directions.
 Metric metric_from_frame(const std::array<double, 3>& lengths, const Eigen::Matrix3d& directions);
 
-/// Eigen-decomposition of a metric.
+/// Eigen-decomposition of a metric; of any symmetric tensor too, whose "lengths" may be negative.
 struct EigenFrame {
     std::array<double, 3> lengths;  ///< ascending
     Eigen::Matrix3d directions;     ///< column i belongs to lengths[i]; orthonormal
@@ -56,11 +56,19 @@ EigenFrame eigen_frame(const Metric& m);
 /// Mean of the three eigenvalues.
 inline double mean_length(const Metric& m) { return (m.xx + m.yy + m.zz) / 3; }
 
+/// The general case of `to_metric_space`.
+Vector to_metric_space_by_cholesky(const Metric& m, const Vector& v);
+
 /// M^-1 v: the displacement `v` seen in the metric.
-Vector to_metric_space(const Metric& m, const Vector& v);
+inline Vector to_metric_space(const Metric& m, const Vector& v) {
+    if (is_axis_aligned(m)) return {v.x() / m.xx, v.y() / m.yy, v.z() / m.zz};
+    return to_metric_space_by_cholesky(m, v);
+}
 
 /// |M^-1 v|: how many desired edge lengths `v` is long (paper §2).
-double metric_length(const Metric& m, const Vector& v);
+inline double metric_length(const Metric& m, const Vector& v) {
+    return to_metric_space(m, v).norm();
+}
 
 /// Metric lengths of displacements along x, y and z by `edges`: |M^-1 edges[a] e_a|.
 std::array<double, 3> metric_edge_lengths(const Metric& m, const Vector& edges);

@@ -1,0 +1,74 @@
+#include "metric/nonconformity.h"
+
+#include <catch2/catch.hpp>
+
+#include "metric/draw.h"
+
+using namespace controlspace;
+
+TEST_CASE("check values of nonconformity") {
+    const auto iso = [](double h) { return Metric::isotropic(h); };
+    CHECK(nonconformity(iso(0.1), iso(1)) == Approx(14.0296115).epsilon(1e-8));
+    CHECK(nonconformity(iso(0.03), iso(1.7320508)) == Approx(96.5658984).epsilon(1e-8));
+    CHECK(nonconformity(iso(0.2), iso(0.3)) == Approx(0.288675135).epsilon(1e-8));
+    CHECK(nonconformity({.1, .4, .2, 0, 0, 0}, {.5, .1, .3, 0, 0, 0}) ==
+          Approx(3.91538986).epsilon(1e-8));
+}
+
+TEST_CASE("nonconformity of isotropic metrics in closed form") {
+    for (double k : {1.0, 1 + 1e-9, 1.5, 10.0, 1e6}) {
+        const double expected = std::sqrt(3) * (k - 1) * (k - 1) / k;
+        CHECK(nonconformity(Metric::isotropic(0.3), Metric::isotropic(0.3 * k)) ==
+              Approx(expected).epsilon(1e-6));
+        const double squared = std::sqrt(3) * (k * k - 1) * (k * k - 1) / (k * k);
+        CHECK(riemannian_nonconformity(Metric::isotropic(0.3), Metric::isotropic(0.3 * k)) ==
+              Approx(squared).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("nonconformity is the Frobenius norm of its definition") {
+    Draw draw(31);
+    const Eigen::Matrix3d two = 2 * Eigen::Matrix3d::Identity();
+    for (int i = 0; i < 300; ++i) {
+        const Metric a = draw.metric(1, 20);
+        const Metric b = draw.metric(2, 20);
+        const Eigen::Matrix3d ma = a.matrix();
+        const Eigen::Matrix3d mb = b.matrix();
+        CHECK(nonconformity(a, b) ==
+              Approx((ma.inverse() * mb + mb.inverse() * ma - two).norm()).epsilon(1e-11));
+        const Eigen::Matrix3d ra = (ma * ma).inverse();
+        const Eigen::Matrix3d rb = (mb * mb).inverse();
+        CHECK(riemannian_nonconformity(a, b) ==
+              Approx((ra.inverse() * rb + rb.inverse() * ra - two).norm()).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("nonconformity is zero for equals, symmetric, and free of frame and unit") {
+    Draw draw(32);
+    for (double anisotropy : {1.0, 3.0, 1e3, 1e6}) {
+        for (int i = 0; i < 100; ++i) {
+            const Metric a = draw.metric(1, anisotropy);
+            const Metric b = draw.metric(0.1, anisotropy);
+            const double tolerance = 1e-13 * anisotropy;
+            for (auto delta : {nonconformity, riemannian_nonconformity}) {
+                const bool squared = delta == riemannian_nonconformity;
+                CHECK(delta(a, a) <= tolerance * (squared ? anisotropy : 1));
+                CHECK(delta(a, b) == Approx(delta(b, a)).epsilon(tolerance));
+                CHECK(delta(0x1p20 * a, 0x1p20 * b) == delta(a, b));
+                const Eigen::Matrix3d r = draw.rotation();
+                CHECK(delta(rotated(a, r), rotated(b, r)) ==
+                      Approx(delta(a, b)).epsilon(10 * tolerance));
+            }
+        }
+    }
+}
+
+TEST_CASE("axis-aligned nonconformity is that of slightly turned metrics") {
+    const Metric a{0.2, 3, 0.7, 0, 0, 0};
+    const Metric b{0.5, 1, 0.9, 0, 0, 0};
+    Metric turned = a;
+    turned.xz = 1e-14;
+    CHECK(nonconformity(a, b) == Approx(nonconformity(turned, b)).epsilon(1e-12));
+    CHECK(riemannian_nonconformity(a, b) ==
+          Approx(riemannian_nonconformity(turned, b)).epsilon(1e-11));
+}
