@@ -12,6 +12,7 @@ namespace controlspace {
 
 /// Centres of n x n x n equal cells of `box`, x fastest: coordinate k is
 /// low + edge / (2n) + k edge / n, in this order of operations (paper §5.2, n = 30).
+/// Throws InputError unless 1 <= n <= 512.
 std::vector<Point> cell_centres(const Box& box, int n);
 
 /// Places where the reference is known; computed once and shared by all structures.
@@ -21,20 +22,23 @@ struct Probes {
 };
 Probes make_probes(const ReferenceField& field, std::vector<Point> points);
 
-/// Non-conformity δ between a structure and its reference over a set of places.
+/// Non-conformity δ between a structure and its reference over a set of places. Where the structure
+/// answers something that is no metric, δ is infinite.
 struct Accuracy {
     double max = 0;
     double mean = 0;
-    double p95 = 0;             ///< 95th percentile (nearest rank)
-    double p99 = 0;             ///< 99th percentile (nearest rank)
-    double riemannian_max = 0;  ///< maximum of δ on the Riemannian metrics
+    double p95 = 0;               ///< 95th percentile (nearest rank)
+    double p99 = 0;               ///< 99th percentile (nearest rank)
+    double riemannian_max = 0;    ///< maximum of δ on the Riemannian metrics
     Point worst = Point::Zero();  ///< where max is; the first such place
 };
 
-/// δ_R of the paper (§5.2).
+/// δ_R of the paper (§5.2). Runs on all of TBB's threads, with the same result whatever their
+/// number. Throws InputError if there are no probes.
 Accuracy accuracy(const ControlSpace& space, const Probes& probes);
 
-/// δ_S of the paper (§5.2): largest δ between a source's metric and the structure's value there.
+/// δ_S of the paper (§5.2): largest δ between a source's metric and the structure's value there;
+/// 0 where there are no sources. Runs as `accuracy` does.
 double source_accuracy(const ControlSpace& space, std::span<const PointSource> sources);
 
 }  // namespace controlspace

@@ -19,20 +19,29 @@ public:
     virtual void evaluate(std::span<const Point> x, std::span<Metric> out) const = 0;
 };
 
-/// The exact field of paper §5.2: at p, the intersection of the cones
-/// M_i (1 + (g-1) |M_i^-1 (p - Q_i)|) of all sources i, and of `largest`.
+/// The exact field of paper §5.2: at p, the intersection of `largest` with the cones
+/// M_i (1 + (g-1) |M_i^-1 (p - Q_i)|) of all sources i, one after the other.
 ///
 /// Intersecting three or more tensors depends on their order, so the order is part of the
 /// definition: cones are taken by their smallest length at p, ascending, and by index where equal.
+/// A cone that the metric reached so far is within changes nothing.
+///
+/// Isotropic sources cost microseconds a query, whatever their number. Anisotropic ones cost what
+/// the definition asks for: about one source in thirty of a thin-layered sphere really shortens the
+/// metric at a place, each by its own small amount (a millisecond a query for 36186 sources).
+///
+/// Throws InputError, naming the source by its index (0-based), for a position that is not finite
+/// or a metric that is not positive definite; for g < 1 or not finite; for such a `largest`.
 std::unique_ptr<ReferenceField> exact_reference(std::vector<PointSource> sources, double g,
                                                 const Metric& largest);
 
-/// The same by intersecting with every source: the oracle of the tests.
+/// The same by intersecting with every source, without a search: the oracle of the tests.
 std::unique_ptr<ReferenceField> brute_force_reference(std::vector<PointSource> sources, double g,
                                                       const Metric& largest);
 
 /// What the paper's Table 4 was measured against, for spheres around the origin: the isotropic
 /// field h(p) = min(largest, h + s ||p| - radius|), s = 2 (g-1) / (g+1).
+/// Throws InputError for lengths that are not positive or finite, and for g as above.
 std::unique_ptr<ReferenceField> published_sphere_reference(double radius, double h, double g,
                                                            double largest);
 

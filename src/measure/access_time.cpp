@@ -1,0 +1,98 @@
+#include "measure/access_time.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include "error.h"
+
+namespace controlspace {
+
+namespace {
+
+double duration_s(const ControlSpace& space, std::span<const Point> points,
+                  std::span<Metric> answers) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    space.sample(points, answers);
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// Of samples in any order, by linear interpolation between the two nearest ranks.
+double quantile(std::vector<double> samples, double fraction) {
+    if (samples.empty()) throw InputError("a quantile of no samples: time at least one repeat");
+    std::sort(samples.begin(), samples.end());
+    const double rank = fraction * static_cast<double>(samples.size() - 1);
+    const auto below = static_cast<std::size_t>(rank);
+    const std::size_t above = std::min(below + 1, samples.size() - 1);
+    return std::lerp(samples[below], samples[above], rank - std::floor(rank));
+}
+
+}  // namespace
+
+std::vector<Point> random_points(const Box& box, std::size_t n, std::uint64_t seed) {
+    constexpr std::size_t most = std::size_t{1} << 28;
+    if (n > most) throw InputError(fmt::format("{} random points: give at most {}", n, most));
+    // The standard fixes the engine's numbers, but not what its distributions make of them.
+    std::mt19937_64 engine(seed);
+    const auto fraction = [&] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
+    std::vector<Point> points(n);
+    for (Point& p : points) {
+        for (Axis a = 0; a < 3; ++a) p[a] = box.low[a] + fraction() * (box.high[a] - box.low[a]);
+    }
+    return points;
+}
+
+std::uint64_t checksum(std::span<const Metric> metrics) {
+    // Every step is a bijection of the sum so far, so that one changed bit always shows; the shift
+    // brings high bits down, which multiplication alone would never do.
+    std::uint64_t sum = 0xcbf29ce484222325;
+    for (const Metric& m : metrics) {
+        for (const double number : {m.xx, m.yy, m.zz, m.xy, m.xz, m.yz}) {
+            sum = (sum ^ std::bit_cast<std::uint64_t>(number)) * 0x9e3779b97f4a7c15;
+            sum ^= sum >> 32;
+        }
+    }
+    return sum;
+}
+
+double AccessTime::median_ns() const { return quantile(samples_ns, 0.5); }
+
+double AccessTime::quartile_ns(int quartile) const {
+    if (quartile < 1 || quartile > 3) {
+        throw InputError(fmt::format("quartile {}: there are 1, 2 and 3", quartile));
+    }
+    return quantile(samples_ns, 0.25 * quartile);
+}
+
+AccessTime access_time(const ControlSpace& space, std::span<const Point> points, int repeats,
+                       double shortest_s) {
+    if (points.empty()) throw InputError("access time at no places: give at least one point");
+    if (repeats < 1) throw InputError(fmt::format("{} timed repeats: give at least one", repeats));
+
+    std::vector<Metric> answers(points.size());
+    space.sample(points, answers);
+    AccessTime result;
+    result.checksum = checksum(answers);
+    for (int repeat = 0; repeat < repeats; ++repeat) {
+        double seconds = 0;
+        std::uint64_t runs = 0;
+        do {
+            seconds += duration_s(space, points, answers);
+            ++runs;
+            if (checksum(answers) != result.checksum) {
+                throw std::logic_error("a timed run answered otherwise than the untimed run");
+            }
+        } while (seconds < shortest_s);
+        result.samples_ns.push_back(
+            seconds * 1e9 / (static_cast<double>(runs) * static_cast<double>(points.size())));
+    }
+    return result;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,63 @@
+#include "measure/cone_tree.h"
+
+#include <tbb/parallel_invoke.h>
+
+#include <algorithm>
+#include <array>
+
+namespace controlspace {
+
+ConeTreeShape ConeTreeShape::with_leaves_of(std::uint64_t size, std::uint64_t leaf_size) {
+    ConeTreeShape shape{size, 0};
+    while (leaf_size << shape.depth < size) ++shape.depth;
+    return shape;
+}
+
+namespace {
+
+std::size_t longest_extent(std::span<const ConeTreeItem> items) {
+    std::array<double, 4> low, high;
+    std::copy_n(items.front().coordinates, 4, low.begin());
+    high = low;
+    for (const ConeTreeItem& item : items) {
+        for (std::size_t a = 0; a < 4; ++a) {
+            low[a] = std::min(low[a], item.coordinates[a]);
+            high[a] = std::max(high[a], item.coordinates[a]);
+        }
+    }
+    std::size_t longest = 0;
+    for (std::size_t a = 1; a < 4; ++a) {
+        if (high[a] - low[a] > high[longest] - low[longest]) longest = a;
+    }
+    return longest;
+}
+
+void sort_below(const ConeTreeShape& shape, std::uint32_t node, std::span<ConeTreeItem> items) {
+    if (shape.is_leaf(node)) return;
+    const std::size_t begin = shape.begin(node);
+    const std::size_t middle = shape.end(2 * node);
+    const std::size_t end = shape.end(node);
+    const auto of_node = items.subspan(begin, end - begin);
+    const std::size_t axis = longest_extent(of_node);
+    std::nth_element(of_node.begin(), of_node.begin() + static_cast<std::ptrdiff_t>(middle - begin),
+                     of_node.end(), [axis](const ConeTreeItem& a, const ConeTreeItem& b) {
+                         return a.coordinates[axis] < b.coordinates[axis];
+                     });
+    const auto low = [&] { sort_below(shape, 2 * node, items); };
+    const auto high = [&] { sort_below(shape, 2 * node + 1, items); };
+    constexpr std::size_t worth_a_task = 4096;
+    if (end - begin < worth_a_task) {
+        low();
+        high();
+    } else {
+        tbb::parallel_invoke(low, high);
+    }
+}
+
+}  // namespace
+
+void sort_for_tree(const ConeTreeShape& shape, std::span<ConeTreeItem> items) {
+    sort_below(shape, 1, items);
+}
+
+}  // namespace controlspace

@@ -1,0 +1,193 @@
+#include "measure/reference.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "error.h"
+#include "measure/anisotropic_cones.h"
+#include "measure/cone.h"
+#include "measure/isotropic_cones.h"
+#include "metric/intersection.h"
+
+namespace controlspace {
+
+namespace {
+
+// Points of one task: enough that a task's start does not matter.
+constexpr std::size_t points_per_task = 64;
+
+template <class At>
+void for_all(std::span<const Point> x, std::span<Metric> out, At&& make_field) {
+    assert(x.size() == out.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, x.size(), points_per_task),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          auto field = make_field();
+                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                              out[i] = field(x[i]);
+                          }
+                      });
+}
+
+void require_ratio(double g) {
+    if (!std::isfinite(g) || g < 1) {
+        throw InputError(
+            fmt::format("gradation ratio {} of the reference: give a finite one >= 1", g));
+    }
+}
+
+void require_usable(std::span<const PointSource> sources, double g, const Metric& largest) {
+    require_ratio(g);
+    if (!is_positive_definite(largest)) {
+        throw InputError(
+            fmt::format("largest metric {} of the reference is not positive definite: "
+                        "give one with positive lengths",
+                        to_string(largest)));
+    }
+    if (sources.size() >= std::numeric_limits<std::uint32_t>::max() / 2) {
+        throw InputError(
+            fmt::format("{} sources for the reference: give fewer than 2^31", sources.size()));
+    }
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        const auto& [position, metric] = sources[i];
+        if (!position.allFinite()) {
+            throw InputError(fmt::format("source {}: its position is not finite: correct it", i));
+        }
+        if (!is_positive_definite(metric)) {
+            throw InputError(
+                fmt::format("source {}: metric {} is not positive definite: give one "
+                            "with positive lengths",
+                            i, to_string(metric)));
+        }
+    }
+}
+
+class IsotropicReference : public ReferenceField {
+public:
+    IsotropicReference(std::span<const PointSource> sources, double g, const Metric& largest)
+        : cones_(sources, g), largest_(largest), longest_(eigen_frame(largest).lengths[2]) {}
+
+    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
+        for_all(x, out, [this] {
+            return [this](const Point& p) {
+                const double h = cones_.smallest_length(p, longest_);
+                return h < longest_ ? intersection(largest_, Metric::isotropic(h)) : largest_;
+            };
+        });
+    }
+
+private:
+    IsotropicCones cones_;
+    Metric largest_;
+    double longest_;
+};
+
+class AnisotropicReference : public ReferenceField {
+public:
+    AnisotropicReference(std::span<const PointSource> sources, double g, const Metric& largest)
+        : cones_(sources, g), largest_(largest) {}
+
+    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
+        for_all(x, out, [this] {
+            return [this, queue = AnisotropicCones::Queue()](const Point& p) mutable {
+                return cones_.intersect(p, largest_, queue);
+            };
+        });
+    }
+
+private:
+    AnisotropicCones cones_;
+    Metric largest_;
+};
+
+class BruteForceReference : public ReferenceField {
+public:
+    BruteForceReference(std::vector<PointSource> sources, double g, const Metric& largest)
+        : sources_(std::move(sources)), g_(g), largest_(largest) {
+        smallest_.reserve(sources_.size());
+        for (const PointSource& s : sources_) smallest_.push_back(eigen_frame(s.metric).lengths[0]);
+    }
+
+    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
+        for_all(x, out, [this] { return [this](const Point& p) { return at(p); }; });
+    }
+
+private:
+    Metric at(const Point& p) const {
+        std::vector<double> lengths(sources_.size());
+        for (std::size_t i = 0; i < lengths.size(); ++i) {
+            lengths[i] = cone_factor(sources_[i], g_, p) * smallest_[i];
+        }
+        std::vector<std::size_t> order(sources_.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::size_t a, std::size_t b) { return lengths[a] < lengths[b]; });
+        Metric m = largest_;
+        for (const std::size_t i : order) {
+            m = intersection(m, cone_factor(sources_[i], g_, p) * sources_[i].metric);
+        }
+        return m;
+    }
+
+    std::vector<PointSource> sources_;
+    std::vector<double> smallest_;
+    double g_;
+    Metric largest_;
+};
+
+class PublishedSphereReference : public ReferenceField {
+public:
+    PublishedSphereReference(double radius, double h, double slope, double largest)
+        : radius_(radius), h_(h), slope_(slope), largest_(largest) {}
+
+    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
+        for_all(x, out, [this] {
+            return [this](const Point& p) {
+                return Metric::isotropic(
+                    std::min(largest_, h_ + slope_ * std::abs(p.norm() - radius_)));
+            };
+        });
+    }
+
+private:
+    double radius_, h_, slope_, largest_;
+};
+
+}  // namespace
+
+std::unique_ptr<ReferenceField> exact_reference(std::vector<PointSource> sources, double g,
+                                                const Metric& largest) {
+    require_usable(sources, g, largest);
+    const bool isotropic = std::all_of(sources.begin(), sources.end(),
+                                       [](const PointSource& s) { return is_isotropic(s.metric); });
+    if (isotropic) return std::make_unique<IsotropicReference>(sources, g, largest);
+    return std::make_unique<AnisotropicReference>(sources, g, largest);
+}
+
+std::unique_ptr<ReferenceField> brute_force_reference(std::vector<PointSource> sources, double g,
+                                                      const Metric& largest) {
+    require_usable(sources, g, largest);
+    return std::make_unique<BruteForceReference>(std::move(sources), g, largest);
+}
+
+std::unique_ptr<ReferenceField> published_sphere_reference(double radius, double h, double g,
+                                                           double largest) {
+    require_ratio(g);
+    if (!std::isfinite(radius) || radius < 0 || !(h > 0) || !std::isfinite(h) || !(largest > 0) ||
+        !std::isfinite(largest)) {
+        throw InputError(
+            fmt::format("reference of a sphere of radius {}, length {}, largest length "
+                        "{}: give finite ones, the lengths positive",
+                        radius, h, largest));
+    }
+    return std::make_unique<PublishedSphereReference>(radius, h, 2 * (g - 1) / (g + 1), largest);
+}
+
+}  // namespace controlspace

@@ -1,0 +1,125 @@
+#include "measure/access_time.h"
+
+#include <bit>
+#include <catch2/catch.hpp>
+#include <random>
+#include <set>
+#include <stdexcept>
+
+#include "error.h"
+#include "measure/fake_spaces.h"
+
+using namespace controlspace;
+
+namespace {
+
+const Box box{Point(-1, 0, 10), Point(1, 5, 10.5)};
+
+}  // namespace
+
+TEST_CASE("Random points fill the box evenly") {
+    constexpr std::size_t n = 80000;
+    const auto points = random_points(box, n, 1);
+    REQUIRE(points.size() == n);
+    std::array<int, 8> octants{};
+    for (const Point& p : points) {
+        REQUIRE(box.contains(p));
+        const Point c = box.centre();
+        ++octants[(p.x() > c.x() ? 1u : 0u) + (p.y() > c.y() ? 2u : 0u) +
+                  (p.z() > c.z() ? 4u : 0u)];
+    }
+    // 10000 each, within six standard deviations of the binomial distribution (94).
+    for (const int octant : octants) CHECK(std::abs(octant - 10000) < 564);
+}
+
+TEST_CASE("Random points depend on the seed and on nothing else") {
+    CHECK(random_points(box, 100, 1) == random_points(box, 100, 1));
+    CHECK(random_points(box, 100, 1) != random_points(box, 100, 2));
+    const auto few = random_points(box, 10, 1);
+    const auto many = random_points(box, 100, 1);
+    CHECK(std::equal(few.begin(), few.end(), many.begin()));
+    CHECK(random_points(box, 0, 1).empty());
+    CHECK_THROWS_AS(random_points(box, std::size_t{1} << 40, 1), InputError);
+}
+
+TEST_CASE("Random points are the top 53 bits of the standard's generator") {
+    // The C++ standard gives the 10000th number of a default mt19937_64, seed 5489:
+    // 9981545732273789042. 9999 = 3 * 3333: it is the first coordinate of point 3333.
+    const auto points = random_points({Point::Zero(), Point::Ones()}, 3334, 5489);
+    CHECK(points[3333].x() == static_cast<double>(9981545732273789042u >> 11) / 9007199254740992.0);
+}
+
+TEST_CASE("The checksum sees every bit and the order") {
+    const Metric a{1, 2, 3, 0.1, 0.2, 0.3};
+    const Metric b{4, 5, 6, 0.4, 0.5, 0.6};
+    CHECK(checksum(std::vector{a, b}) == checksum(std::vector{a, b}));
+    CHECK(checksum(std::vector{a, b}) != checksum(std::vector{b, a}));
+    CHECK(checksum(std::vector{a}) != checksum(std::vector{a, a}));
+    CHECK(checksum(std::vector{Metric{1, 2, 3, 0, 0, 0}}) !=
+          checksum(std::vector{Metric{1, 2, 3, -0.0, -0.0, 0}}));
+
+    std::set<std::uint64_t> sums{checksum(std::vector{a, b})};
+    const auto words = std::bit_cast<std::array<std::uint64_t, 6>>(a);
+    for (std::size_t word = 0; word < 6; ++word) {
+        for (int bit = 0; bit < 64; ++bit) {
+            auto changed = words;
+            changed[word] ^= std::uint64_t{1} << bit;
+            sums.insert(checksum(std::vector{std::bit_cast<Metric>(changed), b}));
+        }
+    }
+    CHECK(sums.size() == 1 + 6 * 64);
+}
+
+TEST_CASE("Access time gives one sample a repeat, and the answers' checksum") {
+    const FunctionSpace space([](const Point& p) { return Metric::isotropic(1 + p.norm()); });
+    const auto points = random_points(box, 100, 3);
+    std::vector<Metric> answers(points.size());
+    space.sample(points, answers);
+    const AccessTime time = access_time(space, points, 4, 1e-4);
+    REQUIRE(time.samples_ns.size() == 4);
+    for (const double sample : time.samples_ns) CHECK(sample > 0);
+    CHECK(time.checksum == checksum(answers));
+}
+
+TEST_CASE("A repeat goes on until it has lasted long enough") {
+    int calls = 0;
+    const FunctionSpace space([&](const Point&) {
+        ++calls;
+        return Metric::isotropic(1);
+    });
+    const AccessTime time = access_time(space, random_points(box, 10, 1), 2, 1e-3);
+    // 10 points a call: two repeats of at least 1 ms each took what the samples say.
+    const double spent = 1e-9 * (calls - 10) * (time.samples_ns[0] + time.samples_ns[1]) / 2;
+    CHECK(calls > 30);
+    CHECK(spent > 0);
+    CHECK(access_time(space, random_points(box, 10, 1), 1, 0).samples_ns.size() == 1);
+}
+
+TEST_CASE("Answers that change are not timed") {
+    // The untimed run is good; answer 35 is of the third timed run of ten points.
+    int calls = 0;
+    const FunctionSpace fickle(
+        [&](const Point&) { return Metric::isotropic(++calls == 35 ? 2 : 1); });
+    CHECK_THROWS_AS(access_time(fickle, random_points(box, 10, 1), 100, 0), std::logic_error);
+}
+
+TEST_CASE("Timing nothing is refused") {
+    const FunctionSpace space([](const Point&) { return Metric::isotropic(1); });
+    CHECK_THROWS_AS(access_time(space, {}, 3), InputError);
+    CHECK_THROWS_AS(access_time(space, random_points(box, 10, 1), 0), InputError);
+    CHECK_THROWS_AS(AccessTime{}.median_ns(), InputError);
+}
+
+TEST_CASE("Median and quartiles of samples in any order") {
+    const AccessTime odd{{5, 1, 4, 2, 3}, 0};
+    CHECK(odd.median_ns() == 3);
+    CHECK(odd.quartile_ns(1) == 2);
+    CHECK(odd.quartile_ns(2) == 3);
+    CHECK(odd.quartile_ns(3) == 4);
+    const AccessTime even{{4, 1, 3, 2}, 0};
+    CHECK(even.median_ns() == 2.5);
+    CHECK(even.quartile_ns(1) == 1.75);
+    CHECK(even.quartile_ns(3) == 3.25);
+    CHECK(AccessTime{{7}, 0}.quartile_ns(3) == 7);
+    CHECK_THROWS_AS(odd.quartile_ns(4), InputError);
+}
