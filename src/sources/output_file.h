@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <string_view>
+
+namespace controlspace {
+
+/// A file that is either written whole or not at all: the text goes to a temporary file beside it,
+/// which takes its name on `commit` and is removed otherwise. What is not a regular file
+/// (/dev/stdout) is written to directly. Failures, a full disk among them, throw InputError.
+class OutputFile {
+public:
+    explicit OutputFile(const std::filesystem::path& path);
+    ~OutputFile();
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+
+    void write(std::string_view text);
+    /// To be called once, last.
+    void commit();
+
+private:
+    [[noreturn]] void fail() const;
+
+    std::filesystem::path target_;
+    std::filesystem::path written_;  ///< the temporary file, or the target itself
+    std::FILE* file_ = nullptr;
+};
+
+}  // namespace controlspace

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "sources/point_source.h"
+
+namespace controlspace {
+
+/// Sources from a file, by its extension: `.csv` (sources/csv.h), or `.mesh` or `.sol`, of which
+/// the other must lie beside it under the same name (sources/medit.h).
+/// Throws InputError for anything that cannot be read as such.
+std::vector<PointSource> read_sources(const std::filesystem::path& path);
+
+}  // namespace controlspace

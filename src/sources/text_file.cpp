@@ -1,0 +1,52 @@
+#include "sources/text_file.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "error.h"
+
+namespace controlspace {
+
+std::string read_text_file(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) {
+        throw InputError(fmt::format("{} is a directory: name a file", name));
+    }
+    const auto close = [](std::FILE* f) { std::fclose(f); };
+    const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(name.c_str(), "rb"), close);
+    if (!file) throw InputError(fmt::format("cannot read {}: {}", name, std::strerror(errno)));
+
+    std::string text;
+    constexpr std::size_t block = std::size_t{1} << 20;
+    std::size_t got = block;
+    while (got == block) {
+        const std::size_t size = text.size();
+        text.resize(size + block);
+        got = std::fread(text.data() + size, 1, block, file.get());
+        text.resize(size + got);
+    }
+    if (std::ferror(file.get()) != 0) {
+        throw InputError(fmt::format("cannot read {}: {}", name, std::strerror(errno)));
+    }
+    if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+    if (text.empty()) throw InputError(fmt::format("{} is empty: give a file with sources", name));
+    return text;
+}
+
+std::string place(const std::filesystem::path& path, std::size_t line) {
+    return fmt::format("{}:{}", path.string(), line);
+}
+
+std::string quote(std::string_view text) {
+    constexpr std::size_t most = 40;
+    std::string shown = "'";
+    for (const char c : text.substr(0, most)) shown += c >= ' ' && c <= '~' ? c : '?';
+    return shown + (text.size() > most ? "...'" : "'");
+}
+
+}  // namespace controlspace

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <charconv>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace controlspace {
+
+/// The whole file, without a leading UTF-8 byte order mark. Throws InputError, naming the file, if
+/// it is missing, a directory, unreadable, or empty.
+std::string read_text_file(const std::filesystem::path& path);
+
+/// "name:line", for messages.
+std::string place(const std::filesystem::path& path, std::size_t line);
+
+/// A piece of a file as a message can quote it: its beginning, in printable characters.
+std::string quote(std::string_view text);
+
+/// Whether all of `text` is a number that fits into `value`; a leading + is allowed.
+template <class Number>
+bool parse_number(std::string_view text, Number& value) {
+    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc() && stop == end;
+}
+
+}  // namespace controlspace
