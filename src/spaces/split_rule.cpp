@@ -1,16 +1,12 @@
 #include "spaces/split_rule.h"
 
-#include <algorithm>
-
 namespace controlspace {
 
 namespace {
 
 Axis longest_axis(const std::array<double, 3>& lengths) {
-    constexpr double tie = 1 - 1e-9;
-    const double longest = std::max({lengths[0], lengths[1], lengths[2]});
-    if (lengths[2] >= tie * longest) return 2;
-    return lengths[1] >= tie * longest ? 1 : 0;
+    if (lengths[0] > lengths[1] && lengths[0] > lengths[2]) return 0;
+    return lengths[1] > lengths[2] ? 1 : 2;
 }
 
 // Fraction of the edge at which s_M cuts: `length` is the edge's, `t` the source's fraction of it.
@@ -21,6 +17,11 @@ double metric_fraction(double length, double t, double l_min) {
     if (1 - t <= k) return 1 - k;
     return t < 0.5 ? t + 0.5 * k : t - 0.5 * k;
 }
+
+// With exact golden sections, an edge cut once near its end and one cut twice near its middle are
+// equally long but for rounding. To five digits 0.61803² < 0.38197: the former is the longer one,
+// which gives trees of the published sizes.
+double golden_fraction(double t) { return t < 0.5 ? 0.38197 : 0.61803; }
 
 }  // namespace
 
@@ -33,12 +34,8 @@ Subdivision cut(SplitRule rule, const Box& box, const PointSource& source, doubl
     switch (rule) {
         case SplitRule::middle:
             break;
-        case SplitRule::golden: {
-            // To six digits, as published: 0.618034² then differs from 0.381966 by 7e-8, which
-            // decides between edges that exact golden sections would make equally long.
-            constexpr double minor = 0.381966;
-            return halves(box, axis, low + (t <= 0.5 ? minor : 1 - minor) * (high - low));
-        }
+        case SplitRule::golden:
+            return halves(box, axis, low + golden_fraction(t) * (high - low));
         case SplitRule::metric: {
             const double length = lengths[static_cast<std::size_t>(axis)];
             return halves(box, axis, low + metric_fraction(length, t, l_min) * (high - low));
