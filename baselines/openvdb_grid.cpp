@@ -27,7 +27,9 @@ class VdbTree {
 public:
     VdbTree(const Lattice& lattice, const Metric& initial) : tree_(VdbMetric(initial)) {
         const auto [nx, ny, nz] = lattice.nodes;
-        tree_.denseFill({voxel(0, 0, 0), voxel(nx - 1, ny - 1, nz - 1)}, VdbMetric(initial));
+        // What denseFill does, but on the one thread that makes every other structure too.
+        tree_.sparseFill({voxel(0, 0, 0), voxel(nx - 1, ny - 1, nz - 1)}, VdbMetric(initial));
+        tree_.voxelizeActiveTiles(/*threaded=*/false);
     }
 
     static double bytes_for(const Vector& nodes) {
