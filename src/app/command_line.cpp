@@ -1,0 +1,129 @@
+#include "app/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <map>
+
+#include "error.h"
+#include "study/provenance.h"
+#include "study/settings.h"
+
+namespace controlspace {
+namespace {
+
+/// Words given for each setting, by key.
+using GivenSettings = std::map<std::string_view, std::vector<std::string>>;
+
+std::string option_name(std::string_view key) {
+    std::string name = "--" + std::string(key);
+    std::replace(name.begin(), name.end(), '_', '-');
+    return name;
+}
+
+std::string type_name(ValueType type, std::size_t at_most) {
+    const std::string name = type == ValueType::number         ? "NUMBER"
+                             : type == ValueType::whole_number ? "COUNT"
+                                                               : "TEXT";
+    return at_most == 0 ? name + ",..." : name;
+}
+
+/// One option for each setting; `defaults` shows in the help.
+template <class Target>
+void add_options(CLI::App& command, std::span<const Setting<Target>> settings,
+                 const Target& defaults, const std::string& group, GivenSettings& given) {
+    for (const Setting<Target>& setting : settings) {
+        CLI::Option* option = command.add_option(option_name(setting.key), given[setting.key],
+                                                 std::string(setting.help));
+        // Lists are written with commas: with blanks they would swallow the study file.
+        option->delimiter(',')->group(group);
+        option->type_name(type_name(setting.type, setting.at_most));
+        if (setting.at_most > 1) {
+            option->expected(static_cast<int>(setting.at_most));
+        } else {
+            option->allow_extra_args(false);
+        }
+        const SettingValues values = setting.get(defaults);
+        if (!values.empty()) option->default_str(to_string(values));
+    }
+    for (const Setting<Target>& setting : settings) {
+        for (const Setting<Target>& other : settings) {
+            const bool related = other.same_as == setting.key ||
+                                 (!other.same_as.empty() && other.same_as == setting.same_as);
+            if (!related || other.key == setting.key) continue;
+            command.get_option(option_name(other.key))
+                ->excludes(command.get_option(option_name(setting.key)));
+        }
+    }
+}
+
+/// The command line as a shell would take it again.
+std::string command_line_text(int argc, const char* const* argv) {
+    std::string text;
+    for (int i = 0; i < argc; ++i) {
+        std::string word = argv[i];
+        if (word.empty() || word.find_first_of(" \t\n'\"\\$`*?&|;<>()[]{}#~!") != word.npos) {
+            std::string quoted;
+            for (const char c : word)
+                quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+            word = "'" + quoted + "'";
+        }
+        text += (i > 0 ? " " : "") + word;
+    }
+    return text;
+}
+
+}  // namespace
+
+Command parse_command_line(int argc, const char* const* argv) {
+    CLI::App app(
+        "Compares control spaces for mesh generation: metrics in a box, learnt from points.",
+        "controlspace");
+    app.set_version_flag("--version", "controlspace " + version_text(current_provenance()));
+    app.require_subcommand(1);
+
+    CompareOptions options;
+    GivenSettings given;
+    CLI::App* compare = app.add_subcommand(
+        "compare", "Run a study: make, grade and measure structures on the same sources");
+    compare
+        ->add_option("STUDY", options.study_file,
+                     "Study file (.toml); left out: the paper's sphere at rho = tau = 1, in both "
+                     "modes, or one run if sources, law, schedule or reference are given")
+        ->type_name("STUDY.toml");
+    add_options(*compare, run_settings(), Run{},
+                "Settings of cases (lists with commas; all combinations are run)", given);
+    auto* published = compare->add_flag(
+        "--as-published", options.as_published,
+        "As for the paper's tables: --law mean-length --schedule passes --reference "
+        "published-sphere");
+    published->group("Settings of cases (lists with commas; all combinations are run)");
+    for (const char* name : {"--law", "--schedule", "--reference"}) {
+        published->excludes(compare->get_option(name));
+    }
+    add_options(*compare, study_settings(), Study{}, "Settings of the study", given);
+    compare->add_flag("--quiet", options.quiet, "No progress on standard error");
+    CLI::App* list =
+        app.add_subcommand("list", "Name the structures, splits, laws, schedules and references");
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        return TextCommand{compare->parsed() ? compare->help() : app.help()};
+    } catch (const CLI::CallForAllHelp&) {
+        return TextCommand{app.help("", CLI::AppFormatMode::All)};
+    } catch (const CLI::CallForVersion& version) {
+        return TextCommand{std::string(version.what()) + "\n"};
+    } catch (const CLI::ParseError& error) {
+        throw InputError(fmt::format("{} (see controlspace --help)", error.what()));
+    }
+    if (list->parsed()) return ListCommand{};
+    for (const auto& [key, words] : given) {
+        if (!words.empty()) options.settings.emplace_back(key, words);
+    }
+    options.command_line = command_line_text(argc, argv);
+    return options;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "app/compare.h"
+
+namespace controlspace {
+
+/// --help or --version: to be printed as it is.
+struct TextCommand {
+    std::string text;
+};
+struct ListCommand {};
+
+using Command = std::variant<TextCommand, ListCommand, CompareOptions>;
+
+/// Throws InputError for what is no valid command line.
+Command parse_command_line(int argc, const char* const* argv);
+
+}  // namespace controlspace

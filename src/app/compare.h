@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "study/study.h"
+
+namespace controlspace {
+
+/// What the command line of `compare` asks for.
+struct CompareOptions {
+    std::filesystem::path study_file;  ///< empty: the built-in study
+    /// Settings by key, as they were written; they override the study file in all of its runs.
+    std::vector<std::pair<std::string, std::vector<std::string>>> settings;
+    bool as_published = false;
+    bool quiet = false;
+    std::string command_line;
+};
+
+/// The study that `options` ask for. Throws InputError.
+Study study_of(const CompareOptions& options);
+
+/// Runs the study, with progress on standard error and tables on standard output.
+void compare(const CompareOptions& options);
+
+}  // namespace controlspace

@@ -1,0 +1,57 @@
+#include "app/list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "baselines/catalogue.h"
+#include "study/names.h"
+
+namespace controlspace {
+namespace {
+
+using Entry = std::pair<std::string_view, std::string_view>;
+
+std::string section(std::string_view title, std::span<const Entry> entries) {
+    std::size_t width = 0;
+    for (const auto& [name, description] : entries) width = std::max(width, name.size());
+    std::string text = fmt::format("{}\n", title);
+    for (const auto& [name, description] : entries) {
+        text += fmt::format("  {:{}}  {}\n", name, width, description);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string list_text() {
+    std::vector<Entry> entries;
+    for (const CatalogueEntry& entry : structures()) {
+        entries.emplace_back(entry.id, entry.description);
+    }
+    const Entry splits[] = {
+        {name_of(SplitRule::middle), "middle of the longest axis"},
+        {name_of(SplitRule::golden), "golden section of the longest axis, nearer to the source"},
+        {name_of(SplitRule::metric), "so that the source's part is l_min long in its metric"}};
+    const Entry laws[] = {
+        {name_of(GradationLaw::cone), "h1 <= h0 + (g_r - 1) |v|, as in the exact reference"},
+        {name_of(GradationLaw::mean_length), "the paper's: over the mean of both metric lengths"}};
+    const Entry schedules[] = {
+        {name_of(GradationSchedule::queue), "until nothing changes"},
+        {name_of(GradationSchedule::passes), "at most ten passes, as in the paper's tables"}};
+    const Entry references[] = {
+        {name_of(ReferenceKind::exact), "intersection of the cones of all sources"},
+        {name_of(ReferenceKind::published_sphere),
+         "the analytic field behind the paper's Table 4"}};
+    return section("Structures (--structures)", entries) +
+           section("\nSplits of kd-trees (--splits)", splits) +
+           section("\nLaws of gradation (--law)", laws) +
+           section("\nSchedules of gradation (--schedule)", schedules) +
+           section("\nReferences (--reference)", references);
+}
+
+}  // namespace controlspace

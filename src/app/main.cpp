@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "app/command_line.h"
+#include "app/compare.h"
+#include "app/list.h"
+#include "app/standard_output.h"
+#include "error.h"
+
+namespace {
+
+int fail(int status, std::string what) {
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    fmt::print(stderr, "controlspace: error: {}\n", what);
+    return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    using namespace controlspace;
+    try {
+        spdlog::set_default_logger(spdlog::stderr_color_mt("controlspace"));
+        spdlog::set_pattern("%n: %l: %v");
+        const Command command = parse_command_line(argc, argv);
+        if (const auto* text = std::get_if<TextCommand>(&command)) {
+            print(text->text);
+        } else if (std::holds_alternative<ListCommand>(command)) {
+            print(list_text());
+        } else {
+            compare(std::get<CompareOptions>(command));
+        }
+        return 0;
+    } catch (const InputError& error) {
+        return fail(2, error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(1, "out of memory: give fewer sources, or lower --max-memory");
+    } catch (const std::exception& error) {
+        return fail(1, fmt::format("unexpected: {}", error.what()));
+    }
+}

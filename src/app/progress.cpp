@@ -1,0 +1,92 @@
+#include "app/progress.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace controlspace {
+namespace {
+
+double seconds_between(std::chrono::steady_clock::time_point a,
+                       std::chrono::steady_clock::time_point b) {
+    return std::chrono::duration<double>(b - a).count();
+}
+
+std::size_t terminal_width() {
+    winsize size{};
+    const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    return known ? size.ws_col : 80;
+}
+
+}  // namespace
+
+ProgressStyle progress_style_of_stderr() {
+    return isatty(STDERR_FILENO) != 0 ? ProgressStyle::live : ProgressStyle::lines;
+}
+
+std::string duration_text(double seconds) {
+    const auto s = static_cast<long long>(seconds);
+    return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60)
+                    : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+}
+
+Progress::Progress(std::span<const Case> cases, std::span<const std::size_t> source_counts,
+                   ProgressStyle style)
+    : count_(cases.size()), style_(style), estimate_(cases, source_counts) {}
+
+void Progress::case_started(const Case& c) {
+    const std::lock_guard lock(mutex_);
+    case_ = structure_label(c);
+    phase_.clear();
+    case_start_ = Clock::now();
+}
+
+void Progress::phase_started(std::string_view phase) {
+    const std::lock_guard lock(mutex_);
+    phase_ = phase;
+}
+
+void Progress::case_finished(const Row& row) {
+    const std::lock_guard lock(mutex_);
+    const double seconds = seconds_between(case_start_, Clock::now());
+    estimate_.case_finished(seconds);
+    ++finished_;
+    if (style_ == ProgressStyle::lines) {
+        fmt::print(stderr, "case {}/{}: {}, {}: {}{:.2f} s\n", finished_, count_, case_,
+                   setting_label(row.setting), row.measures ? "" : "failed, ", seconds);
+    }
+    clear_line();
+}
+
+void Progress::show() {
+    const std::lock_guard lock(mutex_);
+    if (style_ != ProgressStyle::live || over_ || finished_ == count_) return;
+    const auto left = estimate_.seconds_left();
+    const std::string line =
+        fmt::format("case {}/{}  {}  {}  {} elapsed{}", finished_ + 1, count_, case_, phase_,
+                    duration_text(seconds_between(start_, Clock::now())),
+                    left ? ", about " + duration_text(*left) + " left" : "");
+    fmt::print(stderr, "\r\033[K{}", line.substr(0, terminal_width() - 1));
+    std::fflush(stderr);
+}
+
+void Progress::finish() {
+    const std::lock_guard lock(mutex_);
+    clear_line();
+    over_ = true;
+}
+
+std::size_t Progress::finished() const {
+    const std::lock_guard lock(mutex_);
+    return finished_;
+}
+
+void Progress::clear_line() {
+    if (style_ != ProgressStyle::live || over_) return;
+    fmt::print(stderr, "\r\033[K");
+    std::fflush(stderr);
+}
+
+}  // namespace controlspace

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string_view>
+
+namespace controlspace {
+
+/// Writes `text` to standard output; throws InputError if it does not take it (a full disk).
+void print(std::string_view text);
+
+}  // namespace controlspace

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "gradation/grade.h"
+#include "spaces/catalogue.h"
+
+namespace controlspace {
+
+/// Where a study's sources come from.
+enum class SourcesKind { sphere, planes, file };
+
+/// What δ_R is measured against.
+enum class ReferenceKind {
+    exact,             ///< intersection of all sources' cones (paper §5.2)
+    published_sphere,  ///< the analytic field behind the paper's Table 4; spheres only
+};
+
+/// The sources of one case: a sampled surface (paper §5.1) or a file.
+struct SourcesChoice {
+    SourcesKind kind = SourcesKind::sphere;
+    std::filesystem::path file;  ///< file only
+    double radius = 0.8;         ///< sphere only
+    double slope = 0;            ///< planes only: a of the second plane (u, -0.2 + a u, v)
+    double h = 0.015;            ///< length that the sampling starts from
+    double rho = 1;              ///< spacing of the samples in units of h
+    double s_a = 2;              ///< tangential length in units of h
+    double s_n = 1;              ///< normal length in units of the tangential one
+
+    bool operator==(const SourcesChoice&) const = default;
+};
+
+/// One structure under one setting: what a row of a study is the result of.
+struct Case {
+    std::string structure = "K_L";        ///< id in the catalogue
+    std::optional<SplitRule> split = {};  ///< kd-trees only
+    SourcesChoice sources = {};
+    double tau = 1;        ///< l_min: longest edge of a source's leaf, in the source's metric
+    double epsilon = 0.2;  ///< ε_δ of insertion
+    double g_r = 1.25;     ///< gradation ratio
+    std::optional<int> max_depth = {};  ///< trees only
+    GradationLaw law = GradationLaw::cone;
+    GradationSchedule schedule = GradationSchedule::queue;
+    ReferenceKind reference = ReferenceKind::exact;
+
+    bool operator==(const Case&) const = default;
+};
+
+/// Whether the sources are sampled, so that rho, s_a and s_n mean something.
+inline bool is_sampled(const SourcesChoice& s) { return s.kind != SourcesKind::file; }
+
+/// Whether the case was run as the paper's tables were: mean-length law, passes, and the published
+/// reference.
+bool is_as_published(const Case& c);
+
+/// "K_L s_L", "K_oV".
+std::string structure_label(const Case& c);
+
+/// What rows of one table share: "rho 1, tau 0.5, epsilon 0.2, g_r 1.25, s_a 2, s_n 1; cone law,
+/// queue, exact reference".
+std::string setting_label(const Case& c);
+
+}  // namespace controlspace

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "study/case.h"
+
+namespace controlspace {
+
+/// The words that stand for the values of an enumeration in options, study files and results.
+template <class Enum>
+struct Names;
+
+template <>
+struct Names<SplitRule> {
+    static constexpr std::array<std::pair<SplitRule, std::string_view>, 3> table{
+        {{SplitRule::middle, "s_L"}, {SplitRule::golden, "s_G"}, {SplitRule::metric, "s_M"}}};
+};
+template <>
+struct Names<GradationLaw> {
+    static constexpr std::array<std::pair<GradationLaw, std::string_view>, 2> table{
+        {{GradationLaw::cone, "cone"}, {GradationLaw::mean_length, "mean-length"}}};
+};
+template <>
+struct Names<GradationSchedule> {
+    static constexpr std::array<std::pair<GradationSchedule, std::string_view>, 2> table{
+        {{GradationSchedule::queue, "queue"}, {GradationSchedule::passes, "passes"}}};
+};
+template <>
+struct Names<ReferenceKind> {
+    static constexpr std::array<std::pair<ReferenceKind, std::string_view>, 2> table{
+        {{ReferenceKind::exact, "exact"}, {ReferenceKind::published_sphere, "published-sphere"}}};
+};
+
+template <class Enum>
+constexpr std::string_view name_of(Enum value) {
+    for (const auto& [v, name] : Names<Enum>::table) {
+        if (v == value) return name;
+    }
+    return {};
+}
+
+template <class Enum>
+constexpr std::optional<Enum> from_name(std::string_view text) {
+    for (const auto& [v, name] : Names<Enum>::table) {
+        if (name == text) return v;
+    }
+    return std::nullopt;
+}
+
+}  // namespace controlspace

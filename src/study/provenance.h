@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+namespace controlspace {
+
+/// Which program made a file of results, where and when.
+struct Provenance {
+    std::string version;   ///< of the program
+    std::string commit;    ///< that it was built from; "unknown" where there was no git
+    bool dirty = false;    ///< tracked files differed from the commit
+    std::string compiler;  ///< name and version
+    std::string flags;
+    std::string cpu;          ///< model; "unknown" where the system does not say
+    unsigned cores = 0;       ///< that the system offers
+    std::size_t threads = 0;  ///< for the work that is not timed
+    std::string date;         ///< UTC, "2024-05-01T12:00:00Z"
+    std::string command_line;
+};
+
+/// All but the command line, as of now.
+Provenance current_provenance();
+
+/// "0.1.0 (commit 1234567, modified)".
+std::string version_text(const Provenance& provenance);
+
+}  // namespace controlspace

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "study/provenance.h"
+#include "study/row.h"
+#include "study/study.h"
+
+namespace controlspace {
+
+/// results.json: provenance, settings and rows with all raw samples. `complete` is false while
+/// cases are still to come.
+std::string results_json(const Provenance& provenance, const Study& study,
+                         std::span<const Row> rows, bool complete);
+
+/// results.csv: the rows' fields as columns; samples of one field are separated by blanks.
+std::string results_csv(std::span<const Row> rows);
+
+/// summary.md: provenance and tables.
+std::string results_summary(const Provenance& provenance, const Study& study,
+                            std::span<const Row> rows, bool complete);
+
+/// The folder a study's results go to. Each write replaces each file at once, so that whatever
+/// happens whole files lie there.
+class ResultsFolder {
+public:
+    /// Makes the folder with its parents. Throws InputError if that fails, if results lie there
+    /// already, or if it cannot be written to.
+    explicit ResultsFolder(std::filesystem::path folder);
+
+    const std::filesystem::path& path() const { return folder_; }
+
+    /// Throws InputError, naming the file, if it cannot be written.
+    void write(const Provenance& provenance, const Study& study, std::span<const Row> rows,
+               bool complete) const;
+
+private:
+    std::filesystem::path folder_;
+};
+
+/// study.output, or results/NAME-DATE-TIME (UTC).
+std::filesystem::path results_path(const Study& study, const Provenance& provenance);
+
+}  // namespace controlspace

@@ -1,0 +1,145 @@
+#include "study/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+#include "error.h"
+
+namespace controlspace {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+template <class Callback, class... Arguments>
+void tell(const std::function<Callback>& callback, const Arguments&... arguments) {
+    if (callback) callback(arguments...);
+}
+
+/// The cases whose probes are the same: same sources, same reference, same g_r.
+bool share_probes(const Case& a, const Case& b) {
+    return a.sources == b.sources && a.reference == b.reference && a.g_r == b.g_r;
+}
+
+/// Probes that are needed again by later cases.
+class ProbeCache {
+public:
+    explicit ProbeCache(std::span<const Case> cases) : cases_(cases) {}
+
+    /// Probes of case `i`, made by `make` where they are not at hand.
+    template <class Make>
+    const ReferenceProbes& get(std::size_t i, Make&& make) {
+        for (const Entry& entry : entries_) {
+            if (share_probes(cases_[entry.first_use], cases_[i])) return *entry.probes;
+        }
+        entries_.push_back({i, std::make_unique<ReferenceProbes>(make())});
+        return *entries_.back().probes;
+    }
+
+    /// Frees what no case after `i` needs.
+    void drop_after(std::size_t i) {
+        std::erase_if(entries_, [&](const Entry& entry) {
+            const auto later = cases_.subspan(i + 1);
+            return std::none_of(later.begin(), later.end(), [&](const Case& c) {
+                return share_probes(cases_[entry.first_use], c);
+            });
+        });
+    }
+
+private:
+    struct Entry {
+        std::size_t first_use;
+        std::unique_ptr<ReferenceProbes> probes;
+    };
+    std::span<const Case> cases_;
+    std::vector<Entry> entries_;
+};
+
+const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> catalogue) {
+    return *std::find_if(catalogue.begin(), catalogue.end(),
+                         [&](const CatalogueEntry& entry) { return entry.id == c.structure; });
+}
+
+}  // namespace
+
+Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry,
+                  const Workload& workload, const ReferenceProbes& probes,
+                  const StudyObserver& observer) {
+    Measures m;
+    tell(observer.phase_started, "insertion");
+    auto start = std::chrono::steady_clock::now();
+    const auto space = entry.make(space_options(study, c, workload));
+    m.sources_inserted = space->insert(std::span<const PointSource>(workload.sources)).inserted;
+    m.insert_s = seconds_since(start);
+
+    tell(observer.phase_started, "gradation");
+    start = std::chrono::steady_clock::now();
+    m.gradation = grade(*space, {.law = c.law, .schedule = c.schedule, .ratio = c.g_r});
+    m.gradation_s = seconds_since(start);
+    m.footprint = space->footprint();
+
+    tell(observer.phase_started, "access");
+    const auto random = random_points(workload.domain, study.access_points, study.seed);
+    m.access_random = access_time(*space, random, study.access_repeats);
+    m.access_grid = access_time(*space, probes.coarse.points, study.access_repeats);
+
+    tell(observer.phase_started, "accuracy");
+    m.accuracy = accuracy(*space, probes.coarse);
+    m.accuracy_fine = accuracy(*space, probes.fine);
+    m.source_accuracy = source_accuracy(*space, workload.sources);
+    return m;
+}
+
+PreparedStudy::PreparedStudy(Study study, std::span<const CatalogueEntry> catalogue)
+    : study_(std::move(study)), catalogue_(catalogue), cases_(expand(study_, catalogue)) {
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+        const Case& c = cases_[i];
+        const bool known =
+            std::any_of(sources_.begin(), sources_.end(),
+                        [&](const SharedSources& shared) { return shared.choice == c.sources; });
+        if (!known) sources_.push_back({c.sources, make_workload(study_, c.sources), i});
+        SharedSources& shared = sources_of(c);
+        shared.last_use = i;
+        source_counts_.push_back(shared.workload.sources.size());
+        space_options(study_, c, shared.workload);
+    }
+}
+
+PreparedStudy::SharedSources& PreparedStudy::sources_of(const Case& c) {
+    return *std::find_if(sources_.begin(), sources_.end(),
+                         [&](const SharedSources& shared) { return shared.choice == c.sources; });
+}
+
+void PreparedStudy::run(const StudyObserver& observer) && {
+    ProbeCache probe_cache(cases_);
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+        const Case& c = cases_[i];
+        SharedSources& shared = sources_of(c);
+        tell(observer.case_started, c);
+        Row row{c, shared.workload.sources.size(), std::nullopt, {}};
+        try {
+            const ReferenceProbes& probes = probe_cache.get(i, [&] {
+                tell(observer.phase_started, "reference field");
+                return make_reference_probes(study_, c, shared.workload);
+            });
+            row.measures =
+                run_case(study_, c, entry_of(c, catalogue_), shared.workload, probes, observer);
+        } catch (const std::bad_alloc&) {
+            row.error = "out of memory: lower max_memory, or raise tau";
+        } catch (const std::exception& error) {
+            row.error = error.what();
+        }
+        probe_cache.drop_after(i);
+        if (shared.last_use == i) shared.workload.sources = {};
+        tell(observer.case_finished, row);
+    }
+}
+
+}  // namespace controlspace

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "spaces/catalogue.h"
+#include "study/row.h"
+#include "study/study.h"
+#include "study/workload.h"
+
+namespace controlspace {
+
+/// Told of what a study does; each may be empty.
+struct StudyObserver {
+    std::function<void(const Case&)> case_started;
+    std::function<void(std::string_view)> phase_started;  ///< within a case: "insertion"
+    std::function<void(const Row&)> case_finished;
+};
+
+/// A study made ready to run: every case checked, every set of sources at hand.
+class PreparedStudy {
+public:
+    /// Throws InputError for anything about the study that cannot be run.
+    PreparedStudy(Study study, std::span<const CatalogueEntry> catalogue);
+
+    const Study& study() const { return study_; }
+    std::span<const Case> cases() const { return cases_; }
+    /// Number of sources of each case.
+    std::span<const std::size_t> source_counts() const { return source_counts_; }
+
+    /// Runs the cases one after the other, so that none disturbs the timing of another. A case that
+    /// fails gives a row with its reason. Sources and probes are freed after the last case that
+    /// needs them, so it runs once.
+    void run(const StudyObserver& observer) &&;
+
+private:
+    struct SharedSources {
+        SourcesChoice choice;
+        Workload workload;
+        std::size_t last_use = 0;  ///< index of a case
+    };
+
+    SharedSources& sources_of(const Case& c);
+
+    Study study_;
+    std::span<const CatalogueEntry> catalogue_;
+    std::vector<Case> cases_;
+    std::vector<SharedSources> sources_;
+    std::vector<std::size_t> source_counts_;
+};
+
+/// Makes, grades and measures one structure. Exceptions pass through.
+Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry,
+                  const Workload& workload, const ReferenceProbes& probes,
+                  const StudyObserver& observer);
+
+}  // namespace controlspace

@@ -1,0 +1,136 @@
+#include "study/study.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "error.h"
+
+namespace controlspace {
+namespace {
+
+bool is_tree(const CatalogueEntry& entry) {
+    const auto trees = tree_catalogue();
+    return std::any_of(trees.begin(), trees.end(),
+                       [&](const CatalogueEntry& tree) { return tree.id == entry.id; });
+}
+
+std::vector<const CatalogueEntry*> chosen(const std::vector<std::string>& names,
+                                          std::span<const CatalogueEntry> catalogue) {
+    std::vector<const CatalogueEntry*> entries;
+    const auto add = [&](const CatalogueEntry& entry) {
+        if (std::find(entries.begin(), entries.end(), &entry) == entries.end()) {
+            entries.push_back(&entry);
+        }
+    };
+    for (const std::string& name : names) {
+        bool known = name == "all" || name == "trees" || name == "baselines";
+        for (const CatalogueEntry& entry : catalogue) {
+            if (entry.id == name || name == "all" || (name == "trees" && is_tree(entry)) ||
+                (name == "baselines" && !is_tree(entry))) {
+                add(entry);
+                known = true;
+            }
+        }
+        if (!known) {
+            std::vector<std::string_view> ids;
+            for (const CatalogueEntry& entry : catalogue) ids.push_back(entry.id);
+            throw InputError(
+                fmt::format("unknown structure '{}': give all, trees, baselines or some of {}",
+                            name, fmt::join(ids, ", ")));
+        }
+    }
+    return entries;
+}
+
+/// Lists multiply: a slip in a study file should not ask for a year of work, or for all memory.
+void require_few(std::size_t cases) {
+    constexpr std::size_t most = 5000;
+    if (cases > most) {
+        throw InputError(fmt::format("the study has more than {} cases: shorten its lists", most));
+    }
+}
+
+void require_sensible(const Study& study, const Run& run) {
+    const Run defaults;
+    if (study.sources.kind == SourcesKind::file &&
+        (run.rho != defaults.rho || run.s_a != defaults.s_a || run.s_n != defaults.s_n)) {
+        throw InputError(
+            "rho, s_a and s_n are for sampled surfaces: leave them out with sources from a file");
+    }
+    const bool published = std::find(run.reference.begin(), run.reference.end(),
+                                     ReferenceKind::published_sphere) != run.reference.end();
+    if (!published) return;
+    if (study.sources.kind != SourcesKind::sphere) {
+        throw InputError("reference published-sphere is for the sphere: use exact");
+    }
+    if (std::any_of(run.s_n.begin(), run.s_n.end(), [](double s_n) { return s_n != 1; })) {
+        throw InputError("reference published-sphere is isotropic: use exact, or s_n = 1");
+    }
+}
+
+/// Replaces each case by one for each value; the first list multiplied varies slowest.
+template <class Value, class Assign>
+void multiply(std::vector<Case>& cases, const std::vector<Value>& values, Assign&& assign) {
+    require_few(cases.size() * values.size());
+    std::vector<Case> product;
+    product.reserve(cases.size() * values.size());
+    for (const Case& c : cases) {
+        for (const Value& value : values) assign(product.emplace_back(c), value);
+    }
+    cases = std::move(product);
+}
+
+std::vector<Case> settings_of(const Study& study, const Run& run) {
+    std::vector<Case> cases(1);
+    cases.front().sources = study.sources;
+    multiply(cases, run.rho, [](Case& c, double rho) { c.sources.rho = rho; });
+    multiply(cases, run.s_a, [](Case& c, double s_a) { c.sources.s_a = s_a; });
+    multiply(cases, run.s_n, [](Case& c, double s_n) { c.sources.s_n = s_n; });
+    multiply(cases, run.g_r, [](Case& c, double g_r) { c.g_r = g_r; });
+    multiply(cases, run.reference, [](Case& c, ReferenceKind kind) { c.reference = kind; });
+    multiply(cases, run.law, [](Case& c, GradationLaw law) { c.law = law; });
+    multiply(cases, run.schedule, [](Case& c, GradationSchedule s) { c.schedule = s; });
+    multiply(cases, run.epsilon, [](Case& c, double epsilon) { c.epsilon = epsilon; });
+    multiply(cases, run.tau, [](Case& c, double tau) { c.tau = tau; });
+    return cases;
+}
+
+/// One structure under one setting: splits and depths multiply only those that have them.
+std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const Case& setting) {
+    std::vector<Case> cases{setting};
+    cases.front().structure = entry.id;
+    if (entry.has_split_rules) {
+        multiply(cases, run.splits, [](Case& c, SplitRule split) { c.split = split; });
+        multiply(cases, run.kd_depth, [](Case& c, int depth) { c.max_depth = depth; });
+    } else if (is_tree(entry)) {
+        multiply(cases, run.octree_depth, [](Case& c, int depth) { c.max_depth = depth; });
+    }
+    return cases;
+}
+
+}  // namespace
+
+std::vector<Case> expand(const Study& study, std::span<const CatalogueEntry> catalogue) {
+    std::vector<Case> cases;
+    for (const Run& run : study.runs) {
+        require_sensible(study, run);
+        const auto entries = chosen(run.structures, catalogue);
+        for (const Case& setting : settings_of(study, run)) {
+            for (const CatalogueEntry* entry : entries) {
+                for (const Case& c : variants_of(*entry, run, setting)) {
+                    if (std::find(cases.begin(), cases.end(), c) == cases.end()) {
+                        cases.push_back(c);
+                    }
+                }
+                require_few(cases.size());
+            }
+        }
+    }
+    if (cases.empty()) throw InputError("the study has no cases: give at least one structure");
+    return cases;
+}
+
+}  // namespace controlspace

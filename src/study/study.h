@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geometry/box.h"
+#include "spaces/catalogue.h"
+#include "study/case.h"
+
+namespace controlspace {
+
+/// Lists of values whose product gives cases. Values that do not concern a structure (a split of an
+/// octree, a depth of a grid) do not multiply it.
+struct Run {
+    /// Ids, or the groups "all", "trees" and "baselines".
+    std::vector<std::string> structures{"all"};
+    std::vector<SplitRule> splits{SplitRule::middle, SplitRule::golden, SplitRule::metric};
+    std::vector<double> rho{1};
+    std::vector<double> tau{1};
+    std::vector<double> epsilon{0.2};
+    std::vector<double> g_r{1.25};
+    std::vector<double> s_a{2};
+    std::vector<double> s_n{1};
+    std::vector<int> kd_depth{42};
+    std::vector<int> octree_depth{14};
+    std::vector<GradationLaw> law{GradationLaw::cone};
+    std::vector<GradationSchedule> schedule{GradationSchedule::queue};
+    std::vector<ReferenceKind> reference{ReferenceKind::exact};
+};
+
+/// A comparison: one kind of sources, one domain, one way to measure, and the runs.
+struct Study {
+    std::string name = "study";
+    SourcesChoice sources;      ///< rho, s_a and s_n come from the runs
+    std::optional<Box> domain;  ///< none: [-1, 1]^3 for sampled surfaces, else from the sources
+    double margin = 0.05;       ///< around sources from a file, in units of their longest extent
+    double max_memory_gib = 4;  ///< cap on a grid
+    std::uint64_t seed = 1;     ///< of the random places that access is timed at
+    int threads = 0;            ///< of the untimed work; 0: all
+    std::size_t access_points = 100000;  ///< random places
+    int access_repeats = 9;
+    int probe_grid = 30;        ///< n of the n^3 cell centres for δ_R, and for access in order
+    int fine_probe_grid = 101;  ///< n of the finer ones
+    std::string output;         ///< folder; empty: results/NAME-DATE-TIME
+    std::vector<Run> runs{1};
+};
+
+/// All cases of a study, each once, in the order of the runs; within a run structures vary fastest,
+/// then splits, then tau; rho is outermost. Throws InputError for a structure that `catalogue` does
+/// not know, for sampling parameters that differ from their defaults with sources from a file, for
+/// a reference that does not fit the sources, and for a study without cases.
+std::vector<Case> expand(const Study& study, std::span<const CatalogueEntry> catalogue);
+
+}  // namespace controlspace

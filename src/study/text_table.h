@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace controlspace {
+
+enum class Align { left, right };
+
+/// A table as text; every row has as many cells as there are columns.
+struct TextTable {
+    struct Column {
+        std::string header;
+        Align align = Align::right;
+    };
+    std::string title;
+    std::string note;  ///< a sentence or two under the title; may be empty
+    std::vector<Column> columns;
+    std::vector<std::vector<std::string>> rows;
+};
+
+enum class TableStyle { terminal, markdown };
+
+/// Title, note and aligned columns; UTF-8 counts by characters.
+std::string render(const TextTable& table, TableStyle style);
+
+}  // namespace controlspace

@@ -1,0 +1,32 @@
+#include "study/time_estimate.h"
+
+namespace controlspace {
+
+TimeEstimate::TimeEstimate(std::span<const Case> cases,
+                           std::span<const std::size_t> source_counts) {
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        structures_.push_back(structure_label(cases[i]));
+        work_.push_back(static_cast<double>(source_counts[i]) / cases[i].tau);
+    }
+}
+
+void TimeEstimate::case_finished(double seconds) {
+    for (Pace* pace : {&overall_, &paces_[structures_[finished_]]}) {
+        pace->seconds += seconds;
+        pace->work += work_[finished_];
+    }
+    ++finished_;
+}
+
+std::optional<double> TimeEstimate::seconds_left() const {
+    if (finished_ == 0) return std::nullopt;
+    double seconds = 0;
+    for (std::size_t i = finished_; i < work_.size(); ++i) {
+        const auto own = paces_.find(structures_[i]);
+        const Pace& pace = own != paces_.end() ? own->second : overall_;
+        seconds += pace.seconds * work_[i] / pace.work;
+    }
+    return seconds;
+}
+
+}  // namespace controlspace

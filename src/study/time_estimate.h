@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "study/case.h"
+
+namespace controlspace {
+
+/// How long the rest of a study may take, from what finished cases took. The work of a case is
+/// taken to grow with sources / tau, at a pace that is each structure's own once it is known.
+class TimeEstimate {
+public:
+    /// `source_counts[i]` belongs to `cases[i]`.
+    TimeEstimate(std::span<const Case> cases, std::span<const std::size_t> source_counts);
+
+    /// The next case, in order, took `seconds`.
+    void case_finished(double seconds);
+
+    /// None until a case has finished.
+    std::optional<double> seconds_left() const;
+
+private:
+    struct Pace {
+        double seconds = 0;
+        double work = 0;
+    };
+    std::vector<std::string> structures_;  ///< of each case
+    std::vector<double> work_;             ///< of each case
+    std::size_t finished_ = 0;
+    Pace overall_;
+    std::map<std::string, Pace> paces_;  ///< by structure
+};
+
+}  // namespace controlspace

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "geometry/box.h"
+#include "measure/accuracy.h"
+#include "sources/point_source.h"
+#include "study/study.h"
+
+namespace controlspace {
+
+/// What all cases with the same sources share.
+struct Workload {
+    std::vector<PointSource> sources;
+    Box domain;
+    double finest_length = 0;  ///< smallest length that any source asks for
+};
+
+/// Samples or reads the sources, and checks that each lies in the domain. Throws InputError.
+Workload make_workload(const Study& study, const SourcesChoice& choice);
+
+/// What the structure of case `c` is made with; throws InputError where it is out of range.
+SpaceOptions space_options(const Study& study, const Case& c, const Workload& workload);
+
+/// Places at which structures are compared with their reference, and the reference there.
+struct ReferenceProbes {
+    Probes coarse;  ///< probe_grid^3 cell centres
+    Probes fine;    ///< fine_probe_grid^3 cell centres
+};
+
+/// Depends on the sources, the kind of reference and g_r of `c` only.
+ReferenceProbes make_reference_probes(const Study& study, const Case& c, const Workload& workload);
+
+}  // namespace controlspace

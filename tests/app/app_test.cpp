@@ -1,0 +1,235 @@
+// End to end: runs the program as a user does.
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+using Catch::Matchers::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Outcome {
+    int status = -1;
+    std::string out;
+    std::string err;
+};
+
+std::string file_text(const fs::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+}
+
+/// A folder of its own for each test, removed at the end.
+class Sandbox {
+public:
+    explicit Sandbox(const std::string& name)
+        : folder_(fs::temp_directory_path() / ("controlspace-app-" + name)) {
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    ~Sandbox() {
+        std::error_code ignored;
+        fs::remove_all(folder_, ignored);
+    }
+    Sandbox(const Sandbox&) = delete;
+    Sandbox& operator=(const Sandbox&) = delete;
+
+    fs::path operator/(const std::string& name) const { return folder_ / name; }
+
+    void write(const std::string& name, const std::string& text) const {
+        std::ofstream(folder_ / name) << text;
+    }
+
+    /// Runs `controlspace ARGUMENTS` in this folder, after `before` in the same shell.
+    Outcome run(const std::string& arguments, const std::string& before = "") const {
+        const std::string command = "cd '" + folder_.string() + "' && " + before +
+                                    "'" CONTROLSPACE_APP "' " + arguments + " >.out 2>.err";
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_text(folder_ / ".out"),
+                file_text(folder_ / ".err")};
+    }
+
+private:
+    fs::path folder_;
+};
+
+/// A few sources that ask for two sizes.
+const std::string sources_csv =
+    "x,y,z,h\n0,0,0,0.1\n1,0,0,0.2\n0,1,0,0.2\n0,0,1,0.2\n1,1,1,0.4\n0.5,0.5,0.5,0.3\n";
+
+/// Settings that make any study short.
+const std::string quick =
+    " --access-points 100 --access-repeats 3 --probe-grid 5 --fine-probe-grid 6 ";
+
+std::size_t lines(const std::string& text) {
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+void check_refused(const Outcome& outcome, const std::string& expected) {
+    INFO(outcome.err);
+    CHECK(outcome.status == 2);
+    CHECK(lines(outcome.err) == 1);
+    CHECK_THAT(outcome.err, Catch::Matchers::StartsWith("controlspace: error: "));
+    CHECK_THAT(outcome.err, Contains(expected));
+    CHECK(outcome.out.empty());
+}
+
+}  // namespace
+
+TEST_CASE("all structures are compared on sources from a file") {
+    const Sandbox box("compare");
+    box.write("s.csv", sources_csv);
+    const Outcome outcome = box.run("compare --sources s.csv --output out" + quick);
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    CHECK_THAT(outcome.out, Contains("Results: out"));
+    for (const char* file : {"results.json", "results.csv", "summary.md"}) {
+        CHECK(fs::file_size(box / "out" / file) > 0);
+    }
+    const auto json = nlohmann::json::parse(file_text(box / "out" / "results.json"));
+    CHECK(json["complete"] == true);
+    CHECK(json["rows"].size() >= 3 * 3 + 3 + 2);
+    for (const auto& row : json["rows"]) {
+        INFO(row.dump());
+        CHECK(row["error"] == "");
+        CHECK(row["sources"] == 6);
+        CHECK(row["rho"].is_null());
+        CHECK(row["gradation_max_left"] <= 1.2501);
+    }
+    // One line of progress for each case, as standard error is no terminal.
+    CHECK(lines(outcome.err) == json["rows"].size());
+}
+
+TEST_CASE("options override the study file, and quiet is quiet") {
+    const Sandbox box("override");
+    box.write("s.csv", sources_csv);
+    box.write("study.toml",
+              "name = 'mine'\nsources = 's.csv'\nstructures = 'K_L'\nsplits = 's_L'\n"
+              "access_points = 100\nprobe_grid = 5\nfine_probe_grid = 5\n[[runs]]\ntau = [2, 1]\n");
+    const Outcome outcome =
+        box.run("compare study.toml --tau 1,0.5,0.25 --structures K_oL,K_L --g-r 1.5 --quiet");
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    CHECK(outcome.err.empty());
+    REQUIRE(fs::exists(box / "results"));
+    const fs::path folder = fs::directory_iterator(box / "results")->path();
+    CHECK_THAT(folder.filename().string(), Catch::Matchers::StartsWith("mine-20"));
+    const auto json = nlohmann::json::parse(file_text(folder / "results.json"));
+    REQUIRE(json["rows"].size() == 6);
+    CHECK(json["rows"][5]["tau"] == 0.25);
+    CHECK(json["rows"][5]["g_r"] == 1.5);
+    CHECK_THAT(json["command_line"].get<std::string>(), Contains("--tau 1,0.5,0.25"));
+}
+
+TEST_CASE("the paper's values are shown beside rows that were run as published") {
+    const Sandbox box("published");
+    const Outcome outcome = box.run(
+        "compare --as-published --structures K_L --splits s_M --fine-probe-grid 5 "
+        "--access-points 100 --output out");
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    CHECK_THAT(outcome.out, Contains("Table 4") && Contains(" / 6.48"));
+    CHECK_THAT(file_text(box / "out" / "summary.md"), Contains("## Table 4"));
+}
+
+TEST_CASE("a domain may be given, and negative numbers in it") {
+    const Sandbox box("domain");
+    box.write("s.csv", sources_csv);
+    const Outcome outcome = box.run(
+        "compare --sources s.csv --structures K_oL --domain -1 2 -1.5 2 -.5 2 --output out" +
+        quick);
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    const auto json = nlohmann::json::parse(file_text(box / "out" / "results.json"));
+    CHECK(json["settings"]["domain"] == nlohmann::json{-1, 2, -1.5, 2, -0.5, 2});
+}
+
+TEST_CASE("help, version and list") {
+    const Sandbox box("help");
+    const Outcome help = box.run("compare --help");
+    CHECK(help.status == 0);
+    for (const char* text : {"--tau", "--mmg-hgrad", "--refine-beta", "--as-published", "--domain",
+                             "--max-memory", "[4]", "GiB", "--quiet", "[1.25]"}) {
+        CHECK_THAT(help.out, Contains(text));
+    }
+    CHECK_THAT(box.run("--version").out, Catch::Matchers::StartsWith("controlspace 0."));
+    CHECK(box.run("--help").status == 0);
+    const Outcome list = box.run("list");
+    CHECK(list.status == 0);
+    for (const char* text :
+         {"K_Li", "uniform-nearest", "s_M", "mean-length", "passes", "published-sphere"}) {
+        CHECK_THAT(list.out, Contains(text));
+    }
+}
+
+TEST_CASE("bad input ends with one line and status 2, and writes nothing") {
+    const Sandbox box("refused");
+    box.write("s.csv", sources_csv);
+    box.write("nan.csv", "x,y,z,h\n0,0,0,0.1\n0,nan,0,0.1\n");
+    box.write("bad.toml", "tau = 1\ntaus = 2\n");
+    box.write("file", "");
+    const auto [arguments, expected] = GENERATE(table<std::string, std::string>({
+        {"", "subcommand"},
+        {"compare --tua 1", "--tua"},
+        {"compare --tau", "--tau"},
+        {"compare --tau x", "--tau: 'x' is not a number"},
+        {"compare --tau 0", "--tau: 0 is not positive"},
+        {"compare --g-r 1.2 --mmg-hgrad 1.3", "excludes"},
+        {"compare --law cone --as-published", "excludes"},
+        {"compare --law cones", "--law: unknown value 'cones'"},
+        {"compare --structures K_X", "unknown structure 'K_X'"},
+        {"compare --kd-depth 1000", "depth"},
+        {"compare no.toml", "no.toml"},
+        {"compare bad.toml", "bad.toml:2: unknown key 'taus'"},
+        {"compare a.toml b.toml", "b.toml"},
+        {"compare --sources no.csv", "no.csv"},
+        {"compare --sources nan.csv", "nan.csv:3"},
+        {"compare --sources .", "."},
+        {"compare --sources s.csv --domain 0 0.5 0 1 0 1", "domain"},
+        {"compare --sources s.csv --domain 0 1 0 1", "--domain"},
+        {"compare --sources s.csv --rho 0.5", "rho"},
+        {"compare --sources s.csv --as-published", "published-sphere"},
+        {"compare --sources s.csv --output file", "file"},
+        {"compare --sources s.csv --output file/out", "file/out"},
+        {"compare --sources s.csv --output /proc/none", "/proc/none"},
+    }));
+    INFO(arguments);
+    check_refused(box.run(arguments), expected);
+    CHECK_FALSE(fs::exists(box / "results"));
+    CHECK_FALSE(fs::exists(box / "out"));
+}
+
+TEST_CASE("results that lie there are not written over") {
+    const Sandbox box("twice");
+    box.write("s.csv", sources_csv);
+    const std::string arguments = "compare --sources s.csv --structures K_oL --output out" + quick;
+    REQUIRE(box.run(arguments).status == 0);
+    const std::string before = file_text(box / "out" / "results.json");
+    check_refused(box.run(arguments), "holds results already");
+    CHECK(file_text(box / "out" / "results.json") == before);
+}
+
+TEST_CASE("Ctrl-C leaves whole files and status 130") {
+    const Sandbox box("interrupt");
+    // Hours of work, so that the signal comes in the midst of it.
+    box.write("study.toml", "rho = 0.1\ntau = 0.05\nstructures = 'trees'\n[[runs]]\n");
+    const Outcome outcome =
+        box.run("compare study.toml --output out",
+                "(for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do sleep 0.5; "
+                "[ -e out/summary.md ] && break; done; kill -INT $(cat pid)) & "
+                "exec sh -c 'echo $$ >pid; exec \"$@\"' sh ");
+    INFO(outcome.err);
+    CHECK(outcome.status == 130);
+    CHECK_THAT(outcome.err, Contains("interrupted: 0 of 12 cases are in out"));
+    const auto json = nlohmann::json::parse(file_text(box / "out" / "results.json"));
+    CHECK(json["complete"] == false);
+    CHECK(std::distance(fs::directory_iterator(box / "out"), fs::directory_iterator()) == 3);
+}

@@ -1,0 +1,251 @@
+#include "study/results.h"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "error.h"
+#include "study/row_json.h"
+#include "study/sample_rows.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+const std::vector<std::string> row_fields{"structure",
+                                          "split",
+                                          "rho",
+                                          "tau",
+                                          "epsilon",
+                                          "g_r",
+                                          "s_a",
+                                          "s_n",
+                                          "max_depth",
+                                          "law",
+                                          "schedule",
+                                          "reference",
+                                          "sources",
+                                          "sources_inserted",
+                                          "elements",
+                                          "leaves",
+                                          "control_nodes",
+                                          "depth",
+                                          "bytes_total",
+                                          "bytes_payload",
+                                          "bytes_topology",
+                                          "bytes_auxiliary",
+                                          "bytes_published_accounting",
+                                          "t_insert_s",
+                                          "t_gradation_s",
+                                          "t_access_ns_random",
+                                          "t_access_ns_random_q1",
+                                          "t_access_ns_random_q3",
+                                          "t_access_ns_random_samples",
+                                          "t_access_ns_grid",
+                                          "t_access_ns_grid_q1",
+                                          "t_access_ns_grid_q3",
+                                          "t_access_ns_grid_samples",
+                                          "delta_S_max",
+                                          "delta_R_max",
+                                          "delta_R_mean",
+                                          "delta_R_p95",
+                                          "delta_R_p99",
+                                          "delta_R_fine_max",
+                                          "delta_R_fine_mean",
+                                          "delta_R_fine_p95",
+                                          "delta_R_fine_p99",
+                                          "delta_metric_R_max",
+                                          "gradation_max_left",
+                                          "gradation_operations",
+                                          "checksum",
+                                          "remark",
+                                          "error"};
+
+std::vector<std::string> keys(const Json& json) {
+    std::vector<std::string> result;
+    for (const auto& [key, value] : json.items()) result.push_back(key);
+    return result;
+}
+
+Row failed_row() {
+    Row row{published_case(), 5, std::nullopt, "reason, \"as\" given"};
+    row.setting.sources.kind = SourcesKind::file;
+    return row;
+}
+
+/// Fields of the first record of a CSV text, which is taken away from it.
+std::vector<std::string> take_record(std::string_view& csv) {
+    std::vector<std::string> fields(1);
+    bool quoted = false;
+    while (!csv.empty()) {
+        const char c = csv.front();
+        csv.remove_prefix(1);
+        if (c == '"' && quoted && !csv.empty() && csv.front() == '"') {
+            fields.back() += '"';
+            csv.remove_prefix(1);
+        } else if (c == '"') {
+            quoted = !quoted;
+        } else if (c == ',' && !quoted) {
+            fields.emplace_back();
+        } else if (c == '\n' && !quoted) {
+            break;
+        } else {
+            fields.back() += c;
+        }
+    }
+    return fields;
+}
+
+std::string file_text(const std::filesystem::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+}
+
+/// An empty folder of its own for each test.
+std::filesystem::path empty_folder(const std::string& name) {
+    const auto folder = std::filesystem::temp_directory_path() / ("controlspace-" + name);
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    return folder;
+}
+
+}  // namespace
+
+TEST_CASE("a row has exactly the documented fields, measured or not") {
+    CHECK(keys(to_json(sample_row(published_case()))) == row_fields);
+    CHECK(keys(to_json(failed_row())) == row_fields);
+    CHECK(keys(to_json(Row{})) == row_fields);
+}
+
+TEST_CASE("each field of a row has its own measure") {
+    const Json json = to_json(sample_row(published_case()));
+    CHECK(json["structure"] == "K_L");
+    CHECK(json["split"] == "s_L");
+    CHECK(json["rho"] == 1);
+    CHECK(json["max_depth"] == 42);
+    CHECK(json["law"] == "mean-length");
+    CHECK(json["schedule"] == "passes");
+    CHECK(json["reference"] == "published-sphere");
+    CHECK(json["sources"] == 36186);
+    CHECK(json["sources_inserted"] == 101);
+    CHECK(json["elements"] == 102);
+    CHECK(json["leaves"] == 103);
+    CHECK(json["control_nodes"] == 104);
+    CHECK(json["depth"] == 22);
+    CHECK(json["bytes_total"] == 1'230'000);
+    CHECK(json["bytes_published_accounting"] == 17'070'000);
+    CHECK(json["t_insert_s"] == 1.5);
+    CHECK(json["t_gradation_s"] == 0.25);
+    CHECK(json["t_access_ns_random"] == 51);
+    CHECK(json["t_access_ns_random_samples"] == std::vector<double>{52, 50, 51});
+    CHECK(json["t_access_ns_grid"] == 11);
+    CHECK(json["delta_S_max"] == 0.19);
+    CHECK(json["delta_R_max"] == 1.78);
+    CHECK(json["delta_R_p95"] == 0.3);
+    CHECK(json["delta_R_fine_max"] == 2.78);
+    CHECK(json["delta_metric_R_max"] == 9.5);
+    CHECK(json["gradation_max_left"] == 1.2499);
+    CHECK(json["gradation_operations"] == 105);
+    CHECK(json["checksum"] == "ff00000000000001");
+}
+
+TEST_CASE("what does not apply or was not measured is null") {
+    const Json json = to_json(failed_row());
+    for (const char* field : {"rho", "s_a", "s_n", "elements", "t_insert_s", "checksum"}) {
+        CHECK(json[field].is_null());
+    }
+    CHECK(json["tau"] == 1);
+    CHECK(json["error"] == "reason, \"as\" given");
+}
+
+TEST_CASE("CSV and JSON say the same") {
+    const std::vector<Row> rows{sample_row(published_case()), failed_row()};
+    const std::string text = results_csv(rows);
+    std::string_view csv = text;
+    CHECK(take_record(csv) == row_fields);
+    for (const Row& row : rows) {
+        const Json json = to_json(row);
+        const auto record = take_record(csv);
+        REQUIRE(record.size() == row_fields.size());
+        for (std::size_t i = 0; i < record.size(); ++i) {
+            const Json& value = json[row_fields[i]];
+            if (value.is_array()) {
+                std::istringstream samples(record[i]);
+                std::vector<double> read;
+                for (double sample = 0; samples >> sample;) read.push_back(sample);
+                CHECK(read == value.get<std::vector<double>>());
+            } else if (value.is_null()) {
+                CHECK(record[i].empty());
+            } else {
+                CHECK(record[i] == (value.is_string() ? value.get<std::string>() : value.dump()));
+            }
+        }
+    }
+    CHECK(csv.empty());
+}
+
+TEST_CASE("results.json says who made it and what was asked for") {
+    Provenance provenance = current_provenance();
+    provenance.command_line = "controlspace \xff";  // no UTF-8
+    const Study study;
+    const Json json = Json::parse(
+        results_json(provenance, study, std::vector{sample_row(published_case())}, true));
+    for (const char* field :
+         {"schema_version", "program", "version", "commit", "dirty", "compiler", "flags", "cpu",
+          "cores", "threads", "seed", "date", "command_line", "settings", "complete", "rows"}) {
+        CHECK(json.contains(field));
+    }
+    CHECK(json["complete"] == true);
+    CHECK(json["rows"].size() == 1);
+    CHECK(json["settings"]["sources"] == "sphere");
+    CHECK(json["settings"]["domain"] == Json::array());
+    CHECK(json["settings"]["runs"][0]["splits"] == Json{"s_L", "s_G", "s_M"});
+    CHECK_FALSE(json["settings"]["runs"][0].contains("mmg_hgrad"));
+    CHECK(json["version"].get<std::string>().find('.') != std::string::npos);
+}
+
+TEST_CASE("a folder of results holds whole files only, and is not written over") {
+    const auto root = empty_folder("results");
+    const auto path = root / "a" / "b";
+    {
+        const ResultsFolder folder(path);
+        folder.write({}, Study{}, {}, false);
+        folder.write({}, Study{}, std::vector{sample_row(published_case())}, true);
+    }
+    CHECK(Json::parse(file_text(path / "results.json"))["rows"].size() == 1);
+    CHECK_THAT(file_text(path / "summary.md"), Contains("17.07 / 17.07"));
+    CHECK_THAT(file_text(path / "results.csv"), Contains("K_L,s_L,1.0,"));
+    std::size_t files = 0;
+    for ([[maybe_unused]] const auto& file : std::filesystem::directory_iterator(path)) ++files;
+    CHECK(files == 3);
+    CHECK_THROWS_WITH(ResultsFolder(path), Contains("holds results already"));
+    CHECK_THROWS_AS(ResultsFolder(path / "results.csv"), InputError);
+    CHECK_THROWS_AS(ResultsFolder(path / "results.csv" / "c"), InputError);
+    std::filesystem::remove_all(root);
+}
+
+TEST_CASE("a file of results that cannot be written leaves nothing behind") {
+    const auto root = empty_folder("unwritable");
+    const ResultsFolder folder(root);
+    std::filesystem::create_directories(root / "results.json" / "in the way");
+    CHECK_THROWS_WITH(folder.write({}, Study{}, {}, false), Contains("results.json: it is"));
+    std::size_t files = 0;
+    for ([[maybe_unused]] const auto& file : std::filesystem::directory_iterator(root)) ++files;
+    CHECK(files == 1);
+    std::filesystem::remove_all(root);
+}
+
+TEST_CASE("results go to the folder asked for, or to one named after study and time") {
+    Study study;
+    study.name = "n";
+    Provenance provenance;
+    provenance.date = "2024-05-01T12:34:56Z";
+    CHECK(results_path(study, provenance) == "results/n-20240501-123456");
+    study.output = std::string("here");
+    CHECK(results_path(study, provenance) == "here");
+}

@@ -1,0 +1,132 @@
+#include "study/run.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+#include <set>
+
+#include "error.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// A small sphere in few probes: a second for all trees.
+Study small_study(std::vector<std::string> structures) {
+    Study study;
+    study.sources.h = 0.2;
+    study.access_points = 1000;
+    study.access_repeats = 3;
+    study.probe_grid = 8;
+    study.fine_probe_grid = 9;
+    study.runs[0].structures = std::move(structures);
+    study.runs[0].splits = {SplitRule::middle};
+    return study;
+}
+
+std::vector<Row> run(const Study& study, std::span<const CatalogueEntry> catalogue) {
+    std::vector<Row> rows;
+    PreparedStudy(study, catalogue)
+        .run({.case_started = {}, .phase_started = {}, .case_finished = [&](const Row& row) {
+                  rows.push_back(row);
+              }});
+    return rows;
+}
+
+/// The first tree under another name, and one that cannot be made.
+std::vector<CatalogueEntry> catalogue_with_failures() {
+    const auto trees = tree_catalogue();
+    std::vector<CatalogueEntry> entries(trees.begin(), trees.end());
+    CatalogueEntry broken = entries.front();
+    broken.id = "broken";
+    broken.has_split_rules = false;
+    broken.make = [](const SpaceOptions&) -> std::unique_ptr<ControlSpace> {
+        throw InputError("cannot be made");
+    };
+    entries.insert(entries.begin(), broken);
+    CatalogueEntry greedy = broken;
+    greedy.id = "greedy";
+    greedy.make = [](const SpaceOptions&) -> std::unique_ptr<ControlSpace> {
+        throw std::bad_alloc();
+    };
+    entries.push_back(greedy);
+    return entries;
+}
+
+}  // namespace
+
+TEST_CASE("a study gives a row with measures for every case") {
+    const auto rows = run(small_study({"trees"}), tree_catalogue());
+    REQUIRE(rows.size() == 6);
+    for (const Row& row : rows) {
+        INFO(structure_label(row.setting));
+        REQUIRE(row.measures);
+        CHECK(row.error.empty());
+        const Measures& m = *row.measures;
+        CHECK(row.sources > 100);
+        CHECK(m.sources_inserted > 0);
+        CHECK(m.sources_inserted <= row.sources);
+        CHECK(m.footprint.leaves > 1);
+        CHECK(m.access_random.samples_ns.size() == 3);
+        CHECK(m.access_random.checksum != m.access_grid.checksum);
+        CHECK(m.accuracy.max > 0);
+        CHECK(m.accuracy.mean < m.accuracy.max);
+        CHECK(m.gradation.largest_ratio_left < 1.2501);
+    }
+}
+
+TEST_CASE("the same study gives the same answers") {
+    const Study study = small_study({"K_L", "K_oV"});
+    const auto first = run(study, tree_catalogue());
+    const auto second = run(study, tree_catalogue());
+    REQUIRE(first.size() == second.size());
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        CHECK(first[i].measures->access_random.checksum ==
+              second[i].measures->access_random.checksum);
+        CHECK(first[i].measures->accuracy_fine.mean == second[i].measures->accuracy_fine.mean);
+    }
+}
+
+TEST_CASE("structures that cannot run are rows with their reason, and others still run") {
+    const auto rows = run(small_study({"all"}), catalogue_with_failures());
+    REQUIRE(rows.size() == 8);
+    CHECK(rows[0].error == "cannot be made");
+    CHECK_FALSE(rows[0].measures);
+    CHECK(rows[1].measures);
+    CHECK_THAT(rows[7].error, Contains("out of memory"));
+}
+
+TEST_CASE("reference and sources are made once for the cases that share them") {
+    Study study = small_study({"K_L", "K_oL"});
+    study.runs[0].rho = {1, 0.7};
+    study.runs[0].reference = {ReferenceKind::exact, ReferenceKind::published_sphere};
+    study.runs.push_back(study.runs[0]);
+    study.runs[1].tau = {2};
+    PreparedStudy prepared(study, tree_catalogue());
+    CHECK(prepared.cases().size() == 16);
+    CHECK(std::set<std::size_t>(prepared.source_counts().begin(), prepared.source_counts().end())
+              .size() == 2);
+    std::map<std::string_view, int> phases;
+    std::size_t failed = 0;
+    std::move(prepared).run(
+        {.case_started = {},
+         .phase_started = [&](std::string_view phase) { ++phases[phase]; },
+         .case_finished = [&](const Row& row) { failed += row.measures ? 0 : 1; }});
+    CHECK(failed == 0);
+    CHECK(phases["reference field"] == 4);
+    CHECK(phases["insertion"] == 16);
+}
+
+TEST_CASE("a study that cannot be run is refused before anything runs") {
+    Study study = small_study({"K_L"});
+    study.domain = Box{Point::Constant(0), Point::Constant(1)};
+    CHECK_THROWS_AS(PreparedStudy(study, tree_catalogue()), InputError);
+    study = small_study({"K_L"});
+    study.runs[0].kd_depth = {1000};
+    CHECK_THROWS_AS(PreparedStudy(study, tree_catalogue()), InputError);
+    study = small_study({"K_L"});
+    study.sources.kind = SourcesKind::file;
+    study.sources.file = "no/such/file.csv";
+    CHECK_THROWS_WITH(PreparedStudy(study, tree_catalogue()), Contains("no/such/file.csv"));
+}

@@ -1,0 +1,192 @@
+#include "study/study_file.h"
+
+#include <catch2/catch.hpp>
+
+#include "error.h"
+#include "gradation/law.h"
+#include "study/settings.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+Study parse(std::string_view text) { return parse_study(text, "folder/my-study.toml"); }
+
+/// What reading `text` complains of.
+std::string complaint(std::string_view text) {
+    try {
+        parse(text);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST_CASE("an empty study file is one run of defaults, named as the file") {
+    const Study study = parse("");
+    CHECK(study.name == "my-study");
+    CHECK(study.sources == SourcesChoice{});
+    REQUIRE(study.runs.size() == 1);
+    CHECK(study.runs[0].structures == std::vector<std::string>{"all"});
+    CHECK(study.runs[0].tau == std::vector<double>{1});
+}
+
+TEST_CASE("every key of a study file is read") {
+    const Study study = parse(R"(
+        name = "n"
+        sources = "planes"
+        radius = 0.5
+        slope = 2
+        h = 0.25
+        domain = [-1, 1, -2, 2, -3, 3.5]
+        margin = 0.125
+        max_memory = 0.5
+        seed = 7
+        threads = 3
+        access_points = 1000
+        access_repeats = 5
+        probe_grid = 12
+        fine_probe_grid = 13
+        output = "out"
+        [[runs]]
+        structures = ["K_L", "K_V"]
+        splits = ["s_G", "s_M"]
+        rho = [1, 0.5]
+        tau = 0.25
+        epsilon = [0.1]
+        g_r = [1.5, 2]
+        s_a = 4
+        s_n = 0.25
+        kd_depth = [10, 20]
+        octree_depth = 9
+        law = ["cone", "mean-length"]
+        schedule = "passes"
+        reference = "published-sphere"
+        [[runs]]
+        mmg_hgrad = 1.3
+        [[runs]]
+        refine_beta = [1.5])");
+    CHECK(study.name == "n");
+    CHECK(study.sources.kind == SourcesKind::planes);
+    CHECK(study.sources.radius == 0.5);
+    CHECK(study.sources.slope == 2);
+    CHECK(study.sources.h == 0.25);
+    CHECK(study.domain == Box{{-1, -2, -3}, {1, 2, 3.5}});
+    CHECK(study.margin == 0.125);
+    CHECK(study.max_memory_gib == 0.5);
+    CHECK(study.seed == 7);
+    CHECK(study.threads == 3);
+    CHECK(study.access_points == 1000);
+    CHECK(study.access_repeats == 5);
+    CHECK(study.probe_grid == 12);
+    CHECK(study.fine_probe_grid == 13);
+    CHECK(study.output == "out");
+    REQUIRE(study.runs.size() == 3);
+    const Run& run = study.runs[0];
+    CHECK(run.structures == std::vector<std::string>{"K_L", "K_V"});
+    CHECK(run.splits == std::vector{SplitRule::golden, SplitRule::metric});
+    CHECK(run.rho == std::vector{1, 0.5});
+    CHECK(run.tau == std::vector{0.25});
+    CHECK(run.epsilon == std::vector{0.1});
+    CHECK(run.g_r == std::vector{1.5, 2.0});
+    CHECK(run.s_a == std::vector{4.0});
+    CHECK(run.s_n == std::vector{0.25});
+    CHECK(run.kd_depth == std::vector{10, 20});
+    CHECK(run.octree_depth == std::vector{9});
+    CHECK(run.law == std::vector{GradationLaw::cone, GradationLaw::mean_length});
+    CHECK(run.schedule == std::vector{GradationSchedule::passes});
+    CHECK(run.reference == std::vector{ReferenceKind::published_sphere});
+    CHECK(study.runs[1].g_r == std::vector{gradation_ratio_from_mmg(1.3)});
+    CHECK(study.runs[2].g_r == std::vector{gradation_ratio_from_refine(1.5)});
+}
+
+TEST_CASE("keys of a run at the top are for all runs that do not set them") {
+    const Study study = parse("tau = [1, 0.5]\nrho = 0.2\n[[runs]]\n[[runs]]\ntau = 0.1\n");
+    REQUIRE(study.runs.size() == 2);
+    CHECK(study.runs[0].tau == std::vector{1, 0.5});
+    CHECK(study.runs[1].tau == std::vector{0.1});
+    CHECK(study.runs[1].rho == std::vector{0.2});
+}
+
+TEST_CASE("a file of sources is looked for beside the study file") {
+    CHECK(parse("sources = 'a/b.csv'").sources.file == "folder/a/b.csv");
+    CHECK(parse("sources = '/a/b.csv'").sources.file == "/a/b.csv");
+}
+
+TEST_CASE("what is wrong in a study file is named with its line") {
+    const auto [text, expected] = GENERATE(table<std::string, std::string>({
+        {"tau = 1\ntaus = 1", "folder/my-study.toml:2: unknown key 'taus': known are "},
+        {"[[runs]]\nseed = 1", ":2: unknown key 'seed': known are structures, "},
+        {"tau = [1", "folder/my-study.toml:1: "},
+        {"\ntau = 'a'", ":2: tau: 'a' is not a number"},
+        {"tau = true", ":1: give numbers, texts"},
+        {"tau = [1, [2]]", ":1: give numbers, texts"},
+        {"tau = []", ":1: tau: no value"},
+        {"structures = []", ":1: structures: no value"},
+        {"tau = 0", ":1: tau: 0 is not positive"},
+        {"tau = nan", ":1: tau: nan is not a finite number"},
+        {"rho = -inf", ":1: rho: -inf is not a finite number"},
+        {"g_r = 0.9", ":1: g_r: 0.9 is out of range"},
+        {"mmg_hgrad = 0.5", ":1: mmg_hgrad: 0.5 is out of range"},
+        {"g_r = 1.2\nmmg_hgrad = 1.3", "say the same"},
+        {"refine_beta = 1.2\nmmg_hgrad = 1.3", "say the same"},
+        {"epsilon = -1", "epsilon: -1 is not positive"},
+        {"kd_depth = 1.5", "kd_depth: 1.5 is not a whole number"},
+        {"kd_depth = -1", "kd_depth: -1 is out of range"},
+        {"law = 'cones'", "law: unknown value 'cones': give cone, mean-length"},
+        {"splits = ['s_L', 's_X']", "splits: unknown value 's_X': give s_L, s_G, s_M"},
+        {"schedule = 1", "schedule: 1 is not a text"},
+        {"seed = [1, 2]", "seed: 2 values: give 1 at most"},
+        {"seed = -1", "seed: -1 is out of range"},
+        {"threads = 1e9", "threads: 1000000000 is out of range"},
+        {"domain = [0, 1]", "domain: give six numbers"},
+        {"domain = [0, 1, 0, 1, 1, 1]", "no extent along z"},
+        {"fine_probe_grid = 100000", "out of range"},
+        {"name = 'a/b'", "cannot name a folder"},
+        {"sources = ''", "sources: no name"},
+        {"runs = 1", "give tables [[runs]]"},
+        {"runs = []", "give tables [[runs]]"},
+    }));
+    INFO(text);
+    CHECK_THAT(complaint(text), Contains(expected));
+    CHECK(complaint(text).find('\n') == std::string::npos);
+}
+
+TEST_CASE("study files that cannot be read are named") {
+    CHECK_THROWS_WITH(read_study("no/such/study.toml"), Contains("no/such/study.toml"));
+    CHECK_THROWS_AS(read_study("/"), InputError);
+}
+
+TEST_CASE("each setting gives back what it was set to") {
+    Study study;
+    for (const auto& setting : study_settings()) {
+        const SettingValues values = setting.get(study);
+        if (values.empty()) continue;
+        Study other;
+        other.name = "another";
+        set_checked(setting, other, values);
+        CHECK(setting.get(other) == values);
+    }
+    for (const auto& setting : run_settings()) {
+        const SettingValues values = setting.get(Run{});
+        CHECK(values.empty() == !setting.same_as.empty());
+        if (values.empty()) continue;
+        Run run;
+        set_checked(setting, run, values);
+        CHECK(setting.get(run) == values);
+    }
+}
+
+TEST_CASE("the study files of the project can be read") {
+    const std::filesystem::path folder = CONTROLSPACE_DATA_DIR "/studies";
+    const Study full = read_study(folder / "paper-sphere.toml");
+    REQUIRE(full.runs.size() == 2);
+    CHECK(full.runs[1].law == std::vector{GradationLaw::mean_length});
+    const Study quick = read_study(folder / "paper-sphere-quick.toml");
+    const Study built_in = parse_study(quick_study_text(), "built-in");
+    CHECK(quick.name == built_in.name);
+    CHECK(quick.runs.size() == built_in.runs.size());
+}

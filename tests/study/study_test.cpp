@@ -1,0 +1,109 @@
+#include "study/study.h"
+
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "error.h"
+#include "study/study_file.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// The trees and something that is none.
+std::vector<CatalogueEntry> catalogue_with_a_grid() {
+    const auto trees = tree_catalogue();
+    std::vector<CatalogueEntry> entries(trees.begin(), trees.end());
+    entries.push_back({.id = "grid", .description = "", .make = nullptr});
+    return entries;
+}
+
+std::vector<Case> expand(const Study& study) {
+    const auto catalogue = catalogue_with_a_grid();
+    return expand(study, catalogue);
+}
+
+Study study_of(std::vector<std::string> structures) {
+    Study study;
+    study.runs[0].structures = std::move(structures);
+    return study;
+}
+
+}  // namespace
+
+TEST_CASE("splits multiply kd-trees only, depths those that have them") {
+    Study study = study_of({"K_L", "K_oV", "grid"});
+    study.runs[0].kd_depth = {42, 100};
+    study.runs[0].octree_depth = {14, 13, 12};
+    const auto cases = expand(study);
+    REQUIRE(cases.size() == 3 * 2 + 3 + 1);
+    CHECK(cases[0].split == SplitRule::middle);
+    CHECK(cases[0].max_depth == 42);
+    CHECK(cases[1].max_depth == 100);
+    CHECK(cases[6].structure == "K_oV");
+    CHECK_FALSE(cases[6].split);
+    CHECK(cases[8].max_depth == 12);
+    CHECK(cases[9].structure == "grid");
+    CHECK_FALSE(cases[9].max_depth);
+}
+
+TEST_CASE("lists expand to their product, rho outermost and structures innermost") {
+    Study study = study_of({"K_oL", "grid"});
+    study.runs[0].rho = {1, 0.2};
+    study.runs[0].tau = {1, 0.5, 0.2};
+    study.runs[0].law = {GradationLaw::cone, GradationLaw::mean_length};
+    const auto cases = expand(study);
+    REQUIRE(cases.size() == 2 * 3 * 2 * 2);
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        CHECK(cases[i].structure == (i % 2 == 0 ? "K_oL" : "grid"));
+        CHECK(cases[i].tau == study.runs[0].tau[i / 2 % 3]);
+        CHECK(cases[i].law == study.runs[0].law[i / 6 % 2]);
+        CHECK(cases[i].sources.rho == study.runs[0].rho[i / 12]);
+    }
+}
+
+TEST_CASE("groups name many structures, and nothing is run twice") {
+    CHECK(expand(study_of({"trees"})).size() == 3 * 3 + 3);
+    CHECK(expand(study_of({"baselines"})).size() == 1);
+    CHECK(expand(study_of({"all"})).size() == 3 * 3 + 3 + 1);
+    CHECK(expand(study_of({"all", "trees", "K_L"})).size() == 3 * 3 + 3 + 1);
+    Study twice = study_of({"K_L"});
+    twice.runs.push_back(twice.runs[0]);
+    CHECK(expand(twice).size() == 3);
+}
+
+TEST_CASE("the paper's study has its 72 rows as published, and all structures by default") {
+    const auto cases = expand(read_study(CONTROLSPACE_DATA_DIR "/studies/paper-sphere.toml"));
+    std::size_t published = 0;
+    for (const Case& c : cases) published += is_as_published(c) ? 1 : 0;
+    CHECK(published == 72);
+    CHECK(cases.size() == 72 + 72 + 6);
+    std::set<std::pair<double, double>> settings;
+    for (const Case& c : cases) settings.emplace(c.sources.rho, c.tau);
+    CHECK(settings.size() == 6);
+}
+
+TEST_CASE("studies that make no sense are refused") {
+    CHECK_THROWS_WITH(expand(study_of({"K_X"})),
+                      Contains("unknown structure 'K_X'") && Contains("K_oLB") && Contains("grid"));
+    CHECK_THROWS_AS(expand(study_of({})), InputError);
+
+    Study study = study_of({"K_L"});
+    study.sources.kind = SourcesKind::file;
+    CHECK_NOTHROW(expand(study));
+    study.runs[0].rho = {0.5};
+    CHECK_THROWS_WITH(expand(study), Contains("rho, s_a and s_n"));
+    study.runs[0].rho = {1};
+    study.runs[0].reference = {ReferenceKind::published_sphere};
+    CHECK_THROWS_WITH(expand(study), Contains("for the sphere"));
+    study.sources.kind = SourcesKind::sphere;
+    CHECK_NOTHROW(expand(study));
+    study.runs[0].s_n = {1, 0.5};
+    CHECK_THROWS_WITH(expand(study), Contains("isotropic"));
+
+    Study huge = study_of({"K_L"});
+    huge.runs[0].rho.assign(1000, 1);
+    huge.runs[0].tau.assign(1000, 1);
+    CHECK_THROWS_WITH(expand(huge), Contains("more than 5000 cases"));
+}

@@ -1,0 +1,35 @@
+#include "study/text_table.h"
+
+#include <catch2/catch.hpp>
+
+using namespace controlspace;
+
+namespace {
+
+const TextTable table{
+    "Title", "Note.", {{"name", Align::left}, {"ρ"}}, {{"a|b", "1.5"}, {"µ", "–"}}};
+
+}  // namespace
+
+TEST_CASE("terminal tables align by characters") {
+    CHECK(render(table, TableStyle::terminal) ==
+          "Title\nNote.\n"
+          "name    ρ\n"
+          "----  ---\n"
+          "a|b   1.5\n"
+          "µ       –\n");
+}
+
+TEST_CASE("Markdown tables mark the alignment and guard column marks") {
+    CHECK(render(table, TableStyle::markdown) ==
+          "## Title\n\nNote.\n\n"
+          "| name |   ρ |\n"
+          "| ---- | --: |\n"
+          "| a\\|b | 1.5 |\n"
+          "| µ    |   – |\n");
+}
+
+TEST_CASE("line breaks do not break a table") {
+    const TextTable broken{"T", "", {{"c", Align::left}}, {{"a\nb"}}};
+    CHECK(render(broken, TableStyle::terminal) == "T\nc\n---\na b\n");
+}

@@ -1,0 +1,22 @@
+#include "study/time_estimate.h"
+
+#include <catch2/catch.hpp>
+
+using namespace controlspace;
+
+TEST_CASE("time left follows sources / tau, at each structure's own pace once it is known") {
+    const std::vector<Case> cases{{.structure = "a", .tau = 1},
+                                  {.structure = "b", .tau = 1},
+                                  {.structure = "a", .tau = 0.5},
+                                  {.structure = "c", .tau = 0.25}};
+    const std::vector<std::size_t> sources{100, 100, 100, 200};
+    TimeEstimate estimate(cases, sources);
+    CHECK_FALSE(estimate.seconds_left());
+    estimate.case_finished(1);  // a: 0.01 s a unit of work, for all
+    CHECK(*estimate.seconds_left() == Approx(0.01 * (100 + 200 + 800)));
+    estimate.case_finished(3);  // b: 0.03; overall 0.02
+    CHECK(*estimate.seconds_left() == Approx(0.01 * 200 + 0.02 * 800));
+    estimate.case_finished(2);
+    estimate.case_finished(9);
+    CHECK(*estimate.seconds_left() == 0);
+}
