@@ -34,7 +34,7 @@ namespace controlspace {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr int leaf_size = 8;
+constexpr int leaf_size = 16;
 
 Metric square(const Metric& m) {
     return {m.xx * m.xx + m.xy * m.xy + m.xz * m.xz, m.xy * m.xy + m.yy * m.yy + m.yz * m.yz,

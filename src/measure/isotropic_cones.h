@@ -23,7 +23,7 @@ public:
     double smallest_length(const Point& p, double cap) const;
 
 private:
-    static constexpr std::size_t leaf_size = 8;
+    static constexpr std::size_t leaf_size = 16;
     using Lanes = std::array<double, leaf_size>;
 
     /// A flat cylinder around the positions: sources mostly lie on surfaces, whose tangential
