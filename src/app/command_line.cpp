@@ -26,7 +26,9 @@ std::string type_name(ValueType type, std::size_t at_most) {
     const std::string name = type == ValueType::number         ? "NUMBER"
                              : type == ValueType::whole_number ? "COUNT"
                                                                : "TEXT";
-    return at_most == 0 ? name + ",..." : name;
+    return at_most == 0   ? name + ",..."
+           : at_most == 1 ? name
+                          : fmt::format("{} x {}", name, at_most);
 }
 
 /// One option for each setting; `defaults` shows in the help.
@@ -34,18 +36,19 @@ template <class Target>
 void add_options(CLI::App& command, std::span<const Setting<Target>> settings,
                  const Target& defaults, const std::string& group, GivenSettings& given) {
     for (const Setting<Target>& setting : settings) {
-        CLI::Option* option = command.add_option(option_name(setting.key), given[setting.key],
-                                                 std::string(setting.help));
+        std::string help(setting.help);
+        const SettingValues values = setting.get(defaults);
+        if (!values.empty()) help += fmt::format(" (default: {})", to_string(values));
+        CLI::Option* option =
+            command.add_option(option_name(setting.key), given[setting.key], help);
         // Lists are written with commas: with blanks they would swallow the study file.
         option->delimiter(',')->group(group);
-        option->type_name(type_name(setting.type, setting.at_most));
+        option->option_text(type_name(setting.type, setting.at_most));
         if (setting.at_most > 1) {
             option->expected(static_cast<int>(setting.at_most));
         } else {
             option->allow_extra_args(false);
         }
-        const SettingValues values = setting.get(defaults);
-        if (!values.empty()) option->default_str(to_string(values));
     }
     for (const Setting<Target>& setting : settings) {
         for (const Setting<Target>& other : settings) {
@@ -91,14 +94,15 @@ Command parse_command_line(int argc, const char* const* argv) {
         ->add_option("STUDY", options.study_file,
                      "Study file (.toml); left out: the paper's sphere at rho = tau = 1, in both "
                      "modes, or one run if sources, law, schedule or reference are given")
-        ->type_name("STUDY.toml");
+        ->option_text("FILE.toml");
     add_options(*compare, run_settings(), Run{},
                 "Settings of cases (lists with commas; all combinations are run)", given);
     auto* published = compare->add_flag(
         "--as-published", options.as_published,
         "As for the paper's tables: --law mean-length --schedule passes --reference "
         "published-sphere");
-    published->group("Settings of cases (lists with commas; all combinations are run)");
+    published->option_text(" ")->group(
+        "Settings of cases (lists with commas; all combinations are run)");
     for (const char* name : {"--law", "--schedule", "--reference"}) {
         published->excludes(compare->get_option(name));
     }
@@ -110,9 +114,7 @@ Command parse_command_line(int argc, const char* const* argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {
-        return TextCommand{compare->parsed() ? compare->help() : app.help()};
-    } catch (const CLI::CallForAllHelp&) {
-        return TextCommand{app.help("", CLI::AppFormatMode::All)};
+        return TextCommand{app.help()};
     } catch (const CLI::CallForVersion& version) {
         return TextCommand{std::string(version.what()) + "\n"};
     } catch (const CLI::ParseError& error) {

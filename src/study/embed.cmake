@@ -12,9 +12,6 @@ string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
 get_target_property(build_flags controlspace_flags INTERFACE_COMPILE_OPTIONS)
 list(FILTER build_flags EXCLUDE REGEX "^-W|^\\$")
 list(JOIN build_flags " " build_flags)
-if(CONTROLSPACE_NATIVE)
-    string(APPEND build_flags " -march=native")
-endif()
 string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}} ${build_flags}" build_flags)
 add_custom_target(controlspace_build_info
     BYPRODUCTS ${CMAKE_CURRENT_BINARY_DIR}/build_info.cpp

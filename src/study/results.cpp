@@ -24,7 +24,10 @@ std::string dump(const Json& json, int indent) {
     return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-Json to_json(const SettingValue& value) {
+Json to_json(ValueType type, const SettingValue& value) {
+    if (type == ValueType::whole_number) {
+        return static_cast<std::int64_t>(std::get<double>(value));
+    }
     return std::visit([](const auto& v) { return Json(v); }, value);
 }
 
@@ -34,7 +37,7 @@ void add_settings(Json& json, std::span<const Setting<Target>> settings, const T
         if (!setting.same_as.empty()) continue;
         const SettingValues values = setting.get(target);
         Json list = Json::array();
-        for (const SettingValue& value : values) list.push_back(to_json(value));
+        for (const SettingValue& value : values) list.push_back(to_json(setting.type, value));
         const bool single = setting.at_most == 1;
         json[std::string(setting.key)] = !single          ? list
                                          : values.empty() ? Json(nullptr)

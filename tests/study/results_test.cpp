@@ -242,10 +242,10 @@ TEST_CASE("a file of results that cannot be written leaves nothing behind") {
 
 TEST_CASE("results go to the folder asked for, or to one named after study and time") {
     Study study;
-    study.name = "n";
+    study.name = std::string("n");
     Provenance provenance;
     provenance.date = "2024-05-01T12:34:56Z";
     CHECK(results_path(study, provenance) == "results/n-20240501-123456");
-    study.output = std::string("here");
+    study.output += "here";
     CHECK(results_path(study, provenance) == "here");
 }
