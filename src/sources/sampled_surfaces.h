@@ -32,8 +32,10 @@ struct PlanesSampling {
 inline constexpr double most_samples = 1e8;
 
 /// Sources on a sphere around the origin, as published: the equator, then pairs of latitudes
-/// towards the poles, each by quadrants (whose ends coincide), then the two poles. 36186 for the
-/// defaults. Throws InputError for values that are not positive or make too many sources.
+/// towards the poles, then the two poles. Latitudes go by quadrants that start at x = 0 and stop
+/// one step before y = 0: sources at x = 0 are there twice, and at y = 0 two steps meet without
+/// one. 36186 for the defaults. Throws InputError for values that are not positive or make too
+/// many.
 std::vector<PointSource> sample_sphere(const SphereSampling& sampling);
 
 /// Sources on both planes, the first plane first, in rows along u, each row ending at u = 1.

@@ -22,7 +22,10 @@ std::string read_text_file(const std::filesystem::path& path) {
     if (!file) throw InputError(fmt::format("cannot read {}: {}", name, std::strerror(errno)));
 
     std::string text;
-    constexpr std::size_t block = std::size_t{1} << 20;
+    constexpr std::size_t block = std::size_t{1} << 16;
+    std::error_code no_size;  // of a pipe
+    const std::uintmax_t size_on_disk = std::filesystem::file_size(path, no_size);
+    if (!no_size) text.reserve(size_on_disk + block);
     std::size_t got = block;
     while (got == block) {
         const std::size_t size = text.size();

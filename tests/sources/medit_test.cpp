@@ -1,0 +1,117 @@
+#include "sources/medit.h"
+
+#include <Eigen/LU>
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "sources/files.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const std::string mesh_head = "MeshVersionFormatted 2\nDimension 3\n";
+
+std::string error_in_mesh(const std::string& text) {
+    return error_of([&] { parse_medit_vertices(text, "m.mesh"); });
+}
+
+std::string error_in_solution(const std::string& text) {
+    return error_of([&] { parse_medit_metrics(text, "m.sol"); });
+}
+
+}  // namespace
+
+TEST_CASE("vertices of a mesh, however its words are laid out") {
+    const std::vector<Point> expected{{0, 0.5, 1}, {-1, 2e-3, 4}};
+    const auto read = [](const std::string& text) { return parse_medit_vertices(text, "m.mesh"); };
+    CHECK(read(mesh_head + "Vertices\n2\n0 0.5 1 0\n-1 2e-3 4 7\nEnd\n") == expected);
+    CHECK(read("MeshVersionFormatted\n1\nDimension\n3\nVertices 2\n0 0.5 1 0 -1 2e-3 4 7") ==
+          expected);
+    CHECK(read("# made by hand\r\n\r\nMeshVersionFormatted 2 # version\r\nDimension 3\r\n"
+               "RequiredVertices 1\r\n2\r\nTriangles 1\r\n1 2 2 0\r\n"
+               "Vertices # here\r\n2\r\n0 0.5 1 0\r\n-1\t2e-3 4 7\r\nEnd\r\n") == expected);
+}
+
+TEST_CASE("a scalar of a solution is the size, a tensor the Riemannian metric") {
+    const auto sizes =
+        parse_medit_metrics(mesh_head + "SolAtVertices\n2\n1 1\n0.5\n0.25\nEnd\n", "m.sol");
+    REQUIRE(sizes.size() == 2);
+    CHECK(sizes[0] == Metric::isotropic(0.5));
+    CHECK(sizes[1] == Metric::isotropic(0.25));
+
+    // M = (2 1 0.5; 1 3 0.25; 0.5 0.25 4) has the Riemannian metric M^-2, whose six numbers all
+    // differ; written in Medit's order xx xy yy xz yz zz.
+    const Metric m{2, 3, 4, 1, 0.5, 0.25};
+    const Eigen::Matrix3d inverse = m.matrix().fullPivLu().inverse();
+    const Eigen::Matrix3d r = inverse * inverse;
+    std::ostringstream text;
+    text.precision(17);
+    text << mesh_head << "SolAtVertices 1 1 3 " << r(0, 0) << ' ' << r(0, 1) << ' ' << r(1, 1)
+         << ' ' << r(0, 2) << ' ' << r(1, 2) << ' ' << r(2, 2) << " End";
+    const auto tensors = parse_medit_metrics(text.str(), "m.sol");
+    REQUIRE(tensors.size() == 1);
+    CHECK(tensors[0].matrix().isApprox(m.matrix(), 1e-13));
+}
+
+TEST_CASE("tensors in another order are found out") {
+    // The same tensor in the order of MMG's programming interface, xx xy xz yy yz zz.
+    const std::string text =
+        mesh_head + "SolAtVertices\n3\n1 3\n1 0 1 0 0 1\n1e4 90 -800 1 10 100\n1 0 1 0 0 1\n";
+    CHECK_THAT(error_in_solution(text), Contains("tensor 2 of m.sol is not positive definite, "
+                                                 "1 of 3 are not: is the order"));
+    CHECK_THAT(error_in_solution(mesh_head + "SolAtVertices 2 1 3 0 0 0 0 0 0  -1 0 -1 0 0 -1"),
+               Contains("tensor 1 of m.sol is not positive definite, 2 of 2"));
+}
+
+TEST_CASE("errors of a mesh name the place") {
+    CHECK_THAT(error_in_mesh(""), Contains("MeshVersionFormatted"));
+    CHECK_THAT(error_in_mesh("solid stl\n"), Contains("m.mesh:1"));
+    CHECK_THAT(error_in_mesh("MeshVersionFormatted 9\n"), Contains("1 to 4"));
+    CHECK_THAT(error_in_mesh("MeshVersionFormatted two\n"), Contains("'two' instead of a count"));
+    CHECK_THAT(error_in_mesh("MeshVersionFormatted 2\nDimension 2\nVertices\n1\n0 0 0\n"),
+               Contains("m.mesh:2: Dimension is 2"));
+    CHECK_THAT(error_in_mesh("MeshVersionFormatted 2\nVertices\n1\n0 0 0 0\n"),
+               Contains("no Dimension before Vertices"));
+    CHECK_THAT(error_in_mesh(mesh_head + "End\n"), Contains("m.mesh has no Vertices"));
+    CHECK_THAT(error_in_mesh(mesh_head), Contains("has no Vertices"));
+    const std::string vertices = mesh_head + "Vertices\n";
+    CHECK_THAT(error_in_mesh(vertices), Contains("'' instead of a count"));
+    CHECK_THAT(error_in_mesh(vertices + "-5\n0 0 0 0\n"), Contains("m.mesh:4: Vertices is "));
+    CHECK_THAT(error_in_mesh(vertices + "0\n"), Contains("nothing to read"));
+    CHECK_THAT(error_in_mesh(vertices + "1000000000000\n0 0 0 0\n"),
+               Contains("can hold 1 at most"));
+    CHECK_THAT(error_in_mesh(vertices + "99999999999999999999999\n0 0 0 0\n"),
+               Contains("instead of a count"));
+    CHECK_THAT(error_in_mesh(vertices + "2\n0 0 0 0\n0.125 0.375 1\n"),
+               Contains("the file ends within vertex 2"));
+    CHECK_THAT(error_in_mesh(vertices + "2\n0 0 0 0\n0 x 0 0\n"),
+               Contains("m.mesh:6: vertex 2: 'x' is not a number"));
+    CHECK_THAT(error_in_mesh(vertices + "1\n0 nan 0 0\n"), Contains("vertex 1 has nan"));
+    CHECK_THAT(error_in_mesh(vertices + "1\n0 1e99 0 0\n"), Contains("too large"));
+}
+
+TEST_CASE("errors of a solution name the place") {
+    const std::string head = mesh_head + "SolAtVertices\n";
+    CHECK_THAT(error_in_solution(mesh_head + "SolAtTetrahedra\n1\n1 1\n1\n"),
+               Contains("m.sol has no SolAtVertices"));
+    CHECK_THAT(error_in_solution(head + "2\n2 1 3\n1 1 1 1 1 1 1\n"), Contains("2 fields"));
+    CHECK_THAT(error_in_solution(head + "2\n1 2\n1 1 1 1 1 1\n"), Contains("field of type 2"));
+    CHECK_THAT(error_in_solution(head + "2\n1 1\n0.5 0\n"), Contains("size 2 is 0"));
+    CHECK_THAT(error_in_solution(head + "2\n1 1\n-0.5 1\n"), Contains("size 1 is -0.5"));
+    CHECK_THAT(error_in_solution(head + "2\n1 1\n0.5\n"), Contains("ends within size 2"));
+    CHECK_THAT(error_in_solution(head + "2\n1 3\n1 0 1 0 0 1 1 0 1\n"),
+               Contains("ends within tensor 2"));
+    CHECK_THAT(error_in_solution(head + "2\n1 3\n1 0 1 0 0 inf\n"),
+               Contains("m.sol:6: tensor 1 has inf"));
+    CHECK_THAT(error_in_solution(head + "4000000000\n1 3\n1 0 1 0 0 1\n"), Contains("at most"));
+}
+
+TEST_CASE("a mesh and a solution of other sizes do not belong together") {
+    const ScratchDirectory scratch;
+    const auto mesh = scratch.file("a.mesh", mesh_head + "Vertices\n2\n0 0 0 0\n1 1 1 0\nEnd\n");
+    const auto solution = scratch.file("a.sol", mesh_head + "SolAtVertices\n1\n1 1\n0.5\nEnd\n");
+    CHECK_THAT(error_of([&] { read_medit_sources(mesh, solution); }),
+               Contains("has 2 vertices") && Contains("has sizes for 1"));
+}
