@@ -77,6 +77,7 @@ public:
     }
 
     const Box& domain() const override { return stencil_.domain(); }
+    Box element_at(const Point& x) const override { return stencil_.cell_at(x); }
 
     Footprint footprint() const override {
         Footprint footprint;

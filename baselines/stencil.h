@@ -29,6 +29,18 @@ public:
     const Box& domain() const { return domain_; }
     const Vector& cells() const { return cells_; }
 
+    /// The cell that holds `x`.
+    Box cell_at(const Point& x) const {
+        Box cell;
+        for (Axis a = 0; a < 3; ++a) {
+            const double edge = domain_.edges()[a] / cells_[a];
+            const std::uint32_t i = cell_of(in_cells(x, a), a);
+            cell.low[a] = domain_.low[a] + i * edge;
+            cell.high[a] = domain_.low[a] + (i + 1) * edge;
+        }
+        return cell;
+    }
+
 protected:
     /// `x` along axis `a` in units of cells, within [0, cells].
     double in_cells(const Point& x, Axis a) const {

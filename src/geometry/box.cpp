@@ -29,8 +29,9 @@ const Box& require_volume(const Box& box) {
     for (Axis a = 0; a < 3; ++a) {
         const double edge = box.edges()[a];
         if (!std::isfinite(edge) || !(edge > 0)) {
-            throw InputError(fmt::format("domain {} has no extent along {}: give low < high, finite",
-                                         to_string(box), "xyz"[a]));
+            throw InputError(
+                fmt::format("domain {} has no extent along {}: give low < high, finite",
+                            to_string(box), "xyz"[a]));
         }
     }
     return box;

@@ -39,8 +39,17 @@ EigenRatios eigen_ratios(const Metric& m0, const Metric& m1) {
     return ratios;
 }
 
-bool limit(Metric& m, double factor, const Metric& by) {
+// The cone of `by` at the far end of `v`, cutting `m`.
+bool limit_by_cone(double g, const Metric& by, const Vector& v, Metric& m) {
+    const double factor = 1 + (g - 1) * metric_length(by, v);
+    if (is_within(m, factor * (1 + Growth::settled), by)) return false;
     m = intersection(m, factor * by);
+    return true;
+}
+
+bool limit_by_ratio(double g, const Metric& by, const Growth& growth, Metric& m) {
+    if (!growth.exceeds(g)) return false;
+    m = intersection(m, growth.allowed(g) * by);
     return true;
 }
 
@@ -60,12 +69,17 @@ Growth growth_between(GradationLaw law, const Metric& from, const Metric& to, co
 
 Limited limit_anisotropic_growth(GradationLaw law, double g, const Vector& v, Metric& m0,
                                  Metric& m1) {
-    const Growth to_second = growth_between(law, m0, m1, v);
-    const Growth to_first = growth_between(law, m1, m0, v);
     const Metric old0 = m0;
     Limited limited;
-    if (to_first.exceeds(g)) limited.first = limit(m0, to_first.allowed(g), m1);
-    if (to_second.exceeds(g)) limited.second = limit(m1, to_second.allowed(g), old0);
+    if (law == GradationLaw::cone) {
+        limited.first = limit_by_cone(g, m1, v, m0);
+        limited.second = limit_by_cone(g, old0, v, m1);
+        return limited;
+    }
+    const Growth to_second = growth_between(law, m0, m1, v);
+    const Growth to_first = growth_between(law, m1, m0, v);
+    limited.first = limit_by_ratio(g, m1, to_first, m0);
+    limited.second = limit_by_ratio(g, old0, to_second, m1);
     return limited;
 }
 

@@ -68,7 +68,8 @@ inline Limited limit_growth(GradationLaw law, double g, const Vector& v, Metric&
     const double small = second ? m0.xx : m1.xx;
     Metric& large = second ? m1 : m0;
     double limit = small + (g - 1) * v.norm();
-    if (law == GradationLaw::mean_length) limit = small + 0.5 * (limit - small) * (1 + small / large.xx);
+    if (law == GradationLaw::mean_length)
+        limit = small + 0.5 * (limit - small) * (1 + small / large.xx);
     if (large.xx <= limit) return {};
     large = Metric::isotropic(limit);
     return {!second, second};

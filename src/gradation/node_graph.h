@@ -42,7 +42,7 @@ struct NodeGraph {
 
 /// Control nodes on a regular lattice, x fastest, six neighbours each; nothing is stored per node.
 struct Lattice {
-    Point origin;   ///< position of node 0
+    Point origin;  ///< position of node 0
     Vector spacing;
     std::array<std::uint32_t, 3> nodes;  ///< number of nodes along x, y and z
 

@@ -72,11 +72,21 @@ double growth(const Metric& a, const Metric& b) {
 }
 
 bool is_within(const Metric& a, double factor, const Metric& b) {
-    const double k = growth(a, b);
-    if (k <= factor * (1 + rounding)) return true;
-    if (is_axis_aligned(a) && is_axis_aligned(b)) return false;
-    const double worst = std::max(condition(a, Cholesky(a)), condition(b, Cholesky(b)));
-    return k <= factor * (1 + rounding * worst);
+    const double k = factor * (1 + rounding);
+    if (is_axis_aligned(a) && is_axis_aligned(b)) {
+        return a.xx <= k * b.xx && a.yy <= k * b.yy && a.zz <= k * b.zz;
+    }
+    // Singular values of C = b^-1 a up to k: k² I - C^T C is positive definite. Cheap, and exact
+    // enough to say yes, since only the largest singular value counts; no needs a closer look.
+    const Cholesky of_b(b);
+    const Eigen::Matrix3d c = of_b.solve(a.matrix());
+    Metric slack = Metric::from_matrix(-(c.transpose() * c));
+    slack.xx += k * k;
+    slack.yy += k * k;
+    slack.zz += k * k;
+    if (slack.xx > 0 && Cholesky(slack).is_positive_definite()) return true;
+    const double worst = std::max(condition(a, Cholesky(a)), condition(b, of_b));
+    return svd(c).s[0] <= factor * (1 + rounding * worst);
 }
 
 }  // namespace controlspace

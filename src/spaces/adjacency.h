@@ -95,7 +95,8 @@ void for_each_face_pair(const Topology<Node>& tree, Visit&& visit) {
 /// projects onto it (the low side on ties). Faces: 2 axis for the low face, 2 axis + 1 for the
 /// high one. False at the domain's border.
 template <class Node>
-bool locate_across(const Topology<Node>& tree, const Box& box, int face, Point x, LeafPlace& place) {
+bool locate_across(const Topology<Node>& tree, const Box& box, int face, Point x,
+                   LeafPlace& place) {
     const Axis a = face / 2;
     const bool high = face % 2 == 1;
     if (high ? box.high[a] >= tree.domain().high[a] : box.low[a] <= tree.domain().low[a]) {

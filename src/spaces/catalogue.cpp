@@ -23,7 +23,11 @@ std::unique_ptr<ControlSpace> make(const SpaceOptions& options) {
 
 template <class Node, class Storage, bool balanced = false>
 CatalogueEntry entry(const char* id, const char* description) {
-    return {id, description, std::is_same_v<Node, KdNode>, Storage::exact_at_nodes, Storage::order,
+    return {id,
+            description,
+            std::is_same_v<Node, KdNode>,
+            Storage::exact_at_nodes,
+            Storage::order,
             make<Node, Storage, balanced>};
 }
 

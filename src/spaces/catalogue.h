@@ -21,17 +21,18 @@ struct SpaceOptions {
     double tolerance = 0.2;  ///< ε_δ of insertion
     int kd_depth = 42;       ///< deepest level of a kd-tree, the root being 0
     int octree_depth = 14;   ///< deepest level of an octree, the root being 0
-    double finest_length = 0;  ///< smallest length that any source asks for; grids size voxels by it
+    double finest_length =
+        0;  ///< smallest length that any source asks for; grids size voxels by it
     std::size_t max_bytes = std::size_t{4} << 30;  ///< cap on a grid, gradation's copy included
 };
 
 /// One structure of the study.
 struct CatalogueEntry {
-    std::string id;           ///< as in options and result files: "K_L", "uniform-nearest"
-    std::string description;  ///< one line
-    bool has_split_rules = false;    ///< a kd-tree: to be run with each SplitRule
-    bool exact_at_nodes = true;      ///< answers a control node's own metric at its position
-    int order = 0;                   ///< of interpolation: 0 constant, 1 linear, 2 quadratic
+    std::string id;                ///< as in options and result files: "K_L", "uniform-nearest"
+    std::string description;       ///< one line
+    bool has_split_rules = false;  ///< a kd-tree: to be run with each SplitRule
+    bool exact_at_nodes = true;    ///< answers a control node's own metric at its position
+    int order = 0;                 ///< of interpolation: 0 constant, 1 linear, 2 quadratic
     std::unique_ptr<ControlSpace> (*make)(const SpaceOptions&);
 };
 

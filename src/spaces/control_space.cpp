@@ -6,15 +6,6 @@
 
 namespace controlspace {
 
-InsertionReport ControlSpace::insert(std::span<const PointSource> sources) {
-    InsertionReport report;
-    for (const PointSource& source : sources) {
-        require_valid(source, report.sources++, domain());
-        if (insert(source) == Insertion::inserted) ++report.inserted;
-    }
-    return report;
-}
-
 Metric sample_at(const ControlSpace& space, const Point& x) {
     Metric m;
     space.sample({&x, 1}, {&m, 1});
@@ -39,8 +30,8 @@ void require_valid(const PointSource& source, std::size_t index, const Box& doma
     }
     if (!is_positive_definite(source.metric)) {
         throw InputError(fmt::format(
-            "source {} has the metric {} (xx yy zz xy xz yz), which is not positive definite", index,
-            to_string(source.metric)));
+            "source {} has the metric {} (xx yy zz xy xz yz), which is not positive definite",
+            index, to_string(source.metric)));
     }
 }
 

@@ -20,10 +20,10 @@ namespace controlspace {
 /// What a structure consists of and what it holds in memory, in bytes that are really allocated
 /// (capacities, not sizes). The object itself and the allocator's own overhead are not counted.
 struct Footprint {
-    std::size_t elements = 0;       ///< leaves and inner nodes of a tree; cells of a grid
-    std::size_t leaves = 0;         ///< 0 where the structure has none
-    std::size_t control_nodes = 0;  ///< places that carry a metric
-    int depth = 0;                  ///< levels, the root being level 1; 1 for a grid
+    std::size_t elements = 0;         ///< leaves and inner nodes of a tree; cells of a grid
+    std::size_t leaves = 0;           ///< 0 where the structure has none
+    std::size_t control_nodes = 0;    ///< places that carry a metric
+    int depth = 0;                    ///< levels, the root being level 1; 1 for a grid
     std::size_t bytes_payload = 0;    ///< the metrics
     std::size_t bytes_topology = 0;   ///< what finds them
     std::size_t bytes_auxiliary = 0;  ///< what only speeds something up, or serves insertion alone
@@ -54,11 +54,11 @@ public:
     /// duration divided by x.size().
     virtual void sample(std::span<const Point> x, std::span<Metric> out) const = 0;
 
-    /// Paper §3.1 steps 1-6 for one source. Throws InputError if it lies outside the domain.
+    /// Paper §3.1 steps 1-6 for one source. Throws InputError as require_valid does.
     virtual Insertion insert(const PointSource& source) = 0;
 
     /// The same as inserting one by one, in order; a structure may do it faster, never differently.
-    virtual InsertionReport insert(std::span<const PointSource> sources);
+    virtual InsertionReport insert(std::span<const PointSource> sources) = 0;
 
     /// Control nodes in the structure's own order (trees: depth first), for gradation; and the way
     /// back: metrics in that very order.
@@ -66,6 +66,9 @@ public:
     virtual void assign(std::span<const Metric> metrics) = 0;
 
     virtual const Box& domain() const = 0;
+
+    /// The element that answers for `x`: a leaf of a tree, a cell of a grid.
+    virtual Box element_at(const Point& x) const = 0;
     virtual Footprint footprint() const = 0;
 };
 

@@ -19,8 +19,8 @@ Metric moved(const Metric& from, double factor, const Metric& by) {
 // The largest share of `departure` that leaves own + share * departure at or above own / 2.
 double admissible_share(const Metric& own, const Metric& departure) {
     if (is_axis_aligned(own) && is_axis_aligned(departure)) {
-        const double deepest = std::min(
-            {departure.xx / own.xx, departure.yy / own.yy, departure.zz / own.zz});
+        const double deepest =
+            std::min({departure.xx / own.xx, departure.yy / own.yy, departure.zz / own.zz});
         return deepest >= -0.5 ? 1 : -0.5 / deepest;
     }
     if (is_positive_definite(moved(0.5 * own, 1, departure))) return 1;
@@ -43,7 +43,8 @@ Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, cons
     for (Axis a = 0; a < 3; ++a) {
         const double qb = q[(a + 1) % 3];
         const double qc = q[(a + 2) % 3];
-        const double plane = (1 - qb) * (1 - qc) + 0.5 * (qb * (1 - qc) + qc * (1 - qb)) + qb * qc / 3;
+        const double plane =
+            (1 - qb) * (1 - qc) + 0.5 * (qb * (1 - qc) + qc * (1 - qb)) + qb * qc / 3;
         const auto low = static_cast<std::size_t>(2 * a);
         // A face node is the mean of the neighbour's metric and the leaf's own.
         weights[low] = 0.25 * t[a] * (t[a] - 1) * plane;

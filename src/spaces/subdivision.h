@@ -14,8 +14,8 @@ namespace controlspace {
 /// computed, so faces that coincide are equal to the bit.
 struct Subdivision {
     Box box;
-    Point at = Point::Zero();           ///< where the planes stand; only cut axes count
-    std::array<bool, 3> cuts{};         ///< which axes are cut
+    Point at = Point::Zero();    ///< where the planes stand; only cut axes count
+    std::array<bool, 3> cuts{};  ///< which axes are cut
 
     int children() const { return 1 << (cuts[0] + cuts[1] + cuts[2]); }
 

@@ -34,23 +34,16 @@ public:
     }
 
     Insertion insert(const PointSource& source) override {
-        const Point& q = source.position;
-        if (!calls_for_change(source.metric, storage_.value(topology_, q), options_.tolerance)) {
-            return Insertion::already_met;
-        }
-        LeafPlace place = topology_.locate(q);
-        while (place.level < max_depth() && is_too_long(source.metric, place.box)) {
-            const Subdivision subdivision = subdivide(place.box, source);
-            if (!subdivision.is_proper()) break;
-            split(place, subdivision);
-            place = topology_.locate_from(place, q);
-        }
-        storage_.lower(place.leaf, source.metric);
-        return Insertion::inserted;
+        require_valid(source, 0, domain());
+        return insert_valid(source);
     }
 
     InsertionReport insert(std::span<const PointSource> sources) override {
-        const InsertionReport report = ControlSpace::insert(sources);
+        InsertionReport report;
+        for (const PointSource& source : sources) {
+            require_valid(source, report.sources++, domain());
+            if (insert_valid(source) == Insertion::inserted) ++report.inserted;
+        }
         topology_.shrink_to_fit();
         storage_.shrink_to_fit();
         return report;
@@ -71,15 +64,33 @@ public:
         footprint.bytes_topology = topology_.bytes();
         storage_.describe(footprint);
         footprint.bytes_published =
-            published_bytes({is_octree, !std::is_base_of_v<LeafValues, Storage>,
-                             topology_.leaves(), topology_.inner_nodes(), footprint.control_nodes});
+            published_bytes({is_octree, !std::is_base_of_v<LeafValues, Storage>, topology_.leaves(),
+                             topology_.inner_nodes(), footprint.control_nodes});
         return footprint;
     }
+
+    Box element_at(const Point& x) const override { return topology_.locate(x).box; }
 
 private:
     static constexpr bool is_octree = std::is_same_v<Node, OctreeNode>;
 
     int max_depth() const { return is_octree ? options_.octree_depth : options_.kd_depth; }
+
+    Insertion insert_valid(const PointSource& source) {
+        const Point& q = source.position;
+        if (!calls_for_change(source.metric, storage_.value(topology_, q), options_.tolerance)) {
+            return Insertion::already_met;
+        }
+        LeafPlace place = topology_.locate(q);
+        while (place.level < max_depth() && is_too_long(source.metric, place.box)) {
+            const Subdivision subdivision = subdivide(place.box, source);
+            if (!subdivision.is_proper()) break;
+            split(place, subdivision);
+            place = topology_.locate_from(place, q);
+        }
+        storage_.lower(place.leaf, source.metric);
+        return Insertion::inserted;
+    }
 
     // Whether any edge of `box` is longer than l_min in the metric.
     bool is_too_long(const Metric& metric, const Box& box) const {
@@ -97,7 +108,7 @@ private:
 
     void split(const LeafPlace& place, const Subdivision& subdivision) {
         if (topology_.is_full()) {
-            throw InputError("the tree would have more than 2^30 leaves: raise l_min or lower the depth");
+            throw InputError("a tree holds 2^30 leaves at most: raise l_min or lower the depth");
         }
         if constexpr (is_octree) {
             if (balanced_) refine_coarser_neighbours(place);

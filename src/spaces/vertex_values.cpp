@@ -38,8 +38,7 @@ void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafInd
     std::array<NodeIndex, 27> lattice;
     lattice.fill(unknown);
     const auto node_at = [&](const std::array<int, 3>& step) {
-        NodeIndex& node =
-            lattice[static_cast<std::size_t>(step[0] + 3 * step[1] + 9 * step[2])];
+        NodeIndex& node = lattice[static_cast<std::size_t>(step[0] + 3 * step[1] + 9 * step[2])];
         if (node != unknown) return node;
         Point x;
         int old_corner = 0;

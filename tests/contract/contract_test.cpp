@@ -1,0 +1,258 @@
+// What every structure of the catalogue promises (spaces/control_space.h), whichever it is.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <numeric>
+#include <random>
+#include <thread>
+
+#include "contract/structures_under_test.h"
+#include "measure/access_time.h"
+#include "metric/intersection.h"
+#include "metric/nonconformity.h"
+
+using namespace controlspace;
+
+namespace {
+
+constexpr double g = 1.25;
+
+std::vector<Metric> answers(const ControlSpace& space, std::span<const Point> x) {
+    std::vector<Metric> out(x.size());
+    space.sample(x, out);
+    return out;
+}
+
+// How much larger `held` is than `asked` allows: δ to what it should at most be.
+double coarser_than_asked(const Metric& held, const Metric& asked) {
+    return nonconformity(held, intersection(held, asked));
+}
+
+// Length of a path along the axes by `v`, in metric `m`: no path through faces is shorter than the
+// straight line, and this one always exists.
+double axis_path_length(const Metric& m, const Vector& v) {
+    const auto lengths = metric_edge_lengths(m, v.cwiseAbs());
+    return lengths[0] + lengths[1] + lengths[2];
+}
+
+// Whether `p` is a corner of `element`, up to rounding of the positions.
+bool is_corner(const Box& element, const Point& p) {
+    return ((p - element.low).cwiseAbs().array().min((p - element.high).cwiseAbs().array()) < 1e-12)
+        .all();
+}
+
+template <class Check>
+void for_each_structure(const Work& work, Check&& check) {
+    for (const Structure& structure : all_structures()) {
+        CAPTURE(structure.name(), work.name);
+        check(structure);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a new control space holds H I everywhere, H half of the domain's diagonal") {
+    const Work work = isotropic_sphere();
+    for_each_structure(work, [&](const Structure& structure) {
+        const auto space = structure.entry->make(work.options(structure.split));
+        for (const Metric& m : answers(*space, random_points(work.domain, 100, 1))) {
+            CHECK(nonconformity(m, Metric::isotropic(std::sqrt(3))) < 1e-12);
+        }
+        CHECK(space->domain() == work.domain);
+    });
+}
+
+TEST_CASE("answers are positive definite everywhere, before and after gradation") {
+    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+    const std::vector<Point> x = random_points(work.domain, 3000, 2);
+    for_each_structure(work, [&](const Structure& structure) {
+        const auto space = work.inserted(structure);
+        const auto all_positive = [&] {
+            const std::vector<Metric> m = answers(*space, x);
+            return std::all_of(m.begin(), m.end(), is_positive_definite);
+        };
+        CHECK(all_positive());
+        grade(*space, {});
+        CHECK(all_positive());
+    });
+}
+
+TEST_CASE("at its place a source is met: never coarser than asked by epsilon") {
+    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+    for_each_structure(work, [&](const Structure& structure) {
+        const auto space = work.graded(structure);
+        double worst = 0;
+        for (const PointSource& source : work.sources) {
+            worst = std::max(worst,
+                             coarser_than_asked(sample_at(*space, source.position), source.metric));
+        }
+        CHECK(worst < 0.2);
+    });
+}
+
+TEST_CASE("gradation only makes smaller, and holds afterwards") {
+    const auto law = GENERATE(GradationLaw::cone, GradationLaw::mean_length);
+    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+    for_each_structure(work, [&](const Structure& structure) {
+        const auto space = work.inserted(structure);
+        const std::vector<Metric> before = space->control_nodes(Neighbourhood::faces).metrics;
+        const GradationReport report = grade(*space, {.law = law, .ratio = g});
+        CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
+        const std::vector<Metric> after = space->control_nodes(Neighbourhood::faces).metrics;
+        bool smaller = true;
+        for (std::size_t i = 0; i < before.size(); ++i) {
+            smaller = smaller && is_within(after[i], 1 + 1e-9, before[i]);
+        }
+        CHECK(smaller);
+        CHECK(after != before);
+    });
+}
+
+// Not so for tensors: a node that is thin along the way lets all its lengths grow fast, those too
+// that a source further back holds down. The cone of that source is lost in the intersection.
+TEST_CASE("under the cone law, no larger than the cones of the sources allow along a path") {
+    const Work work = isotropic_sphere();
+    const std::vector<Point> x = random_points(work.domain, 400, 3);
+    for_each_structure(work, [&](const Structure& structure) {
+        const auto space = structure.entry->make(work.options(structure.split));
+        std::vector<PointSource> inserted;
+        for (const PointSource& source : work.sources) {
+            if (space->insert(source) == Insertion::inserted) inserted.push_back(source);
+        }
+        grade(*space, {.ratio = g});
+        const std::vector<Metric> m = answers(*space, x);
+        double worst = 0;
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            const Vector here = space->element_at(x[k]).edges();
+            for (std::size_t i = 0; i < inserted.size(); i += 5) {
+                const PointSource& source = inserted[i];
+                const Vector there = space->element_at(source.position).edges();
+                // From the source to a control node of its element, along a path of control nodes
+                // that may stray by a part of the elements it passes, to one of the element here.
+                const double path = axis_path_length(source.metric, x[k] - source.position) +
+                                    axis_path_length(source.metric, here) +
+                                    axis_path_length(source.metric, there);
+                worst = std::max(worst, growth(m[k], (1 + (g - 1) * path) * source.metric));
+            }
+        }
+        CHECK(worst <= 1);
+    });
+}
+
+TEST_CASE("a control node's own metric at its own place") {
+    const Work work = isotropic_sphere();
+    for_each_structure(work, [&](const Structure& structure) {
+        if (!structure.entry->exact_at_nodes) return;
+        const auto space = work.graded(structure);
+        const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
+        std::visit(
+            [&](const auto& graph) {
+                double worst = 0;
+                std::size_t asked = 0;
+                for (NodeIndex i = 0; i < graph.size(); i += 5) {
+                    const Point p = graph.position(i);
+                    // A hanging vertex counts in the finer elements at it only.
+                    if (structure.entry->order == 1 && !is_corner(space->element_at(p), p))
+                        continue;
+                    const double delta = nonconformity(sample_at(*space, p), nodes.metrics[i]);
+                    worst = std::max(worst, delta);
+                    ++asked;
+                }
+                CHECK(asked > graph.size() / 50);
+                CHECK(worst < 1e-12);
+            },
+            nodes.graph);
+    });
+}
+
+TEST_CASE("a constant is answered as such; assigning what was read changes nothing") {
+    const Work work = anisotropic_sphere();
+    const std::vector<Point> x = random_points(work.domain, 500, 4);
+    const Metric constant{0.2, 0.3, 0.25, 0.01, -0.02, 0.03};
+    for_each_structure(work, [&](const Structure& structure) {
+        const auto space = work.graded(structure);
+        const std::vector<Metric> before = answers(*space, x);
+        ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
+        space->assign(nodes.metrics);
+        CHECK(answers(*space, x) == before);
+        std::fill(nodes.metrics.begin(), nodes.metrics.end(), constant);
+        space->assign(nodes.metrics);
+        for (const Metric& m : answers(*space, x)) CHECK(nonconformity(m, constant) < 1e-12);
+    });
+}
+
+TEST_CASE("one by one, in a batch, in any order, from many threads: the same answers") {
+    const Work work = anisotropic_sphere();
+    const std::vector<Point> x = random_points(work.domain, 4000, 5);
+    std::vector<std::size_t> order(x.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::shuffle(order.begin(), order.end(), std::mt19937(6));
+    for_each_structure(work, [&](const Structure& structure) {
+        const auto space = work.graded(structure);
+        const std::vector<Metric> batch = answers(*space, x);
+        for (std::size_t i = 0; i < x.size(); i += 10) CHECK(sample_at(*space, x[i]) == batch[i]);
+
+        std::vector<Point> shuffled;
+        for (const std::size_t i : order) shuffled.push_back(x[i]);
+        const std::vector<Metric> other = answers(*space, shuffled);
+        bool same = true;
+        for (std::size_t i = 0; i < order.size(); ++i) same = same && other[i] == batch[order[i]];
+        CHECK(same);
+
+        std::vector<std::vector<Metric>> concurrent(4);
+        std::vector<std::thread> threads;
+        for (auto& out : concurrent) threads.emplace_back([&] { out = answers(*space, x); });
+        for (std::thread& thread : threads) thread.join();
+        for (const auto& out : concurrent) CHECK(out == batch);
+    });
+}
+
+TEST_CASE("outside the domain, the answer of the nearest place inside") {
+    const Work work = isotropic_sphere();
+    for_each_structure(work, [&](const Structure& structure) {
+        const auto space = work.graded(structure);
+        for (const Point& x : random_points({Point::Constant(-3), Point::Constant(3)}, 300, 7)) {
+            const Point inside = x.cwiseMax(work.domain.low).cwiseMin(work.domain.high);
+            CHECK(sample_at(*space, x) == sample_at(*space, inside));
+        }
+    });
+}
+
+TEST_CASE("the same run gives the same bits, one by one as well as in a batch") {
+    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+    const std::vector<Point> x = random_points(work.domain, 2000, 8);
+    for_each_structure(work, [&](const Structure& structure) {
+        const auto first = work.graded(structure);
+        const auto second = structure.entry->make(work.options(structure.split));
+        for (const PointSource& source : work.sources) second->insert(source);
+        grade(*second, {});
+        CHECK(checksum(answers(*first, x)) == checksum(answers(*second, x)));
+    });
+}
+
+TEST_CASE("elements hold the places that they answer for, and lie in the domain") {
+    const Work work = isotropic_sphere();
+    for_each_structure(work, [&](const Structure& structure) {
+        const auto space = work.inserted(structure);
+        for (const Point& x : random_points(work.domain, 300, 9)) {
+            const Box element = space->element_at(x);
+            CHECK((x.array() >= element.low.array() - 1e-12).all());
+            CHECK((x.array() <= element.high.array() + 1e-12).all());
+            CHECK((element.edges().array() > 0).all());
+            CHECK((element.low.array() >= work.domain.low.array() - 1e-12).all());
+            CHECK((element.high.array() <= work.domain.high.array() + 1e-12).all());
+        }
+    });
+}
+
+TEST_CASE("sources of no use are not sources: refused by every structure") {
+    const Work work = isotropic_sphere();
+    for_each_structure(work, [&](const Structure& structure) {
+        const auto space = structure.entry->make(work.options(structure.split));
+        CHECK_THROWS_WITH(space->insert({Point(1.5, 0, 0), {}}), Catch::Contains("outside"));
+        CHECK_THROWS_WITH(space->insert({Point::Zero(), {1, 1, 1, 3, 0, 0}}),
+                          Catch::Contains("not positive definite"));
+        CHECK(answers(*space, random_points(work.domain, 10, 1)) ==
+              answers(*structure.entry->make(work.options(structure.split)),
+                      random_points(work.domain, 10, 1)));
+    });
+}

@@ -1,0 +1,189 @@
+#include "gradation/grade.h"
+
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "error.h"
+#include "metric/draw.h"
+#include "metric/intersection.h"
+
+using namespace controlspace;
+
+namespace {
+
+Lattice cube(std::uint32_t n) {
+    return {Point::Zero(), Vector::Constant(1.0 / (n - 1)), {n, n, n}};
+}
+
+// The same nodes and neighbours as explicit arrays, node i renamed to names[i].
+NodeGraph renamed(const Lattice& lattice, const std::vector<NodeIndex>& names) {
+    NodeGraph graph;
+    graph.positions.resize(lattice.size());
+    std::vector<std::vector<NodeIndex>> rows(lattice.size());
+    for (NodeIndex i = 0; i < lattice.size(); ++i) {
+        graph.positions[names[i]] = lattice.position(i);
+        lattice.for_each_neighbour(i, [&](NodeIndex j) { rows[names[i]].push_back(names[j]); });
+    }
+    graph.first.push_back(0);
+    for (const auto& row : rows) {
+        graph.neighbours.insert(graph.neighbours.end(), row.begin(), row.end());
+        graph.first.push_back(graph.neighbours.size());
+    }
+    return graph;
+}
+
+std::vector<Metric> random_isotropic(std::size_t n, unsigned seed) {
+    std::mt19937 engine(seed);
+    std::vector<Metric> metrics;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double share = static_cast<double>(engine()) / 4294967296.0;
+        metrics.push_back(Metric::isotropic(share < 0.9 ? 2 : 0.02 + share - 0.9));
+    }
+    return metrics;
+}
+
+// How far the steepest pair is above the law: 0 where every pair keeps it.
+double gradation_excess(const ControlGraph& graph, const std::vector<Metric>& metrics,
+                        GradationLaw law, double g) {
+    double excess = 0;
+    std::visit(
+        [&](const auto& nodes) {
+            for (NodeIndex i = 0; i < nodes.size(); ++i) {
+                nodes.for_each_neighbour(i, [&](NodeIndex j) {
+                    const Growth growth = growth_between(law, metrics[i], metrics[j],
+                                                         nodes.position(j) - nodes.position(i));
+                    excess = std::max(excess, growth.ratio / growth.allowed(g) - 1);
+                });
+            }
+        },
+        graph);
+    return excess;
+}
+
+}  // namespace
+
+TEST_CASE("one small node: sizes grow with the length of the path along the lattice") {
+    const Lattice lattice = cube(9);
+    std::vector<Metric> metrics(lattice.size(), Metric::isotropic(10));
+    const NodeIndex centre = lattice.index(4, 4, 4);
+    metrics[centre] = Metric::isotropic(0.1);
+    const GradationReport report = grade(lattice, metrics, {.ratio = 1.5});
+    for (NodeIndex i = 0; i < lattice.size(); ++i) {
+        const double path = (lattice.position(i) - lattice.position(centre)).lpNorm<1>();
+        CHECK(metrics[i].xx == Approx(0.1 + 0.5 * path));
+    }
+    CHECK(report.largest_ratio_left == Approx(1.5));
+    CHECK(report.operations >= lattice.size() - 1);
+}
+
+TEST_CASE("the queue leaves no pair above the ratio") {
+    const auto law = GENERATE(GradationLaw::cone, GradationLaw::mean_length);
+    const double g = GENERATE(1.1, 1.25, 2.0);
+    const Lattice lattice = cube(8);
+
+    SECTION("isotropic") {
+        std::vector<Metric> metrics = random_isotropic(lattice.size(), 1);
+        const std::vector<Metric> before = metrics;
+        const GradationReport report = grade(lattice, metrics, {law, GradationSchedule::queue, g});
+        CHECK(gradation_excess(lattice, metrics, law, g) < 1e-9);
+        CHECK(report.largest_ratio_left <= g * (1 + 1e-6));
+        for (std::size_t i = 0; i < metrics.size(); ++i) CHECK(metrics[i].xx <= before[i].xx);
+
+        // At rest: grading again does nothing.
+        const std::vector<Metric> once = metrics;
+        CHECK(grade(lattice, metrics, {law, GradationSchedule::queue, g}).operations == 0);
+        CHECK(metrics == once);
+    }
+    SECTION("anisotropic") {
+        Draw draw(7);
+        std::vector<Metric> metrics(lattice.size(), Metric::isotropic(2));
+        for (std::size_t i = 0; i < metrics.size(); i += 11) metrics[i] = draw.metric(0.1, 30);
+        const std::vector<Metric> before = metrics;
+        const GradationReport report = grade(lattice, metrics, {law, GradationSchedule::queue, g});
+        CHECK(gradation_excess(lattice, metrics, law, g) < 1e-6);
+        CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
+        for (std::size_t i = 0; i < metrics.size(); ++i) {
+            CHECK(is_within(metrics[i], 1 + 1e-9, before[i]));
+            CHECK(is_positive_definite(metrics[i]));
+        }
+    }
+}
+
+TEST_CASE("the isotropic cone law has one fixed point, to the bit, whatever the order") {
+    const Lattice lattice = cube(10);
+    const std::vector<Metric> start = random_isotropic(lattice.size(), 5);
+    std::vector<Metric> reference = start;
+    grade(lattice, reference, {});
+    for (const unsigned seed : {1u, 2u, 3u}) {
+        std::vector<NodeIndex> names(lattice.size());
+        for (NodeIndex i = 0; i < names.size(); ++i) names[i] = i;
+        std::shuffle(names.begin(), names.end(), std::mt19937(seed));
+        std::vector<Metric> metrics(start.size());
+        for (NodeIndex i = 0; i < names.size(); ++i) metrics[names[i]] = start[i];
+        grade(renamed(lattice, names), metrics, {});
+        for (NodeIndex i = 0; i < names.size(); ++i) CHECK(metrics[names[i]] == reference[i]);
+    }
+}
+
+TEST_CASE("passes stop at ten, and say what they left") {
+    // A chain whose far end is small, visited from the large end: a pass in node order carries the
+    // limit back by one node only, so ten passes cannot reach the other end.
+    NodeGraph chain;
+    const NodeIndex n = 40;
+    chain.first.push_back(0);
+    for (NodeIndex i = 0; i < n; ++i) {
+        chain.positions.push_back(Point(i, 0, 0));
+        if (i > 0) chain.neighbours.push_back(i - 1);
+        if (i + 1 < n) chain.neighbours.push_back(i + 1);
+        chain.first.push_back(chain.neighbours.size());
+    }
+    std::vector<Metric> metrics(n, Metric::isotropic(100));
+    metrics.back() = Metric::isotropic(1);
+    const GradationOptions options{GradationLaw::mean_length, GradationSchedule::passes, 1.25};
+    const GradationReport report = grade(chain, metrics, options);
+    CHECK(metrics.front() == Metric::isotropic(100));
+    CHECK(report.largest_ratio_left > 1.25 * 1.05);
+    CHECK(gradation_excess(chain, metrics, options.law, options.ratio) > 0.05);
+
+    std::vector<Metric> queued(n, Metric::isotropic(100));
+    queued.back() = Metric::isotropic(1);
+    CHECK(grade(chain, queued, {GradationLaw::mean_length, GradationSchedule::queue, 1.25})
+              .largest_ratio_left <= 1.25 * (1 + 1e-9));
+    CHECK(queued.front().xx < 100);
+}
+
+TEST_CASE("passes leave nodes alone whose neighbours are alike") {
+    const Lattice lattice = cube(3);
+    std::vector<Metric> metrics(lattice.size(), Metric::isotropic(1e-3));
+    for (std::size_t i = 0; i < metrics.size(); i += 2) metrics[i] = Metric::isotropic(1.05e-3);
+    const std::vector<Metric> before = metrics;
+    const GradationOptions options{GradationLaw::mean_length, GradationSchedule::passes, 1.0};
+    CHECK(grade(lattice, metrics, options).operations == 0);  // δ is 0.0041 < 0.01
+    CHECK(metrics == before);
+}
+
+TEST_CASE("a lattice knows its nodes and neighbours") {
+    const Lattice lattice{Point(1, 2, 3), Vector(0.5, 0.25, 2), {3, 4, 5}};
+    CHECK(lattice.size() == 60);
+    const NodeIndex n = lattice.index(2, 1, 3);
+    CHECK(lattice.coordinates(n) == std::array<std::uint32_t, 3>{2, 1, 3});
+    CHECK(lattice.position(n) == Point(2, 2.25, 9));
+    std::size_t links = 0;
+    for (NodeIndex i = 0; i < lattice.size(); ++i) {
+        lattice.for_each_neighbour(i, [&](NodeIndex j) {
+            ++links;
+            const Vector v =
+                (lattice.position(j) - lattice.position(i)).cwiseQuotient(lattice.spacing);
+            CHECK(v.lpNorm<1>() == 1);
+        });
+    }
+    CHECK(links == 2 * (2 * 4 * 5 + 3 * 3 * 5 + 3 * 4 * 4));
+}
+
+TEST_CASE("a ratio below 1 or not finite is refused") {
+    const Lattice lattice = cube(2);
+    std::vector<Metric> metrics(lattice.size());
+    for (const double ratio : {0.99, -1.0, std::nan(""), HUGE_VAL}) {
+        CHECK_THROWS_AS(grade(lattice, metrics, {.ratio = ratio}), InputError);
+    }
+}

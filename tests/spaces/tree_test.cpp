@@ -1,0 +1,273 @@
+#include "spaces/tree.h"
+
+#include <catch2/catch.hpp>
+#include <random>
+#include <set>
+
+#include "metric/nonconformity.h"
+#include "spaces/quadratic_values.h"
+#include "spaces/vertex_values.h"
+
+using namespace controlspace;
+
+namespace {
+
+const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
+
+std::vector<PointSource> scattered(int n, unsigned seed) {
+    std::mt19937 engine(seed);
+    const auto uniform = [&] { return static_cast<double>(engine()) / 4294967296.0; };
+    std::vector<PointSource> sources;
+    for (int i = 0; i < n; ++i) {
+        const Point x(2 * uniform() - 1, 2 * uniform() - 1, 2 * uniform() - 1);
+        sources.push_back({x, Metric::isotropic(0.02 + 0.3 * uniform() * uniform())});
+    }
+    return sources;
+}
+
+std::vector<Point> places(int n, unsigned seed) {
+    std::vector<Point> all;
+    for (const PointSource& s : scattered(n, seed)) all.push_back(s.position);
+    return all;
+}
+
+// Levels of the face neighbours of all leaves: the largest difference.
+template <class Node>
+int steepest_level_jump(const Topology<Node>& tree) {
+    std::vector<int> level(tree.leaves());
+    tree.for_each_leaf(
+        [&](LeafIndex leaf, const Box& box) { level[leaf] = tree.locate(box.centre()).level; });
+    int jump = 0;
+    for_each_face_pair(tree, [&](LeafIndex a, LeafIndex b) {
+        jump = std::max(jump, std::abs(level[a] - level[b]));
+    });
+    return jump;
+}
+
+// The elements of a control space, as the distinct boxes that answer for the sources.
+int level_of(const Box& box) {
+    return static_cast<int>(std::lround(std::log2(2 / box.edges().x())));
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("a split alone changes nothing in a leaf storage", "", LeafValues,
+                   QuadraticValues) {
+    Topology<OctreeNode> tree(domain);
+    TestType storage(domain, Metric::isotropic(1.7));
+    std::mt19937 engine(3);
+    for (int i = 0; i < 30; ++i) {
+        const PointSource source = scattered(1, static_cast<unsigned>(i))[0];
+        const LeafPlace place = tree.locate(source.position);
+        const std::vector<Point> x = places(50, 99);
+        std::vector<Metric> before;
+        for (const Point& p : x) before.push_back(LeafValues(storage).value(tree, p));
+        const auto first_new = static_cast<LeafIndex>(tree.leaves());
+        const Subdivision s = octants(place.box);
+        tree.split(place, s);
+        storage.split(s, place.leaf, first_new);
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            CHECK(LeafValues(storage).value(tree, x[k]) == before[k]);
+        }
+        storage.lower(tree.locate(source.position).leaf, source.metric);
+    }
+}
+
+TEST_CASE("a split alone changes nothing in a vertex storage, but for hanging vertices") {
+    Topology<OctreeNode> tree(domain);
+    VertexValues storage(domain, Metric::isotropic(1.7));
+    const std::vector<Point> x = places(200, 99);
+    const auto field = [&] {
+        std::vector<double> values;
+        for (const Point& p : x) values.push_back(storage.value(tree, p).xx);
+        return values;
+    };
+    const auto split = [&](const Point& at) {
+        const LeafPlace place = tree.locate(at);
+        const auto first_new = static_cast<LeafIndex>(tree.leaves());
+        const Subdivision s = octants(place.box);
+        tree.split(place, s);
+        storage.split(s, place.leaf, first_new);
+    };
+    split(Point::Zero());
+    for (const Point& corner_of : {Point(-0.5, -0.5, -0.5), Point(0.5, 0.5, 0.5)}) {
+        storage.lower(tree.locate(corner_of).leaf, Metric::isotropic(0.3));
+    }
+    SECTION("where no neighbour is finer, the field stays") {
+        const std::vector<double> before = field();
+        for (int c = 0; c < 8; ++c) split(octants(domain).child(c).centre());
+        const std::vector<double> after = field();
+        for (std::size_t i = 0; i < x.size(); ++i)
+            CHECK(after[i] == Approx(before[i]).epsilon(1e-14));
+    }
+    SECTION("a finer neighbour's vertices begin to count: never larger") {
+        split(Point(-0.5, -0.5, -0.5));
+        storage.lower(tree.locate(Point(-0.1, -0.1, -0.1)).leaf, Metric::isotropic(0.1));
+        const std::vector<double> before = field();
+        split(Point(0.5, -0.5, -0.5));
+        const std::vector<double> after = field();
+        for (std::size_t i = 0; i < x.size(); ++i) CHECK(after[i] <= before[i] * (1 + 1e-14));
+    }
+}
+
+TEST_CASE("vertices of leaves are shared: as many control nodes as distinct places") {
+    for (const CatalogueEntry& entry : tree_catalogue()) {
+        if (entry.order != 1) continue;
+        for (const SplitRule split : {SplitRule::middle, SplitRule::golden, SplitRule::metric}) {
+            CAPTURE(entry.id, static_cast<int>(split));
+            const auto space = entry.make({.domain = domain, .split = split});
+            space->insert(scattered(300, 4));
+            const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
+            const auto& graph = std::get<NodeGraph>(nodes.graph);
+            std::set<std::array<double, 3>> distinct;
+            for (const Point& p : graph.positions) distinct.insert({p.x(), p.y(), p.z()});
+            CHECK(distinct.size() == graph.size());
+            CHECK(space->footprint().control_nodes == graph.size());
+            // Every corner of every element that answers somewhere is one of them.
+            for (const Point& x : places(500, 5)) {
+                const Box leaf = space->element_at(x);
+                for (int i = 0; i < 8; ++i) {
+                    const Point c = corner(leaf, i);
+                    CHECK(distinct.count({c.x(), c.y(), c.z()}) == 1);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("vertex neighbours are joined by an edge of a leaf: along one axis") {
+    const auto space = tree_catalogue()[2].make({.domain = domain});
+    space->insert(scattered(200, 6));
+    const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
+    const auto& graph = std::get<NodeGraph>(nodes.graph);
+    for (NodeIndex i = 0; i < graph.size(); ++i) {
+        std::size_t neighbours = 0;
+        graph.for_each_neighbour(i, [&](NodeIndex j) {
+            const Vector v = graph.position(j) - graph.position(i);
+            CHECK((v.array() != 0).count() == 1);
+            ++neighbours;
+        });
+        CHECK(neighbours >= 3);
+    }
+}
+
+TEST_CASE("leaf neighbours: all across the faces, or the nearest across each") {
+    const auto space = tree_catalogue()[0].make({.domain = domain});
+    space->insert(scattered(200, 7));
+    const ControlNodes all = space->control_nodes(Neighbourhood::faces);
+    const ControlNodes nearest = space->control_nodes(Neighbourhood::nearest_per_face);
+    const auto& faces = std::get<NodeGraph>(all.graph);
+    const auto& links = std::get<NodeGraph>(nearest.graph);
+    REQUIRE(faces.size() == links.size());
+    CHECK(faces.positions == links.positions);
+    CHECK(all.metrics == nearest.metrics);
+    for (NodeIndex i = 0; i < faces.size(); ++i) {
+        std::set<NodeIndex> across;
+        faces.for_each_neighbour(i, [&](NodeIndex j) { across.insert(j); });
+        std::size_t n = 0;
+        links.for_each_neighbour(i, [&](NodeIndex j) {
+            CHECK(across.count(j) == 1);
+            ++n;
+        });
+        CHECK(n <= 6);
+        CHECK(n <= across.size());
+    }
+    // Depth first: a node's position finds its own leaf, and neighbours in order share an ancestor.
+    for (NodeIndex i = 0; i < faces.size(); ++i) {
+        CHECK(sample_at(*space, faces.position(i)) == all.metrics[i]);
+    }
+}
+
+TEST_CASE("K_oLB is balanced after every insertion; K_oL is not") {
+    const std::vector<PointSource> sources{{Point(0.01, 0.01, 0.01), Metric::isotropic(0.01)},
+                                           {Point(-0.9, 0.3, 0.2), Metric::isotropic(0.05)},
+                                           {Point(-0.01, 0.6, -0.3), Metric::isotropic(0.004)}};
+    const auto jump = [](const ControlSpace& space) {
+        const auto nodes = space.control_nodes(Neighbourhood::faces);
+        const auto& graph = std::get<NodeGraph>(nodes.graph);
+        int largest = 0;
+        for (NodeIndex i = 0; i < graph.size(); ++i) {
+            graph.for_each_neighbour(i, [&](NodeIndex j) {
+                largest = std::max(largest, level_of(space.element_at(graph.position(j))) -
+                                                level_of(space.element_at(graph.position(i))));
+            });
+        }
+        return largest;
+    };
+    const auto plain = tree_catalogue()[3].make({.domain = domain});
+    const auto balanced = tree_catalogue()[4].make({.domain = domain});
+    for (const PointSource& source : sources) {
+        plain->insert(source);
+        balanced->insert(source);
+        CHECK(jump(*balanced) <= 1);
+    }
+    CHECK(jump(*plain) > 1);
+    CHECK(balanced->footprint().leaves > plain->footprint().leaves);
+}
+
+TEST_CASE("leaves at a source are no longer than l_min in its metric, and not much shorter") {
+    for (const CatalogueEntry& entry : tree_catalogue()) {
+        for (const double l_min : {1.0, 0.3}) {
+            CAPTURE(entry.id, l_min);
+            const auto space = entry.make({.domain = domain, .l_min = l_min});
+            const PointSource source{Point(0.3, -0.2, 0.7), Metric::isotropic(0.05)};
+            CHECK(space->insert(source) == Insertion::inserted);
+            const Vector edges = space->element_at(source.position).edges();
+            CHECK(edges.maxCoeff() <= l_min * 0.05);
+            CHECK(edges.minCoeff() > 0.25 * l_min * 0.05);
+            // K_Li blends in the neighbours, which are still large: not met before gradation.
+            if (entry.order < 2) CHECK(space->insert(source) == Insertion::already_met);
+        }
+    }
+}
+
+TEST_CASE("the depth limits are kept") {
+    const PointSource tiny{Point(0.1, 0.2, 0.3), Metric::isotropic(1e-9)};
+    for (const CatalogueEntry& entry : tree_catalogue()) {
+        CAPTURE(entry.id);
+        const auto space = entry.make({.domain = domain, .kd_depth = 7, .octree_depth = 3});
+        space->insert(tiny);
+        CHECK(space->footprint().depth == (entry.has_split_rules ? 8 : 4));
+    }
+}
+
+TEST_CASE("where floating point ends, splitting stops") {
+    const Box small{Point::Constant(1), Point::Constant(1 + 1e-14)};
+    for (const CatalogueEntry& entry : tree_catalogue()) {
+        CAPTURE(entry.id);
+        const auto space = entry.make({.domain = small, .kd_depth = 200, .octree_depth = 60});
+        CHECK(space->insert({small.centre(), Metric::isotropic(1e-30)}) == Insertion::inserted);
+        CHECK(space->footprint().depth < 30);
+    }
+}
+
+TEST_CASE("options out of range are refused by name") {
+    const auto refuses = [](const SpaceOptions& options, const std::string& word) {
+        CHECK_THROWS_WITH(tree_catalogue()[0].make(options), Catch::Contains(word));
+    };
+    refuses({.domain = {Point::Zero(), Point(1, 1, 0)}}, "no extent along z");
+    refuses({.domain = {Point::Zero(), Point(1, NAN, 1)}}, "no extent along y");
+    refuses({.domain = domain, .l_min = 0}, "l_min");
+    refuses({.domain = domain, .l_min = NAN}, "l_min");
+    refuses({.domain = domain, .tolerance = -1}, "tolerance");
+    refuses({.domain = domain, .kd_depth = 201}, "kd-trees");
+    refuses({.domain = domain, .octree_depth = 1000}, "octrees");
+    refuses({.domain = domain, .octree_depth = -1}, "octrees");
+}
+
+TEST_CASE("sources that are no sources are refused, and leave the space as it was") {
+    for (const CatalogueEntry& entry : tree_catalogue()) {
+        CAPTURE(entry.id);
+        const auto space = entry.make({.domain = domain});
+        const auto refuses = [&](const PointSource& source, const std::string& word) {
+            CHECK_THROWS_WITH(space->insert(source), Catch::Contains(word));
+        };
+        refuses({Point(2, 0, 0), {}}, "outside the domain");
+        refuses({Point(NAN, 0, 0), {}}, "outside the domain");
+        refuses({Point::Zero(), {1, -1, 1, 0, 0, 0}}, "not positive definite");
+        refuses({Point::Zero(), {1, 1, 1, 2, 0, 0}}, "not positive definite");
+        refuses({Point::Zero(), {1, 1, NAN, 0, 0, 0}}, "not positive definite");
+        const std::vector<PointSource> batch{{Point::Zero(), {}}, {Point(0, -3, 0), {}}};
+        CHECK_THROWS_WITH(space->insert(batch), Catch::Contains("source 1 at (0, -3, 0)"));
+    }
+}
