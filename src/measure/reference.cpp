@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "error.h"
-#include "measure/anisotropic_cones.h"
-#include "measure/cone.h"
-#include "measure/isotropic_cones.h"
+#include "cones/anisotropic_cones.h"
+#include "cones/cone.h"
+#include "cones/isotropic_cones.h"
 #include "metric/intersection.h"
 
 namespace controlspace {

@@ -1,11 +1,11 @@
-#include "measure/anisotropic_cones.h"
+#include "cones/anisotropic_cones.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "measure/cone.h"
+#include "cones/cone.h"
 #include "metric/intersection.h"
 
 namespace controlspace {

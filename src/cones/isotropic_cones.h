@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geometry/point.h"
-#include "measure/cone_tree.h"
+#include "cones/cone_tree.h"
 #include "sources/point_source.h"
 
 namespace controlspace {

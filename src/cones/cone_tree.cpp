@@ -1,4 +1,4 @@
-#include "measure/cone_tree.h"
+#include "cones/cone_tree.h"
 
 #include <tbb/parallel_invoke.h>
 

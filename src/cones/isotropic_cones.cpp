@@ -1,4 +1,4 @@
-#include "measure/isotropic_cones.h"
+#include "cones/isotropic_cones.h"
 
 #include <tbb/parallel_for.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "measure/cone.h"
+#include "cones/cone.h"
 
 namespace controlspace {
 

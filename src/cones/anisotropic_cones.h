@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "measure/cone_tree.h"
+#include "cones/cone_tree.h"
 #include "metric/metric.h"
 #include "sources/point_source.h"
 
