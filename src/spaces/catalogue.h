@@ -21,8 +21,8 @@ struct SpaceOptions {
     double tolerance = 0.2;  ///< ε_δ of insertion
     int kd_depth = 42;       ///< deepest level of a kd-tree, the root being 0
     int octree_depth = 14;   ///< deepest level of an octree, the root being 0
-    double finest_length =
-        0;  ///< smallest length that any source asks for; grids size voxels by it
+    double finest_length = 0;  ///< smallest length any source asks for; grids size voxels by it
+    double ratio = 1.25;       ///< g_r of the gradation to come, for structures that keep sources
     std::size_t max_bytes = std::size_t{4} << 30;  ///< cap on a grid, gradation's copy included
 };
 

@@ -12,12 +12,12 @@ Metric sample_at(const ControlSpace& space, const Point& x) {
     return m;
 }
 
-GradationReport grade(ControlSpace& space, const GradationOptions& options) {
-    ControlNodes nodes = space.control_nodes(options.schedule == GradationSchedule::queue
+GradationReport ControlSpace::grade(const GradationOptions& options) {
+    ControlNodes nodes = control_nodes(options.schedule == GradationSchedule::queue
                                                  ? Neighbourhood::faces
                                                  : Neighbourhood::nearest_per_face);
-    const GradationReport report = grade(nodes.graph, nodes.metrics, options);
-    space.assign(nodes.metrics);
+    const GradationReport report = controlspace::grade(nodes.graph, nodes.metrics, options);
+    assign(nodes.metrics);
     return report;
 }
 

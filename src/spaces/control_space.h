@@ -65,6 +65,12 @@ public:
     virtual ControlNodes control_nodes(Neighbourhood neighbourhood) const = 0;
     virtual void assign(std::span<const Metric> metrics) = 0;
 
+    /// Makes the field grow smoothly (paper §3.2). Structures whose control nodes carry metrics are
+    /// graded alike, over the neighbourhood that belongs to the schedule: `faces` for the queue,
+    /// `nearest_per_face` for the passes of the paper's tables. Throws InputError for a ratio below
+    /// 1 or not finite.
+    virtual GradationReport grade(const GradationOptions& options);
+
     virtual const Box& domain() const = 0;
 
     /// The element that answers for `x`: a leaf of a tree, a cell of a grid.
@@ -74,10 +80,6 @@ public:
 
 /// Metric at one point; for many, `sample` is far faster.
 Metric sample_at(const ControlSpace& space, const Point& x);
-
-/// Grades the control nodes of `space` (paper §3.2), with the neighbourhood that belongs to the
-/// schedule: `faces` for the queue, `nearest_per_face` for the passes of the paper's tables.
-GradationReport grade(ControlSpace& space, const GradationOptions& options);
 
 /// Throws InputError, naming the source by `index` (0-based), if its position is outside `domain`
 /// or its metric not positive definite.

@@ -81,7 +81,7 @@ Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry
 
     tell(observer.phase_started, "gradation");
     start = std::chrono::steady_clock::now();
-    m.gradation = grade(*space, {.law = c.law, .schedule = c.schedule, .ratio = c.g_r});
+    m.gradation = space->grade({.law = c.law, .schedule = c.schedule, .ratio = c.g_r});
     m.gradation_s = seconds_since(start);
     m.footprint = space->footprint();
 

@@ -39,7 +39,7 @@ TEST_CASE("a grid and its gradation stay below the memory cap") {
     reset_peak_bytes();
     const auto space = entry.make(options);
     space->insert(PointSource{options.domain.centre(), Metric::isotropic(0.1)});
-    grade(*space, GradationOptions{});
+    space->grade(GradationOptions{});
     const Footprint footprint = space->footprint();
     CAPTURE(peak_bytes() - before, footprint.remark);
     CHECK(peak_bytes() - before <= options.max_bytes + 1024);  // the object itself

@@ -271,7 +271,7 @@ TEST_CASE("gradation grows a source's length with the way along the axes") {
     grid.space->insert(source);
     GradationOptions gradation;
     gradation.ratio = 1.7;
-    const GradationReport report = grade(*grid.space, gradation);
+    const GradationReport report = grid.space->grade(gradation);
     grid.read();
 
     CHECK(report.operations > 0);

@@ -24,7 +24,7 @@ TEST_CASE("OpenVDB and the uniform grid agree to the bit") {
 
     GradationOptions gradation;
     gradation.law = GradationLaw::mean_length;
-    CHECK(grade(*uniform, gradation).operations == grade(*vdb, gradation).operations);
+    CHECK(uniform->grade(gradation).operations == vdb->grade(gradation).operations);
     CHECK(sample(*uniform, points) == sample(*vdb, points));
 }
 

@@ -102,7 +102,7 @@ TEST_CASE("where elements are small against the size asked for, agreement is clo
         options.l_min = 0.25;
         const auto space = structure.entry->make(options);
         space->insert(work.sources);
-        grade(*space, {});
+        space->grade({});
         std::vector<Metric> m(x.size());
         space->sample(x, m);
         double worst = 0;

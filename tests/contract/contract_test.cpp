@@ -71,7 +71,7 @@ TEST_CASE("answers are positive definite everywhere, before and after gradation"
             return std::all_of(m.begin(), m.end(), is_positive_definite);
         };
         CHECK(all_positive());
-        grade(*space, {});
+        space->grade({});
         CHECK(all_positive());
     });
 }
@@ -95,7 +95,7 @@ TEST_CASE("gradation only makes smaller, and holds afterwards") {
     for_each_structure(work, [&](const Structure& structure) {
         const auto space = work.inserted(structure);
         const std::vector<Metric> before = space->control_nodes(Neighbourhood::faces).metrics;
-        const GradationReport report = grade(*space, {.law = law, .ratio = g});
+        const GradationReport report = space->grade({.law = law, .ratio = g});
         CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
         const std::vector<Metric> after = space->control_nodes(Neighbourhood::faces).metrics;
         bool smaller = true;
@@ -118,7 +118,7 @@ TEST_CASE("under the cone law, no larger than the cones of the sources allow alo
         for (const PointSource& source : work.sources) {
             if (space->insert(source) == Insertion::inserted) inserted.push_back(source);
         }
-        grade(*space, {.ratio = g});
+        space->grade({.ratio = g});
         const std::vector<Metric> m = answers(*space, x);
         double worst = 0;
         for (std::size_t k = 0; k < x.size(); ++k) {
@@ -224,7 +224,7 @@ TEST_CASE("the same run gives the same bits, one by one as well as in a batch") 
         const auto first = work.graded(structure);
         const auto second = structure.entry->make(work.options(structure.split));
         for (const PointSource& source : work.sources) second->insert(source);
-        grade(*second, {});
+        second->grade({});
         CHECK(checksum(answers(*first, x)) == checksum(answers(*second, x)));
     });
 }

@@ -55,7 +55,7 @@ struct Work {
     std::unique_ptr<ControlSpace> graded(const Structure& structure,
                                          const GradationOptions& gradation = {}) const {
         auto space = inserted(structure);
-        grade(*space, gradation);
+        space->grade(gradation);
         return space;
     }
 };

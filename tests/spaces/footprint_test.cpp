@@ -14,7 +14,7 @@ TEST_CASE("the footprint of a tree is what it has allocated") {
         const std::size_t before = live_bytes();
         auto space = entry.make({.domain = {Point::Constant(-1), Point::Constant(1)}});
         space->insert(sources);
-        grade(*space, {});
+        space->grade({});
         const std::size_t allocated = live_bytes() - before;
         // The object itself is allocated but not counted.
         const Footprint footprint = space->footprint();

@@ -42,7 +42,7 @@ Built build(const std::string& id, SplitRule split, double rho, double tau) {
 
 // δ_R of the paper's Table 4: its law, its schedule and the reference that its runs used.
 Accuracy published_accuracy(ControlSpace& space) {
-    grade(space, {GradationLaw::mean_length, GradationSchedule::passes, 1.25});
+    space.grade({GradationLaw::mean_length, GradationSchedule::passes, 1.25});
     const auto reference = published_sphere_reference(0.8, 0.03, 1.25, domain.half_diagonal());
     return accuracy(space, make_probes(*reference, cell_centres(domain, 30)));
 }
