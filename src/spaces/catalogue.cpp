@@ -1,10 +1,7 @@
 #include "spaces/catalogue.h"
 
-#include <fmt/format.h>
-
 #include <array>
 
-#include "error.h"
 #include "spaces/leaf_values.h"
 #include "spaces/quadratic_values.h"
 #include "spaces/topology.h"
@@ -31,18 +28,6 @@ CatalogueEntry entry(const char* id, const char* description) {
             make<Node, Storage, balanced>};
 }
 
-void require_positive(const char* name, double value) {
-    if (!std::isfinite(value) || !(value > 0)) {
-        throw InputError(fmt::format("{} is {}: give a finite value above 0", name, value));
-    }
-}
-
-void require_depth(const char* name, int depth, int deepest) {
-    if (depth < 0 || depth > deepest) {
-        throw InputError(fmt::format("{} is {}: give a value from 0 to {}", name, depth, deepest));
-    }
-}
-
 }  // namespace
 
 std::span<const CatalogueEntry> tree_catalogue() {
@@ -57,15 +42,6 @@ std::span<const CatalogueEntry> tree_catalogue() {
         entry<OctreeNode, VertexValues>("K_oV", "octree, trilinear between the vertices of a leaf"),
     };
     return trees;
-}
-
-void require_valid(const SpaceOptions& options) {
-    require_volume(options.domain);
-    require_positive("l_min (tau)", options.l_min);
-    require_positive("the insertion tolerance (epsilon)", options.tolerance);
-    // Past these depths a double has no number left between the faces of any box.
-    require_depth("the depth of kd-trees", options.kd_depth, 200);
-    require_depth("the depth of octrees", options.octree_depth, 60);
 }
 
 }  // namespace controlspace

@@ -14,8 +14,8 @@ Metric sample_at(const ControlSpace& space, const Point& x) {
 
 GradationReport ControlSpace::grade(const GradationOptions& options) {
     ControlNodes nodes = control_nodes(options.schedule == GradationSchedule::queue
-                                                 ? Neighbourhood::faces
-                                                 : Neighbourhood::nearest_per_face);
+                                           ? Neighbourhood::faces
+                                           : Neighbourhood::nearest_per_face);
     const GradationReport report = controlspace::grade(nodes.graph, nodes.metrics, options);
     assign(nodes.metrics);
     return report;

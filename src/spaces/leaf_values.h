@@ -8,6 +8,7 @@
 #include "metric/intersection.h"
 #include "spaces/adjacency.h"
 #include "spaces/control_space.h"
+#include "spaces/space_options.h"
 #include "spaces/topology.h"
 
 namespace controlspace {
@@ -16,7 +17,7 @@ namespace controlspace {
 // What Tree asks of one:
 //   value(tree, x)                       metric at x
 //   split(subdivision, leaf, first_new)  a leaf was cut; the field stays as it was
-//   lower(leaf, metric)                  intersects what governs the leaf with `metric`
+//   lower(place, source)                 intersects what governs the leaf with the source
 //   control_nodes(tree, neighbourhood), assign(tree, metrics), describe(footprint), shrink_to_fit()
 
 /// One metric a leaf, constant over it (K_L, K_oL): a control node stands at the leaf's centre.
@@ -25,7 +26,7 @@ public:
     static constexpr bool exact_at_nodes = true;
     static constexpr int order = 0;
 
-    LeafValues(const Box&, const Metric& initial) : metrics_{initial} {}
+    explicit LeafValues(const SpaceOptions& options) : metrics_{largest_metric(options.domain)} {}
 
     template <class Node>
     Metric value(const Topology<Node>& tree, const Point& x) const {
@@ -38,8 +39,8 @@ public:
                         inherited);
     }
 
-    void lower(LeafIndex leaf, const Metric& metric) {
-        metrics_[leaf] = intersection(metrics_[leaf], metric);
+    void lower(const LeafPlace& place, const PointSource& source) {
+        metrics_[place.leaf] = intersection(metrics_[place.leaf], source.metric);
     }
 
     template <class Node>

@@ -24,10 +24,7 @@ public:
     /// With `balanced`, no leaf ever has a neighbour across a face that is more than one level
     /// coarser (octrees).
     explicit Tree(const SpaceOptions& options, bool balanced = false)
-        : options_(options),
-          balanced_(balanced),
-          topology_(options.domain),
-          storage_(options.domain, Metric::isotropic(options.domain.half_diagonal())) {}
+        : options_(options), balanced_(balanced), topology_(options.domain), storage_(options) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = storage_.value(topology_, x[i]);
@@ -88,7 +85,7 @@ private:
             split(place, subdivision);
             place = topology_.locate_from(place, q);
         }
-        storage_.lower(place.leaf, source.metric);
+        storage_.lower(place, source);
         return Insertion::inserted;
     }
 

@@ -4,13 +4,13 @@
 
 namespace controlspace {
 
-VertexValues::VertexValues(const Box& domain, const Metric& initial) : corners_(1) {
+VertexValues::VertexValues(const SpaceOptions& options) : corners_(1) {
     for (int i = 0; i < 8; ++i) {
-        const Point x = corner(domain, i);
+        const Point x = corner(options.domain, i);
         corners_[0][static_cast<std::size_t>(i)] =
             places_.find_or_enter(x, static_cast<NodeIndex>(i), positions_);
         positions_.push_back(x);
-        metrics_.push_back(initial);
+        metrics_.push_back(largest_metric(options.domain));
     }
 }
 
@@ -69,9 +69,9 @@ void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafInd
     }
 }
 
-void VertexValues::lower(LeafIndex leaf, const Metric& metric) {
-    for (const NodeIndex node : corners_[leaf]) {
-        metrics_[node] = intersection(metrics_[node], metric);
+void VertexValues::lower(const LeafPlace& place, const PointSource& source) {
+    for (const NodeIndex node : corners_[place.leaf]) {
+        metrics_[node] = intersection(metrics_[node], source.metric);
     }
 }
 

@@ -9,6 +9,7 @@
 #include "spaces/adjacency.h"
 #include "spaces/control_space.h"
 #include "spaces/place_index.h"
+#include "spaces/space_options.h"
 #include "spaces/topology.h"
 
 namespace controlspace {
@@ -33,7 +34,7 @@ public:
     static constexpr bool exact_at_nodes = true;
     static constexpr int order = 1;
 
-    VertexValues(const Box& domain, const Metric& initial);
+    explicit VertexValues(const SpaceOptions& options);
 
     template <class Node>
     Metric value(const Topology<Node>& tree, const Point& place) const {
@@ -43,7 +44,7 @@ public:
     }
 
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new);
-    void lower(LeafIndex leaf, const Metric& metric);
+    void lower(const LeafPlace& place, const PointSource& source);
 
     template <class Node>
     ControlNodes control_nodes(const Topology<Node>&, Neighbourhood) const {

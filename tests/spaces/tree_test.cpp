@@ -54,7 +54,7 @@ int level_of(const Box& box) {
 TEMPLATE_TEST_CASE("a split alone changes nothing in a leaf storage", "", LeafValues,
                    QuadraticValues) {
     Topology<OctreeNode> tree(domain);
-    TestType storage(domain, Metric::isotropic(1.7));
+    TestType storage({.domain = domain});
     std::mt19937 engine(3);
     for (int i = 0; i < 30; ++i) {
         const PointSource source = scattered(1, static_cast<unsigned>(i))[0];
@@ -69,13 +69,13 @@ TEMPLATE_TEST_CASE("a split alone changes nothing in a leaf storage", "", LeafVa
         for (std::size_t k = 0; k < x.size(); ++k) {
             CHECK(LeafValues(storage).value(tree, x[k]) == before[k]);
         }
-        storage.lower(tree.locate(source.position).leaf, source.metric);
+        storage.lower(tree.locate(source.position), source);
     }
 }
 
 TEST_CASE("a split alone changes nothing in a vertex storage, but for hanging vertices") {
     Topology<OctreeNode> tree(domain);
-    VertexValues storage(domain, Metric::isotropic(1.7));
+    VertexValues storage({.domain = domain});
     const std::vector<Point> x = places(200, 99);
     const auto field = [&] {
         std::vector<double> values;
@@ -91,7 +91,7 @@ TEST_CASE("a split alone changes nothing in a vertex storage, but for hanging ve
     };
     split(Point::Zero());
     for (const Point& corner_of : {Point(-0.5, -0.5, -0.5), Point(0.5, 0.5, 0.5)}) {
-        storage.lower(tree.locate(corner_of).leaf, Metric::isotropic(0.3));
+        storage.lower(tree.locate(corner_of), {corner_of, Metric::isotropic(0.3)});
     }
     SECTION("where no neighbour is finer, the field stays") {
         const std::vector<double> before = field();
@@ -102,7 +102,8 @@ TEST_CASE("a split alone changes nothing in a vertex storage, but for hanging ve
     }
     SECTION("a finer neighbour's vertices begin to count: never larger") {
         split(Point(-0.5, -0.5, -0.5));
-        storage.lower(tree.locate(Point(-0.1, -0.1, -0.1)).leaf, Metric::isotropic(0.1));
+        const Point inner(-0.1, -0.1, -0.1);
+        storage.lower(tree.locate(inner), {inner, Metric::isotropic(0.1)});
         const std::vector<double> before = field();
         split(Point(0.5, -0.5, -0.5));
         const std::vector<double> after = field();

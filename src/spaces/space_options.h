@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+
+#include "geometry/box.h"
+#include "metric/metric.h"
+#include "spaces/split_rule.h"
+
+namespace controlspace {
+
+/// What a structure is made with.
+struct SpaceOptions {
+    Box domain;
+    SplitRule split = SplitRule::middle;  ///< kd-trees only
+    double l_min = 1;          ///< longest edge of a source's leaf, in the source's metric (τ)
+    double tolerance = 0.2;    ///< ε_δ of insertion
+    int kd_depth = 42;         ///< deepest level of a kd-tree, the root being 0
+    int octree_depth = 14;     ///< deepest level of an octree, the root being 0
+    double finest_length = 0;  ///< smallest length any source asks for; grids size voxels by it
+    double ratio = 1.25;       ///< g_r of the gradation to come, for structures that keep sources
+    std::size_t max_bytes = std::size_t{4} << 30;  ///< cap on a grid, gradation's copy included
+};
+
+/// M_max, which a new control space holds everywhere: H I, H half of the domain's diagonal.
+inline Metric largest_metric(const Box& domain) {
+    return Metric::isotropic(domain.half_diagonal());
+}
+
+/// Depths and lengths within what the structures can hold; throws InputError that names the option.
+void require_valid(const SpaceOptions& options);
+
+}  // namespace controlspace
