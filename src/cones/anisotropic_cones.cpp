@@ -93,8 +93,9 @@ struct Later {
 
 }  // namespace
 
-AnisotropicCones::AnisotropicCones(std::span<const PointSource> sources, double g)
+AnisotropicCones::AnisotropicCones(std::span<const PointSource> sources, double g, double tolerance)
     : g_(g),
+      tolerance_(tolerance),
       shape_(ConeTreeShape::with_leaves_of(sources.size(), leaf_size)),
       cones_(sources.size()),
       nodes_(shape_.nodes()) {
@@ -170,10 +171,11 @@ double AnisotropicCones::least_factor(const Node& node, const Point& p) const {
 
 Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, Queue& queue) const {
     const double certain = 1 - uncertainty_;
+    const double enough = certain * (1 + tolerance_);
     Accumulated found(largest);
     const auto within = [&](double shortest, double factor, const Metric& squared) {
-        return certain * shortest >= found.longest ||
-               certainly_below(found.squared, certain * certain * factor * factor, squared);
+        return enough * shortest >= found.longest ||
+               certainly_below(found.squared, enough * enough * factor * factor, squared);
     };
     const auto wait = [&](const Waiting& w) {
         queue.push_back(w);
@@ -200,7 +202,7 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, Queue&
         std::pop_heap(queue.begin(), queue.end(), Later{});
         const Waiting next = queue.back();
         queue.pop_back();
-        if (certain * next.length >= found.longest) break;
+        if (enough * next.length >= found.longest) break;
         if (next.rank == 0) {
             const Node& node = nodes_[next.place];
             if (within(next.length, least_factor(node, p), node.square)) continue;

@@ -15,8 +15,8 @@ namespace controlspace {
 /// bounding-volume hierarchy; only cones that provably leave the result as it is are left out.
 class AnisotropicCones {
 public:
-    /// g >= 1.
-    AnisotropicCones(std::span<const PointSource> sources, double g);
+    /// g >= 1; `tolerance` as ConeField has it.
+    AnisotropicCones(std::span<const PointSource> sources, double g, double tolerance);
 
     /// A cone or a node of the hierarchy that waits for its turn.
     struct Waiting {
@@ -29,6 +29,16 @@ public:
 
     /// `largest` intersected with the cones at `p`, one after the other.
     Metric intersect(const Point& p, const Metric& largest, Queue& queue) const;
+
+    /// Sources that change the result nowhere, and were left out.
+    std::size_t dropped() const { return dropped_; }
+
+    /// Bytes allocated: of the metrics, and of what finds them.
+    std::size_t bytes_payload() const { return cones_.capacity() * sizeof(Metric); }
+    std::size_t bytes_topology() const {
+        return cones_.capacity() * (sizeof(Cone) - sizeof(Metric)) +
+               nodes_.capacity() * sizeof(Node);
+    }
 
 private:
     struct Cone {
@@ -51,6 +61,8 @@ private:
     double least_factor(const Node& node, const Point& p) const;
 
     double g_;
+    double tolerance_;
+    std::size_t dropped_ = 0;
     double uncertainty_ = 0;  ///< relative, of lengths computed from the metrics given
     ConeTreeShape shape_;
     std::vector<Cone> cones_;  ///< in tree order

@@ -1,19 +1,34 @@
 #include "cones/isotropic_cones.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "cones/cone.h"
 
 namespace controlspace {
 
+// Which sources cannot matter
+// ---------------------------
+// Let source j meet the length of source i at i's place: h_j + (g-1) |Q_i - Q_j| <= h_i. Then for
+// every p, by the triangle inequality,
+//     h_j + (g-1) |p - Q_j| <= h_j + (g-1) |Q_i - Q_j| + (g-1) |p - Q_i| <= h_i + (g-1) |p - Q_i|:
+// i is nowhere smaller than j, and may be left out. Where "<=" holds by more than some margin this
+// goes from i to j to j's own dominator and on, lengths getting strictly smaller, and ends at a
+// source that is kept: so all may be left out at once. Computed lengths below the cap are off by
+// less than 32 epsilon of the cap; by a margin of more than twice that, leaving out does not change
+// a bit of any answer. Of sources at one place the smallest is kept, without any margin.
+
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Point position(const ConeTreeItem& item) {
     return {item.coordinates[0], item.coordinates[1], item.coordinates[2]};
@@ -36,18 +51,66 @@ Vector normal_of(std::span<const ConeTreeItem> items, const Point& centre, doubl
     return std::abs(normal.squaredNorm() - 1) < 4 * epsilon ? normal : Vector::UnitX();
 }
 
+// One item for each place, of the smallest length there, in an order that depends on nothing else.
+void keep_smallest_at_each_place(std::vector<ConeTreeItem>& items) {
+    const auto key = [](const ConeTreeItem& i) {
+        const auto& c = i.coordinates;
+        return std::tie(c[0], c[1], c[2], c[3], i.index);
+    };
+    tbb::parallel_sort(
+        items.begin(), items.end(),
+        [&](const ConeTreeItem& a, const ConeTreeItem& b) { return key(a) < key(b); });
+    const auto end = std::unique(
+        items.begin(), items.end(),
+        [](const ConeTreeItem& a, const ConeTreeItem& b) { return position(a) == position(b); });
+    items.erase(end, items.end());
+}
+
 }  // namespace
 
-IsotropicCones::IsotropicCones(std::span<const PointSource> sources, double g)
+struct IsotropicCones::Cylinder {
+    Point centre;
+    Vector normal;
+    double half_thickness, radius;
+
+    explicit Cylinder(std::span<const ConeTreeItem> items) {
+        Point low = position(items.front());
+        Point high = low;
+        for (const ConeTreeItem& item : items) {
+            low = low.cwiseMin(position(item));
+            high = high.cwiseMax(position(item));
+        }
+        centre = 0.5 * (low + high);
+        normal = normal_of(items, centre, (high - low).maxCoeff());
+        double least = infinity;
+        double most = -infinity;
+        for (const ConeTreeItem& item : items) {
+            const double along = normal.dot(position(item) - centre);
+            least = std::min(least, along);
+            most = std::max(most, along);
+        }
+        centre += 0.5 * (least + most) * normal;
+        double thickness = 0;
+        double squared_radius = 0;
+        for (const ConeTreeItem& item : items) {
+            const Vector v = position(item) - centre;
+            const double along = normal.dot(v);
+            thickness = std::max(thickness, std::abs(along));
+            squared_radius = std::max(squared_radius, (v - along * normal).squaredNorm());
+        }
+        const double rounding = 64 * epsilon * (high - low).norm();
+        half_thickness = thickness + rounding;
+        radius = std::sqrt(squared_radius) + rounding;
+    }
+};
+
+IsotropicCones::IsotropicCones(std::span<const PointSource> sources, double g, double cap)
     : g_(g),
       slope_(g - 1),
+      cap_(cap),
       // A cone's length is computed as h (1 + (g-1) |v / h|), its bounds as h + (g-1) |v|; the two
       // differ by a few roundings, and the bounds give way by more. Without growth, by none.
-      safely_(g > 1 ? 1 - 64 * epsilon : 1),
-      shape_(ConeTreeShape::with_leaves_of(sources.size(), leaf_size)),
-      nodes_(shape_.nodes()),
-      leaves_(shape_.first_leaf()) {
-    if (sources.empty()) return;
+      safely_(g > 1 ? 1 - 64 * epsilon : 1) {
     // Without growth only the lengths tell cones apart.
     const double weight = slope_ > 0 ? 1 / slope_ : 1;
     std::vector<ConeTreeItem> items(sources.size());
@@ -56,109 +119,166 @@ IsotropicCones::IsotropicCones(std::span<const PointSource> sources, double g)
         items[i] = {{q.x(), q.y(), q.z(), weight * sources[i].metric.xx},
                     static_cast<std::uint32_t>(i)};
     }
+    keep_smallest_at_each_place(items);
+    build(items, sources);
+
+    std::vector<std::uint8_t> dominated(items.size());
+    tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t i) {
+        dominated[i] = is_dominated(sources[items[i].index]) ? 1 : 0;
+    });
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        if (dominated[i] == 0) items[kept++] = items[i];
+    }
+    dropped_ = sources.size() - kept;
+    if (kept == items.size()) return;
+    items.resize(kept);
+    build(items, sources);
+}
+
+void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const PointSource> sources) {
+    shape_ = ConeTreeShape::with_leaves_of(items.size(), leaf_size);
+    const auto items_of = [&](std::uint32_t node) {
+        return items.subspan(shape_.begin(node), shape_.end(node) - shape_.begin(node));
+    };
     sort_for_tree(shape_, items);
-    for (std::uint32_t first = shape_.first_leaf(); first > 0; first /= 2) {
-        tbb::parallel_for(first, 2 * first, [&](std::uint32_t node) {
-            if (shape_.is_leaf(node)) {
-                make_leaf(node, sources, items);
-            } else {
-                nodes_[node].length =
-                    std::min(nodes_[2 * node].length, nodes_[2 * node + 1].length);
+
+    leaves_ = std::vector<Leaf>(items.empty() ? 0 : shape_.first_leaf());
+    tbb::parallel_for(std::size_t{0}, leaves_.size(), [&](std::size_t l) {
+        Leaf& leaf = leaves_[l];
+        leaf.x.setZero();
+        leaf.y.setZero();
+        leaf.z.setZero();
+        leaf.length.setConstant(infinity);
+        Eigen::Index lane = 0;
+        for (const ConeTreeItem& item :
+             items_of(shape_.first_leaf() + static_cast<std::uint32_t>(l))) {
+            leaf.x[lane] = item.coordinates[0];
+            leaf.y[lane] = item.coordinates[1];
+            leaf.z[lane] = item.coordinates[2];
+            leaf.length[lane++] = sources[item.index].metric.xx;
+        }
+    });
+
+    // The root takes up what three levels of the binary tree a node leave over.
+    std::vector<int> levels;
+    for (int level = shape_.depth; level > 0; level -= arity_bits) {
+        levels.insert(levels.begin(), std::max(0, level - arity_bits));
+    }
+    first_of_level_.assign(1, 0);
+    for (const int level : levels) {
+        first_of_level_.push_back(first_of_level_.back() + (std::size_t{1} << level));
+    }
+    first_of_level_.shrink_to_fit();
+    nodes_ = std::vector<Node>(first_of_level_.back());
+    for (std::size_t l = levels.size(); l-- > 0;) {
+        const int below = l + 1 < levels.size() ? levels[l + 1] : shape_.depth;
+        const std::uint32_t children = std::uint32_t{1} << (below - levels[l]);
+        const std::uint32_t nodes = std::uint32_t{1} << levels[l];
+        tbb::parallel_for(std::uint32_t{0}, nodes, [&](std::uint32_t n) {
+            Node& node = nodes_[first_of_level_[l] + n];
+            for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(arity); ++c) {
+                const bool exists = c < children;
+                const std::uint32_t child = n * children + (exists ? c : 0);
+                const Cylinder cylinder(items_of((std::uint32_t{1} << below) + child));
+                node.x[c] = cylinder.centre.x();
+                node.y[c] = cylinder.centre.y();
+                node.z[c] = cylinder.centre.z();
+                node.normal_x[c] = cylinder.normal.x();
+                node.normal_y[c] = cylinder.normal.y();
+                node.normal_z[c] = cylinder.normal.z();
+                node.half_thickness[c] = cylinder.half_thickness;
+                node.radius[c] = cylinder.radius;
+                node.length[c] = !exists ? infinity
+                                 : l + 1 < levels.size()
+                                     ? nodes_[first_of_level_[l + 1] + child].length.minCoeff()
+                                     : leaves_[child].length.minCoeff();
             }
-            enclose(node, items);
         });
     }
 }
 
-void IsotropicCones::make_leaf(std::uint32_t node, std::span<const PointSource> sources,
-                               std::span<const ConeTreeItem> items) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Leaf& leaf = leaves_[node - shape_.first_leaf()];
-    leaf.length.fill(infinity);
-    const std::size_t begin = shape_.begin(node);
-    for (std::size_t i = begin; i < shape_.end(node); ++i) {
-        const PointSource& source = sources[items[i].index];
-        const std::size_t lane = i - begin;
-        leaf.x[lane] = source.position.x();
-        leaf.y[lane] = source.position.y();
-        leaf.z[lane] = source.position.z();
-        leaf.length[lane] = source.metric.xx;
-    }
-    nodes_[node].length = *std::min_element(leaf.length.begin(), leaf.length.end());
+bool IsotropicCones::is_dominated(const PointSource& source) const {
+    const double margin = 128 * epsilon * cap_;
+    const double length = source.metric.xx - margin;
+    Hint hint = 0;
+    return search(source.position, length, hint) < length;
 }
 
-void IsotropicCones::enclose(std::uint32_t n, std::span<const ConeTreeItem> items) {
-    const auto of_node = items.subspan(shape_.begin(n), shape_.end(n) - shape_.begin(n));
-    Point low = position(of_node.front());
-    Point high = low;
-    for (const ConeTreeItem& item : of_node) {
-        low = low.cwiseMin(position(item));
-        high = high.cwiseMax(position(item));
-    }
-    Node& node = nodes_[n];
-    node.centre = 0.5 * (low + high);
-    node.normal = normal_of(of_node, node.centre, (high - low).maxCoeff());
-    double thickness = 0;
-    double squared_radius = 0;
-    for (const ConeTreeItem& item : of_node) {
-        const Vector v = position(item) - node.centre;
-        const double along = node.normal.dot(v);
-        thickness = std::max(thickness, std::abs(along));
-        squared_radius = std::max(squared_radius, v.squaredNorm() - along * along);
-    }
-    const double rounding = 64 * epsilon * (high - low).norm();
-    node.half_thickness = thickness + rounding;
-    node.radius = std::sqrt(squared_radius) + rounding;
+IsotropicCones::Children IsotropicCones::lower_bounds(const Node& node, const Point& p) const {
+    // Every source of a child has h_i >= length and |p - Q_i| >= distance to the cylinder.
+    const Children x = p.x() - node.x;
+    const Children y = p.y() - node.y;
+    const Children z = p.z() - node.z;
+    const Children along = x * node.normal_x + y * node.normal_y + z * node.normal_z;
+    const Children across =
+        ((x - along * node.normal_x).square() + (y - along * node.normal_y).square() +
+         (z - along * node.normal_z).square())
+            .sqrt();
+    const Children above = (along.abs() - node.half_thickness).max(0);
+    const Children beside = (across - node.radius).max(0);
+    return safely_ * (node.length + slope_ * (above.square() + beside.square()).sqrt());
 }
 
-double IsotropicCones::lower_bound(const Node& node, const Point& p) const {
-    // Every source of the node has h_i >= length and |p - Q_i| >= distance to the cylinder.
-    const Vector v = p - node.centre;
-    const double along = node.normal.dot(v);
-    const double across = std::sqrt(std::max(0.0, v.squaredNorm() - along * along));
-    const double above = std::max(0.0, std::abs(along) - node.half_thickness);
-    const double beside = std::max(0.0, across - node.radius);
-    return safely_ * (node.length + slope_ * std::sqrt(above * above + beside * beside));
-}
-
-void IsotropicCones::visit_leaf(const Leaf& leaf, const Point& p, double& smallest) const {
+void IsotropicCones::visit_leaf(std::uint32_t index, const Point& p, double& smallest,
+                                Hint& hint) const {
     // Negative where h_i + (g-1) |p - Q_i| may be below `smallest`: compared as squares, all lanes.
-    Lanes excess;
-    for (std::size_t i = 0; i < leaf_size; ++i) {
-        const double reach = smallest / safely_ - leaf.length[i];
-        const double x = leaf.x[i] - p.x();
-        const double y = leaf.y[i] - p.y();
-        const double z = leaf.z[i] - p.z();
-        excess[i] = reach > 0 ? slope_ * slope_ * (x * x + y * y + z * z) - reach * reach : 0;
-    }
-    for (std::size_t i = 0; i < leaf_size; ++i) {
-        if (excess[i] >= 0) continue;
+    const Leaf& leaf = leaves_[index];
+    const Lanes reach = (smallest / safely_ - leaf.length).max(0);
+    const Lanes excess =
+        slope_ * slope_ *
+            ((leaf.x - p.x()).square() + (leaf.y - p.y()).square() + (leaf.z - p.z()).square()) -
+        reach.square();
+    if (!(excess.minCoeff() < 0)) return;
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(leaf_size); ++i) {
+        if (!(excess[i] < 0)) continue;
         const double h = leaf.length[i];
         const PointSource source{{leaf.x[i], leaf.y[i], leaf.z[i]}, Metric::isotropic(h)};
-        smallest = std::min(smallest, cone_factor(source, g_, p) * h);
+        const double length = cone_factor(source, g_, p) * h;
+        if (length < smallest) {
+            smallest = length;
+            hint = index;
+        }
     }
 }
 
-double IsotropicCones::smallest_length(const Point& p, double cap) const {
+double IsotropicCones::smallest_length(const Point& p, Hint& hint) const {
+    return search(p, cap_, hint);
+}
+
+double IsotropicCones::search(const Point& p, double cap, Hint& hint) const {
+    if (leaves_.empty()) return cap;
+    double smallest = cap;
+    visit_leaf(std::min<std::uint32_t>(hint, shape_.first_leaf() - 1), p, smallest, hint);
     struct Postponed {
         double bound;
-        std::uint32_t node;
+        std::uint32_t level;
+        std::uint32_t node;  ///< within its level
     };
-    std::array<Postponed, 64> stack;  // at most one a level
+    // Seven siblings wait at each of at most eleven levels.
+    std::array<Postponed, 96> stack;
     std::size_t height = 0;
-    double smallest = cap;
-    if (shape_.size > 0) stack[height++] = {0, 1};
+    stack[height++] = {-infinity, 0, 0};
+    const std::size_t levels = first_of_level_.size() - 1;
     while (height > 0) {
-        auto [bound, node] = stack[--height];
-        while (bound < smallest && !shape_.is_leaf(node)) {
-            const double low = lower_bound(nodes_[2 * node], p);
-            const double high = lower_bound(nodes_[2 * node + 1], p);
-            const std::uint32_t nearer = low <= high ? 0 : 1;
-            stack[height++] = {std::max(low, high), 2 * node + (1 - nearer)};
-            bound = std::min(low, high);
-            node = 2 * node + nearer;
+        const Postponed next = stack[--height];
+        if (next.bound >= smallest) continue;
+        if (next.level == levels) {
+            visit_leaf(next.node, p, smallest, hint);
+            continue;
         }
-        if (bound < smallest) visit_leaf(leaves_[node - shape_.first_leaf()], p, smallest);
+        const Node& node = nodes_[first_of_level_[next.level] + next.node];
+        const Children bounds = lower_bounds(node, p);
+        const std::size_t floor = height;
+        for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(arity); ++c) {
+            if (!(bounds[c] < smallest)) continue;
+            // The nearest on top.
+            std::size_t place = height++;
+            for (; place > floor && stack[place - 1].bound < bounds[c]; --place) {
+                stack[place] = stack[place - 1];
+            }
+            stack[place] = {bounds[c], next.level + 1, arity * next.node + c};
+        }
     }
     return smallest;
 }

@@ -1,55 +1,77 @@
 #pragma once
 
-#include <array>
+#include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "geometry/point.h"
 #include "cones/cone_tree.h"
+#include "geometry/point.h"
 #include "sources/point_source.h"
 
 namespace controlspace {
 
 /// Lower envelope of the cones h_i + (g-1) |p - Q_i| of isotropic sources: what the exact field of
-/// paper §5.2 is where no source is anisotropic. Branch and bound in a bounding-volume hierarchy.
+/// paper §5.2 is where no source is anisotropic. Branch and bound in a bounding-volume hierarchy
+/// with eight children a node.
 class IsotropicCones {
 public:
-    /// All metrics must be isotropic, g >= 1.
-    IsotropicCones(std::span<const PointSource> sources, double g);
+    /// All metrics must be isotropic, g >= 1. Lengths of `cap` or more do not matter.
+    IsotropicCones(std::span<const PointSource> sources, double g, double cap);
 
-    /// The smallest length of all cones at `p`, or `cap` where none is below it: to the bit the
-    /// minimum over all sources of `cone_factor` times the source's length.
-    double smallest_length(const Point& p, double cap) const;
+    /// Where a search starts from: best at the place where the last one nearby ended.
+    using Hint = std::uint32_t;
+
+    /// The smallest length of all cones at `p`, or the cap where none is below it: to the bit the
+    /// minimum over all sources of `cone_factor` times the source's length, whatever `hint` is.
+    double smallest_length(const Point& p, Hint& hint) const;
+
+    /// Sources that are the smallest nowhere, and were left out.
+    std::size_t dropped() const { return dropped_; }
+
+    /// Bytes allocated: of the lengths, and of what finds them.
+    std::size_t bytes_payload() const { return leaves_.capacity() * sizeof(Lanes); }
+    std::size_t bytes_topology() const {
+        return leaves_.capacity() * (sizeof(Leaf) - sizeof(Lanes)) +
+               nodes_.capacity() * sizeof(Node) + first_of_level_.capacity() * sizeof(std::size_t);
+    }
 
 private:
-    static constexpr std::size_t leaf_size = 16;
-    using Lanes = std::array<double, leaf_size>;
+    static constexpr std::uint64_t leaf_size = 16;
+    static constexpr int arity_bits = 3;
+    static constexpr int arity = 1 << arity_bits;
+    // Unaligned, so that vectors of them take memory as everything else does.
+    using Lanes = Eigen::Array<double, leaf_size, 1, Eigen::DontAlign>;
+    using Children = Eigen::Array<double, arity, 1, Eigen::DontAlign>;
 
-    /// A flat cylinder around the positions: sources mostly lie on surfaces, whose tangential
-    /// pieces it fits closely where an axis-aligned box does not.
+    /// Bounds of the sources of each child: a flat cylinder around their positions, and their
+    /// smallest length. Sources mostly lie on surfaces, whose tangential pieces a cylinder fits
+    /// closely where an axis-aligned box does not. Lengths are infinite where there is no child.
     struct Node {
-        Point centre;
-        Vector normal;  ///< the axis, of unit length
-        double half_thickness;
-        double radius;
-        double length;  ///< the smallest
+        Children x, y, z;                       ///< centre
+        Children normal_x, normal_y, normal_z;  ///< the axis, of unit length
+        Children half_thickness, radius, length;
     };
     struct Leaf {
-        Lanes x{}, y{}, z{}, length{};  ///< infinite lengths fill up the last lanes
+        Lanes x, y, z, length;  ///< infinite lengths fill up the last lanes
     };
+    struct Cylinder;
 
-    void make_leaf(std::uint32_t node, std::span<const PointSource> sources,
-                   std::span<const ConeTreeItem> items);
-    void enclose(std::uint32_t node, std::span<const ConeTreeItem> items);
-    double lower_bound(const Node& node, const Point& p) const;
-    void visit_leaf(const Leaf& leaf, const Point& p, double& smallest) const;
+    void build(std::span<ConeTreeItem> items, std::span<const PointSource> sources);
+    bool is_dominated(const PointSource& source) const;
+    Children lower_bounds(const Node& node, const Point& p) const;
+    void visit_leaf(std::uint32_t leaf, const Point& p, double& smallest, Hint& hint) const;
+    double search(const Point& p, double cap, Hint& hint) const;
 
     double g_;
     double slope_;
+    double cap_;
     double safely_;  ///< just below 1: makes bounds safe against rounding
+    std::size_t dropped_ = 0;
     ConeTreeShape shape_;
-    std::vector<Node> nodes_;
+    std::vector<Node> nodes_;                  ///< level by level
+    std::vector<std::size_t> first_of_level_;  ///< places in nodes_
     std::vector<Leaf> leaves_;
 };
 

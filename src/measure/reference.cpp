@@ -11,10 +11,9 @@
 #include <numeric>
 #include <utility>
 
-#include "error.h"
-#include "cones/anisotropic_cones.h"
 #include "cones/cone.h"
-#include "cones/isotropic_cones.h"
+#include "cones/cone_field.h"
+#include "error.h"
 #include "metric/intersection.h"
 
 namespace controlspace {
@@ -24,16 +23,21 @@ namespace {
 // Points of one task: enough that a task's start does not matter.
 constexpr std::size_t points_per_task = 64;
 
-template <class At>
-void for_all(std::span<const Point> x, std::span<Metric> out, At&& make_field) {
+template <class Block>
+void for_each_block(std::span<const Point> x, std::span<Metric> out, Block&& block) {
     assert(x.size() == out.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, x.size(), points_per_task),
                       [&](const tbb::blocked_range<std::size_t>& range) {
-                          auto field = make_field();
-                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                              out[i] = field(x[i]);
-                          }
+                          block(x.subspan(range.begin(), range.size()),
+                                out.subspan(range.begin(), range.size()));
                       });
+}
+
+template <class At>
+void for_all(std::span<const Point> x, std::span<Metric> out, At&& at) {
+    for_each_block(x, out, [&](auto points, auto metrics) {
+        std::transform(points.begin(), points.end(), metrics.begin(), at);
+    });
 }
 
 void require_ratio(double g) {
@@ -69,42 +73,18 @@ void require_usable(std::span<const PointSource> sources, double g, const Metric
     }
 }
 
-class IsotropicReference : public ReferenceField {
+class ExactReference : public ReferenceField {
 public:
-    IsotropicReference(std::span<const PointSource> sources, double g, const Metric& largest)
-        : cones_(sources, g), largest_(largest), longest_(eigen_frame(largest).lengths[2]) {}
+    ExactReference(std::span<const PointSource> sources, double g, const Metric& largest)
+        : field_(sources, g, largest) {}
 
     void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
-        for_all(x, out, [this] {
-            return [this](const Point& p) {
-                const double h = cones_.smallest_length(p, longest_);
-                return h < longest_ ? intersection(largest_, Metric::isotropic(h)) : largest_;
-            };
-        });
+        for_each_block(x, out,
+                       [this](auto points, auto metrics) { field_.evaluate(points, metrics); });
     }
 
 private:
-    IsotropicCones cones_;
-    Metric largest_;
-    double longest_;
-};
-
-class AnisotropicReference : public ReferenceField {
-public:
-    AnisotropicReference(std::span<const PointSource> sources, double g, const Metric& largest)
-        : cones_(sources, g), largest_(largest) {}
-
-    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
-        for_all(x, out, [this] {
-            return [this, queue = AnisotropicCones::Queue()](const Point& p) mutable {
-                return cones_.intersect(p, largest_, queue);
-            };
-        });
-    }
-
-private:
-    AnisotropicCones cones_;
-    Metric largest_;
+    ConeField field_;
 };
 
 class BruteForceReference : public ReferenceField {
@@ -116,7 +96,7 @@ public:
     }
 
     void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
-        for_all(x, out, [this] { return [this](const Point& p) { return at(p); }; });
+        for_all(x, out, [this](const Point& p) { return at(p); });
     }
 
 private:
@@ -148,11 +128,9 @@ public:
         : radius_(radius), h_(h), slope_(slope), largest_(largest) {}
 
     void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
-        for_all(x, out, [this] {
-            return [this](const Point& p) {
-                return Metric::isotropic(
-                    std::min(largest_, h_ + slope_ * std::abs(p.norm() - radius_)));
-            };
+        for_all(x, out, [this](const Point& p) {
+            return Metric::isotropic(
+                std::min(largest_, h_ + slope_ * std::abs(p.norm() - radius_)));
         });
     }
 
@@ -165,10 +143,7 @@ private:
 std::unique_ptr<ReferenceField> exact_reference(std::vector<PointSource> sources, double g,
                                                 const Metric& largest) {
     require_usable(sources, g, largest);
-    const bool isotropic = std::all_of(sources.begin(), sources.end(),
-                                       [](const PointSource& s) { return is_isotropic(s.metric); });
-    if (isotropic) return std::make_unique<IsotropicReference>(sources, g, largest);
-    return std::make_unique<AnisotropicReference>(sources, g, largest);
+    return std::make_unique<ExactReference>(sources, g, largest);
 }
 
 std::unique_ptr<ReferenceField> brute_force_reference(std::vector<PointSource> sources, double g,

@@ -19,12 +19,7 @@ public:
     virtual void evaluate(std::span<const Point> x, std::span<Metric> out) const = 0;
 };
 
-/// The exact field of paper §5.2: at p, the intersection of `largest` with the cones
-/// M_i (1 + (g-1) |M_i^-1 (p - Q_i)|) of all sources i, one after the other.
-///
-/// Intersecting three or more tensors depends on their order, so the order is part of the
-/// definition: cones are taken by their smallest length at p, ascending, and by index where equal.
-/// A cone that the metric reached so far is within changes nothing.
+/// The exact field of paper §5.2 (defined in cones/cone_field.h).
 ///
 /// Isotropic sources cost microseconds a query, whatever their number. Anisotropic ones cost what
 /// the definition asks for: about one source in thirty of a thin-layered sphere really shortens the

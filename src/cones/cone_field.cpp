@@ -1,0 +1,54 @@
+#include "cones/cone_field.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "cones/spatial_order.h"
+#include "metric/intersection.h"
+
+namespace controlspace {
+
+ConeField::ConeField(std::span<const PointSource> sources, double g, const Metric& largest,
+                     double tolerance)
+    : largest_(largest),
+      longest_(eigen_frame(largest).lengths[2]),
+      cones_(make_cones(sources, g, largest, tolerance)) {}
+
+ConeField::Cones ConeField::make_cones(std::span<const PointSource> sources, double g,
+                                       const Metric& largest, double tolerance) {
+    const bool isotropic = std::all_of(sources.begin(), sources.end(),
+                                       [](const PointSource& s) { return is_isotropic(s.metric); });
+    if (isotropic) return IsotropicCones(sources, g, eigen_frame(largest).lengths[2]);
+    return AnisotropicCones(sources, g, tolerance);
+}
+
+void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out) const {
+    assert(x.size() == out.size());
+    if (const auto* isotropic = std::get_if<IsotropicCones>(&cones_)) {
+        IsotropicCones::Hint hint = 0;
+        // Near the last place the hint is good, and the sources are in the caches.
+        for (const std::uint32_t i : spatial_order(x)) {
+            const double h = isotropic->smallest_length(x[i], hint);
+            out[i] = h < longest_ ? intersection(largest_, Metric::isotropic(h)) : largest_;
+        }
+    } else {
+        AnisotropicCones::Queue queue;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            out[i] = std::get<AnisotropicCones>(cones_).intersect(x[i], largest_, queue);
+        }
+    }
+}
+
+std::size_t ConeField::dropped() const {
+    return std::visit([](const auto& cones) { return cones.dropped(); }, cones_);
+}
+
+std::size_t ConeField::bytes_payload() const {
+    return std::visit([](const auto& cones) { return cones.bytes_payload(); }, cones_);
+}
+
+std::size_t ConeField::bytes_topology() const {
+    return std::visit([](const auto& cones) { return cones.bytes_topology(); }, cones_);
+}
+
+}  // namespace controlspace

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <variant>
+
+#include "cones/anisotropic_cones.h"
+#include "cones/isotropic_cones.h"
+#include "metric/metric.h"
+#include "sources/point_source.h"
+
+namespace controlspace {
+
+/// The exact field of paper §5.2: at p, the intersection of `largest` with the cones
+/// M_i (1 + (g-1) |M_i^-1 (p - Q_i)|) of all sources i, one after the other.
+///
+/// Intersecting three or more tensors depends on their order, so the order is part of the
+/// definition: cones are taken by their smallest length at p, ascending, and by index where equal.
+/// A cone that the metric reached so far is within changes nothing.
+class ConeField {
+public:
+    /// Positions must be finite, metrics positive definite, g >= 1. Builds on all of TBB's threads.
+    ///
+    /// With a `tolerance`, a cone is passed over where it would shorten no length of the metric
+    /// reached so far by more than that fraction. The answer is then longer than no cone by more
+    /// than this factor, but other cones may be met on the way, so it may differ a little more from
+    /// the exact one. 0, exact, by default; without effect on isotropic sources.
+    ConeField(std::span<const PointSource> sources, double g, const Metric& largest,
+              double tolerance = 0);
+
+    /// Metrics at `x`, on the calling thread. Thread-safe.
+    void evaluate(std::span<const Point> x, std::span<Metric> out) const;
+
+    /// Sources that were left out because others lie below them everywhere.
+    std::size_t dropped() const;
+
+    /// Bytes allocated: of the metrics kept, and of what finds them.
+    std::size_t bytes_payload() const;
+    std::size_t bytes_topology() const;
+
+private:
+    using Cones = std::variant<IsotropicCones, AnisotropicCones>;
+    static Cones make_cones(std::span<const PointSource> sources, double g, const Metric& largest,
+                            double tolerance);
+
+    Metric largest_;
+    double longest_;  ///< of the lengths of `largest_`
+    Cones cones_;
+};
+
+}  // namespace controlspace
