@@ -3,6 +3,7 @@
 #include <iterator>
 #include <vector>
 
+#include "baselines/direct.h"
 #include "baselines/uniform_grid.h"
 #ifdef CONTROLSPACE_OPENVDB
 #include "baselines/openvdb_grid.h"
@@ -37,6 +38,11 @@ std::vector<CatalogueEntry> all_structures() {
     all.push_back(grid<make_openvdb_grid, Interpolation::trilinear>(
         "openvdb-trilinear", "OpenVDB 5-4-3 tree, dense, a metric per voxel, trilinear"));
 #endif
+    all.push_back({.id = "direct",
+                   .description = "no structure: the sources, searched; exact everywhere",
+                   .exact_at_nodes = false,
+                   .make = make_direct,
+                   .graded_from_start = true});
     return all;
 }
 

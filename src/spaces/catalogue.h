@@ -20,6 +20,8 @@ struct CatalogueEntry {
     bool exact_at_nodes = true;    ///< answers a control node's own metric at its position
     int order = 0;                 ///< of interpolation: 0 constant, 1 linear, 2 quadratic
     std::unique_ptr<ControlSpace> (*make)(const SpaceOptions&);
+    /// Answers the cones of its sources at once, without gradation, and its nodes are the sources.
+    bool graded_from_start = false;
 };
 
 /// The six trees of the paper.

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
 #include <span>
 #include <vector>
@@ -10,9 +12,16 @@
 
 namespace controlspace {
 
-/// The structures that are no trees.
+/// The structures with a lattice of nodes.
 inline std::span<const CatalogueEntry> grids() {
-    return structures().subspan(tree_catalogue().size());
+    static const std::vector<CatalogueEntry> all = [] {
+        const auto others = structures().subspan(tree_catalogue().size());
+        std::vector<CatalogueEntry> lattices;
+        std::copy_if(others.begin(), others.end(), std::back_inserter(lattices),
+                     [](const CatalogueEntry& entry) { return !entry.graded_from_start; });
+        return lattices;
+    }();
+    return all;
 }
 
 /// 40 x 26 x 18 cells, none of them a cube or a whole number of OpenVDB's leaves.

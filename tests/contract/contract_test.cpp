@@ -103,7 +103,7 @@ TEST_CASE("gradation only makes smaller, and holds afterwards") {
             smaller = smaller && is_within(after[i], 1 + 1e-9, before[i]);
         }
         CHECK(smaller);
-        CHECK(after != before);
+        CHECK((after != before) != structure.entry->graded_from_start);
     });
 }
 
@@ -174,6 +174,7 @@ TEST_CASE("a constant is answered as such; assigning what was read changes nothi
         ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
         space->assign(nodes.metrics);
         CHECK(answers(*space, x) == before);
+        if (structure.entry->graded_from_start) return;  // a constant at the sources only
         std::fill(nodes.metrics.begin(), nodes.metrics.end(), constant);
         space->assign(nodes.metrics);
         for (const Metric& m : answers(*space, x)) CHECK(nonconformity(m, constant) < 1e-12);

@@ -1,0 +1,145 @@
+#include "baselines/direct.h"
+
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <stdexcept>
+#include <vector>
+
+#include "cones/cone_field.h"
+#include "error.h"
+
+namespace controlspace {
+
+namespace {
+
+double require_ratio(double ratio) {
+    if (!std::isfinite(ratio) || ratio < 1) {
+        throw InputError(
+            fmt::format("gradation ratio g_r is {}: give a finite value of at least 1", ratio));
+    }
+    return ratio;
+}
+
+class Direct final : public ControlSpace {
+public:
+    explicit Direct(const SpaceOptions& options)
+        : domain_(require_volume(options.domain)), ratio_(require_ratio(options.ratio)) {}
+
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+        const ConeField& cones = field();
+        const auto is_inside = [this](const Point& p) { return domain_.contains(p); };
+        if (std::all_of(x.begin(), x.end(), is_inside)) {
+            cones.evaluate(x, out);
+            return;
+        }
+        std::vector<Point> inside(x.begin(), x.end());
+        for (Point& p : inside) p = p.cwiseMax(domain_.low).cwiseMin(domain_.high);
+        cones.evaluate(inside, out);
+    }
+
+    Insertion insert(const PointSource& source) override {
+        append(source, 0);
+        return Insertion::inserted;
+    }
+
+    InsertionReport insert(std::span<const PointSource> sources) override {
+        // A source that is refused leaves those before it.
+        for (std::size_t i = 0; i < sources.size(); ++i) append(sources[i], i);
+        sources_.shrink_to_fit();
+        field();
+        return {sources.size(), sources.size()};
+    }
+
+    ControlNodes control_nodes(Neighbourhood) const override {
+        ControlNodes nodes;
+        NodeGraph graph;
+        graph.first.assign(sources_.size() + 1, 0);
+        for (const auto& [position, metric] : sources_) {
+            graph.positions.push_back(position);
+            nodes.metrics.push_back(metric);
+        }
+        nodes.graph = std::move(graph);
+        return nodes;
+    }
+
+    void assign(std::span<const Metric> metrics) override {
+        if (metrics.size() != sources_.size()) {
+            throw std::invalid_argument("assign() takes one metric for each control node");
+        }
+        for (std::size_t i = 0; i < metrics.size(); ++i) sources_[i].metric = metrics[i];
+        built_ = false;
+    }
+
+    GradationReport grade(const GradationOptions& options) override {
+        const double before = ratio_;
+        ratio_ = require_ratio(options.ratio);
+        if (ratio_ != before) built_ = false;
+        field();
+        return {};
+    }
+
+    const Box& domain() const override { return domain_; }
+    Box element_at(const Point&) const override { return domain_; }
+
+    Footprint footprint() const override {
+        const ConeField& cones = field();
+        Footprint footprint;
+        footprint.elements = 1;
+        footprint.control_nodes = sources_.size();
+        footprint.depth = 1;
+        footprint.bytes_payload = cones.bytes_payload();
+        footprint.bytes_topology = cones.bytes_topology();
+        footprint.bytes_auxiliary = sources_.capacity() * sizeof(PointSource);
+        footprint.remark = fmt::format("cone law of ratio {}; {} of {} sources can matter", ratio_,
+                                       sources_.size() - cones.dropped(), sources_.size());
+        return footprint;
+    }
+
+private:
+    void append(const PointSource& source, std::size_t index) {
+        require_valid(source, index, domain_);
+        if (sources_.size() >= std::numeric_limits<std::uint32_t>::max() / 2) {
+            throw InputError("sources kept as they are: give fewer than 2^31");
+        }
+        sources_.push_back(source);
+        built_ = false;
+    }
+
+    // Readers may come here at once after a single insertion: one builds, the others wait.
+    const ConeField& field() const {
+        if (built_) return *field_;
+        const std::lock_guard lock(building_);
+        if (!built_) {
+            field_.reset();
+            // Isolated: a thread that waits for its part of the work must not take up another task
+            // that reads, and comes here again.
+            tbb::this_task_arena::isolate([this] {
+                field_ = std::make_unique<ConeField>(sources_, ratio_,
+                                                     Metric::isotropic(domain_.half_diagonal()));
+            });
+            built_ = true;
+        }
+        return *field_;
+    }
+
+    Box domain_;
+    double ratio_;
+    std::vector<PointSource> sources_;  ///< as inserted
+    mutable std::mutex building_;
+    mutable std::atomic<bool> built_ = false;
+    mutable std::unique_ptr<ConeField> field_;  ///< of all sources, once built
+};
+
+}  // namespace
+
+std::unique_ptr<ControlSpace> make_direct(const SpaceOptions& options) {
+    return std::make_unique<Direct>(options);
+}
+
+}  // namespace controlspace

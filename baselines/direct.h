@@ -1,0 +1,24 @@
+#pragma once
+
+#include <memory>
+
+#include "spaces/catalogue.h"
+#include "spaces/control_space.h"
+
+namespace controlspace {
+
+/// No structure at all: keeps the sources and answers the exact field of their cones (paper §5.2,
+/// cones/cone_field.h) by a search among them. Exact everywhere, but every answer is a search.
+///
+/// It is graded from the start, to the `ratio` of its options; `grade` only changes that ratio,
+/// whatever the law and the schedule. Every source is kept, those that cannot matter being left out
+/// of the search; `insert` always answers `inserted`. Control nodes are the sources, in order of
+/// insertion, without neighbours: a node's metric is what its source asks for, and the field at its
+/// place is smaller where another source's cone is.
+///
+/// The search is built at the end of a batch; after a single insertion or `assign`, by the next
+/// reading, on all of TBB's threads. That takes time in proportion to the number of all sources.
+/// Throws InputError for an invalid domain or ratio, and where there are 2^31 sources.
+std::unique_ptr<ControlSpace> make_direct(const SpaceOptions& options);
+
+}  // namespace controlspace

@@ -1,0 +1,164 @@
+#include "baselines/direct.h"
+
+#include <tbb/parallel_for.h>
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "baselines/fixtures.h"
+#include "counting_allocator.h"
+#include "error.h"
+#include "measure/reference.h"
+
+using Catch::Matchers::Contains;
+
+namespace controlspace {
+
+namespace {
+
+SpaceOptions with_ratio(double ratio) {
+    SpaceOptions options;
+    options.domain = {Point(-1, -1, 2), Point(1, 0.28, 2.89)};
+    options.finest_length = 0.1;
+    options.ratio = ratio;
+    return options;
+}
+
+std::vector<PointSource> sources_for(const SpaceOptions& options, std::size_t n, bool isotropic) {
+    auto sources = random_sources(n, options);
+    if (isotropic) {
+        for (PointSource& s : sources) s.metric = Metric::isotropic(s.metric.xx);
+    }
+    return sources;
+}
+
+std::vector<Point> places(const SpaceOptions& options, std::size_t n) {
+    std::mt19937_64 random(3);
+    std::vector<Point> x;
+    for (std::size_t i = 0; i < n; ++i) x.push_back(random_point(random, options.domain));
+    return x;
+}
+
+std::vector<Metric> by_definition(const SpaceOptions& options,
+                                  const std::vector<PointSource>& sources, double ratio,
+                                  const std::vector<Point>& x) {
+    std::vector<Metric> out(x.size());
+    brute_force_reference(sources, ratio, largest_metric(options.domain))->evaluate(x, out);
+    return out;
+}
+
+double largest_difference(const std::vector<Metric>& a, const std::vector<Metric>& b) {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, difference(a[i], b[i]));
+    return largest;
+}
+
+}  // namespace
+
+TEST_CASE("direct answers the exact field, for the ratio it is graded with") {
+    const bool isotropic = GENERATE(true, false);
+    const SpaceOptions options = with_ratio(1.25);
+    const auto sources = sources_for(options, 300, isotropic);
+    const auto x = places(options, 300);
+    const auto space = make_direct(options);
+    CHECK(space->insert(sources).inserted == sources.size());
+    CHECK(largest_difference(sample(*space, x), by_definition(options, sources, 1.25, x)) < 1e-12);
+    space->grade(
+        {.law = GradationLaw::mean_length, .schedule = GradationSchedule::passes, .ratio = 1.25});
+    CHECK(largest_difference(sample(*space, x), by_definition(options, sources, 1.25, x)) < 1e-12);
+    space->grade({.ratio = 1.6});
+    CHECK(largest_difference(sample(*space, x), by_definition(options, sources, 1.6, x)) < 1e-12);
+    CHECK_THROWS_AS(space->grade({.ratio = 0.9}), InputError);
+}
+
+TEST_CASE("sources that come later, between readings, count as all others do") {
+    const bool isotropic = GENERATE(true, false);
+    const SpaceOptions options = with_ratio(1.25);
+    const auto sources = sources_for(options, 200, isotropic);
+    const auto x = places(options, 100);
+    const auto at_once = make_direct(options);
+    at_once->insert(sources);
+
+    const auto in_turn = make_direct(options);
+    const std::span<const PointSource> all = sources;
+    in_turn->insert(all.first(150));
+    const std::vector<Metric> before = sample(*in_turn, x);
+    for (const PointSource& source : all.subspan(150)) {
+        CHECK(in_turn->insert(source) == Insertion::inserted);
+        sample_at(*in_turn, source.position);
+    }
+    CHECK(sample(*in_turn, x) == sample(*at_once, x));
+    CHECK(sample(*in_turn, x) != before);
+}
+
+TEST_CASE("many readers at once build the search once, in tasks and in tasks of tasks") {
+    const SpaceOptions options = with_ratio(1.25);
+    const auto sources = sources_for(options, 20000, true);
+    const auto x = places(options, 64);
+    const auto space = make_direct(options);
+    space->insert(sources);
+    const auto expected = sample(*space, x);
+    for (int repeat = 0; repeat < 3; ++repeat) {
+        space->insert(sources.front());  // changes nothing but that the search must be built anew
+        std::vector<Metric> out(x.size());
+        tbb::parallel_for(std::size_t{0}, x.size(),
+                          [&](std::size_t i) { out[i] = sample_at(*space, x[i]); });
+        CHECK(out == expected);
+    }
+}
+
+TEST_CASE("the nodes of direct are its sources, and can be changed") {
+    const SpaceOptions options = with_ratio(1.25);
+    auto sources = sources_for(options, 50, false);
+    const auto space = make_direct(options);
+    space->insert(sources);
+    ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
+    REQUIRE(nodes.metrics.size() == sources.size());
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        CHECK(std::get<NodeGraph>(nodes.graph).positions[i] == sources[i].position);
+        CHECK(nodes.metrics[i] == sources[i].metric);
+        sources[i].metric = nodes.metrics[i] = 2.0 * nodes.metrics[i];
+    }
+    space->assign(nodes.metrics);
+    const auto x = places(options, 100);
+    CHECK(largest_difference(sample(*space, x), by_definition(options, sources, 1.25, x)) < 1e-12);
+    nodes.metrics.pop_back();
+    CHECK_THROWS_AS(space->assign(nodes.metrics), std::invalid_argument);
+}
+
+TEST_CASE("the footprint of direct is what it has allocated") {
+    const bool isotropic = GENERATE(true, false);
+    const SpaceOptions options = with_ratio(1.25);
+    const auto sources = sources_for(options, 3000, isotropic);
+    make_direct(options)->insert(sources);  // whatever the task scheduler keeps to itself
+    const std::size_t before = live_bytes();
+    auto space = make_direct(options);
+    space->insert(sources);
+    const std::size_t allocated = live_bytes() - before;
+    const std::size_t counted = space->footprint().bytes_total();
+    CHECK(counted <= allocated);
+    CHECK(counted + 1024 >= allocated);
+    space.reset();
+    CHECK(live_bytes() == before);
+}
+
+TEST_CASE("direct says how many of its sources can matter") {
+    const SpaceOptions options = with_ratio(1.25);
+    const auto space = make_direct(options);
+    const PointSource governs{options.domain.centre(), Metric::isotropic(0.1)};
+    space->insert(governs);
+    space->insert(governs);
+    space->insert({options.domain.low, Metric::isotropic(1)});
+    const Footprint footprint = space->footprint();
+    CHECK(footprint.control_nodes == 3);
+    CHECK_THAT(footprint.remark, Contains("1 of 3 sources"));
+}
+
+TEST_CASE("direct refuses a ratio that is none") {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double ratio : {0.5, nan, std::numeric_limits<double>::infinity()}) {
+        CHECK_THROWS_WITH(make_direct(with_ratio(ratio)), Contains("g_r"));
+    }
+}
+
+}  // namespace controlspace
