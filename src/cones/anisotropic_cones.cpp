@@ -1,9 +1,12 @@
 #include "cones/anisotropic_cones.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "cones/cone.h"
 #include "metric/intersection.h"
@@ -26,6 +29,20 @@ namespace controlspace {
 //        |M_i^-1 (p - Q_i)| >= |V (p - c)| - |V (Q_i - c)| >= |V (p - c)| - R,
 //    hence f_i >= f = 1 + (g-1) max(0, |V (p - c)| - R). No cone of the node is shorter than
 //    f min_i (smallest length of M_i), and L f <= C_i for all i: if X <= L f, drop the node.
+//
+// Which sources cannot matter
+// ---------------------------
+// Source i may be left out if a source j has C_j < C_i wherever C_i is shorter than the cap in any
+// direction: there the smallest length of C_j is less, so C_j comes first, and by 1. C_i changes
+// nothing any more; elsewhere it changes nothing by 2. Lengths get strictly smaller from i to j to
+// j's own dominator and on, so all such sources may be left out at once.
+// Let v = p - Q_i, t = (g-1) |M_i^-1 v|, k = f_j(Q_i), and r = max |M_j^-1 u| / |M_i^-1 u| over all
+// u, the growth from M_j to M_i. Then
+//     C_i = (1 + t) M_i,    C_j <= (k + (g-1) |M_j^-1 v|) M_j <= (k + r t) M_j,
+// by the triangle inequality. C_i matters for t < T = cap / (smallest length of M_i) - 1 only, and
+// (k + r t) / (1 + t) is monotonous in t, so it is at most s = max(k, (k + r T) / (1 + T)):
+//     s M_j < M_i    is enough.
+// Of equal sources at one place all but the first change nothing, and are left out too.
 //
 // Rounding: a length computed from a tensor of anisotropy k is uncertain by some k epsilon, more so
 // where thirty tensors have been intersected on the way to the root; bounds give way by that much
@@ -78,10 +95,21 @@ bool certainly_below(const Metric& a2, double b_factor, const Metric& b2) {
 struct Accumulated {
     Metric metric;
     Metric squared;
-    double longest;
+    double longest;  // or more: it only gets shorter, and is brought up to date now and then
 
     explicit Accumulated(const Metric& m)
         : metric(m), squared(square(m)), longest(eigen_frame(m).lengths[2]) {}
+
+    void shorten_to(const Metric& m) {
+        if (m == metric) return;
+        metric = m;
+        squared = square(m);
+        constexpr unsigned now_and_then = 8;
+        if (++changes % now_and_then == 0) longest = eigen_frame(m).lengths[2];
+    }
+
+private:
+    unsigned changes = 0;
 };
 
 struct Later {
@@ -93,29 +121,53 @@ struct Later {
 
 }  // namespace
 
-AnisotropicCones::AnisotropicCones(std::span<const PointSource> sources, double g, double tolerance)
-    : g_(g),
-      tolerance_(tolerance),
-      shape_(ConeTreeShape::with_leaves_of(sources.size(), leaf_size)),
-      cones_(sources.size()),
-      nodes_(shape_.nodes()) {
-    std::vector<Cone> given(sources.size());
+AnisotropicCones::AnisotropicCones(std::span<const PointSource> sources, double g, double cap,
+                                   double tolerance)
+    : g_(g), cap_(cap), tolerance_(tolerance) {
+    std::vector<Cone> cones(sources.size());
     std::vector<double> anisotropies(sources.size());
-    std::vector<ConeTreeItem> items(sources.size());
-    const double weight = g > 1 ? 1 / (g - 1) : 1;
     tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t i) {
-        const auto index = static_cast<std::uint32_t>(i);
         const auto lengths = eigen_frame(sources[i].metric).lengths;
-        given[i] = {sources[i], lengths[0], index};
+        cones[i] = {sources[i], lengths[0], static_cast<std::uint32_t>(i)};
         anisotropies[i] = lengths[2] / lengths[0];
-        const Point& q = sources[i].position;
-        items[i] = {{q.x(), q.y(), q.z(), weight * lengths[0]}, index};
     });
     for (const double a : anisotropies) uncertainty_ = std::max(uncertainty_, 4096 * epsilon * a);
     uncertainty_ = std::min(uncertainty_, 1.0);
 
+    const auto key = [](const Cone& c) {
+        const auto& [q, m] = c.source;
+        return std::tie(q.x(), q.y(), q.z(), m.xx, m.yy, m.zz, m.xy, m.xz, m.yz, c.index);
+    };
+    tbb::parallel_sort(cones.begin(), cones.end(),
+                       [&](const Cone& a, const Cone& b) { return key(a) < key(b); });
+    cones.erase(std::unique(cones.begin(), cones.end(),
+                            [](const Cone& a, const Cone& b) { return a.source == b.source; }),
+                cones.end());
+    build(std::move(cones));
+
+    std::vector<std::uint8_t> dominated(cones_.size());
+    tbb::parallel_for(std::size_t{0}, cones_.size(),
+                      [&](std::size_t i) { dominated[i] = is_dominated(cones_[i]) ? 1 : 0; });
+    std::vector<Cone> kept;
+    for (std::size_t i = 0; i < cones_.size(); ++i) {
+        if (dominated[i] == 0) kept.push_back(cones_[i]);
+    }
+    dropped_ = sources.size() - kept.size();
+    if (kept.size() < cones_.size()) build(std::move(kept));
+}
+
+void AnisotropicCones::build(std::vector<Cone> cones) {
+    shape_ = ConeTreeShape::with_leaves_of(cones.size(), leaf_size);
+    const double weight = g_ > 1 ? 1 / (g_ - 1) : 1;
+    std::vector<ConeTreeItem> items(cones.size());
+    for (std::size_t i = 0; i < cones.size(); ++i) {
+        const Point& q = cones[i].source.position;
+        items[i] = {{q.x(), q.y(), q.z(), weight * cones[i].length}, static_cast<std::uint32_t>(i)};
+    }
     sort_for_tree(shape_, items);
-    for (std::size_t i = 0; i < items.size(); ++i) cones_[i] = given[items[i].index];
+    cones_ = std::vector<Cone>(cones.size());
+    for (std::size_t i = 0; i < items.size(); ++i) cones_[i] = cones[items[i].index];
+    nodes_ = std::vector<Node>(shape_.nodes());
     if (cones_.empty()) return;
     for (std::uint32_t first = shape_.first_leaf(); first > 0; first /= 2) {
         tbb::parallel_for(first, 2 * first, [this](std::uint32_t node) {
@@ -124,6 +176,36 @@ AnisotropicCones::AnisotropicCones(std::span<const PointSource> sources, double 
         });
     }
     for (Node& node : nodes_) node.square = square(node.square);
+}
+
+bool AnisotropicCones::is_dominated(const Cone& cone) const {
+    const double certain = 1 - uncertainty_;
+    const double reach = std::max(0.0, cap_ / cone.length - 1);
+    const Metric squared = square(cone.source.metric);
+    const Point& q = cone.source.position;
+    const auto by = [&](const Cone& other) {
+        const double k = cone_factor(other.source, g_, q);
+        const auto is_below = [&](double factor) {
+            const double safe = factor / certain;
+            return certainly_below(safe * safe * square(other.source.metric), 1, squared);
+        };
+        if (!(k * other.length < certain * cone.length) || !is_below(k)) return false;
+        const double r = growth(cone.source.metric, other.source.metric);
+        return is_below(std::max(k, (k + r * reach) / (1 + reach)));
+    };
+    std::vector<std::uint32_t> stack{1};
+    while (!stack.empty()) {
+        const std::uint32_t n = stack.back();
+        stack.pop_back();
+        if (!(least_factor(nodes_[n], q) * nodes_[n].length < cone.length)) continue;
+        if (!shape_.is_leaf(n)) {
+            stack.insert(stack.end(), {2 * n, 2 * n + 1});
+        } else if (std::any_of(cones_.data() + shape_.begin(n), cones_.data() + shape_.end(n),
+                               by)) {
+            return true;
+        }
+    }
+    return false;
 }
 
 void AnisotropicCones::make_leaf(std::uint32_t n) {
@@ -218,8 +300,7 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, Queue&
             const PointSource& source = cones_[next.place].source;
             const double factor = cone_factor(source, g_, p);
             if (within(next.length, factor, square(source.metric))) continue;
-            const Metric smaller = intersection(found.metric, factor * source.metric);
-            if (smaller != found.metric) found = Accumulated(smaller);
+            found.shorten_to(intersection(found.metric, factor * source.metric));
         }
     }
     return found.metric;

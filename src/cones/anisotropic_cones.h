@@ -15,8 +15,8 @@ namespace controlspace {
 /// bounding-volume hierarchy; only cones that provably leave the result as it is are left out.
 class AnisotropicCones {
 public:
-    /// g >= 1; `tolerance` as ConeField has it.
-    AnisotropicCones(std::span<const PointSource> sources, double g, double tolerance);
+    /// g >= 1; `tolerance` as ConeField has it. Lengths of `cap` or more do not matter.
+    AnisotropicCones(std::span<const PointSource> sources, double g, double cap, double tolerance);
 
     /// A cone or a node of the hierarchy that waits for its turn.
     struct Waiting {
@@ -27,7 +27,7 @@ public:
     /// Memory of `intersect`, to be kept from one call to the next.
     using Queue = std::vector<Waiting>;
 
-    /// `largest` intersected with the cones at `p`, one after the other.
+    /// `largest`, no longer than the cap, intersected with the cones at `p`, one after the other.
     Metric intersect(const Point& p, const Metric& largest, Queue& queue) const;
 
     /// Sources that change the result nowhere, and were left out.
@@ -55,12 +55,15 @@ private:
         double length;   ///< smallest of all M_i
     };
 
+    void build(std::vector<Cone> cones);
+    bool is_dominated(const Cone& cone) const;
     void make_leaf(std::uint32_t node);
     void merge(std::uint32_t node);
     void enclose(std::uint32_t node);
     double least_factor(const Node& node, const Point& p) const;
 
     double g_;
+    double cap_;
     double tolerance_;
     std::size_t dropped_ = 0;
     double uncertainty_ = 0;  ///< relative, of lengths computed from the metrics given

@@ -18,8 +18,9 @@ ConeField::Cones ConeField::make_cones(std::span<const PointSource> sources, dou
                                        const Metric& largest, double tolerance) {
     const bool isotropic = std::all_of(sources.begin(), sources.end(),
                                        [](const PointSource& s) { return is_isotropic(s.metric); });
-    if (isotropic) return IsotropicCones(sources, g, eigen_frame(largest).lengths[2]);
-    return AnisotropicCones(sources, g, tolerance);
+    const double cap = eigen_frame(largest).lengths[2];
+    if (isotropic) return IsotropicCones(sources, g, cap);
+    return AnisotropicCones(sources, g, cap, tolerance);
 }
 
 void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out) const {

@@ -1,0 +1,173 @@
+#include "cones/cone_field.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "cones/cone.h"
+#include "cones/spatial_order.h"
+#include "measure/reference.h"
+#include "metric/draw.h"
+#include "metric/intersection.h"
+#include "sources/sampled_surfaces.h"
+
+using namespace controlspace;
+
+namespace {
+
+constexpr double g = 1.25;
+const Metric wide = Metric::isotropic(2);
+
+std::vector<Point> places(Draw& draw, int n) {
+    std::vector<Point> points;
+    for (int i = 0; i < n; ++i) points.emplace_back(draw.vector());
+    return points;
+}
+
+// Lengths over two decades: many sources lie within the reach of smaller ones.
+std::vector<PointSource> scattered(Draw& draw, int n, double anisotropy) {
+    std::vector<PointSource> sources;
+    for (const Point& q : places(draw, n)) {
+        const double size = 0.02 * std::pow(100, draw.uniform(0, 1));
+        sources.push_back(
+            {q, anisotropy > 1 ? draw.metric(size, anisotropy) : Metric::isotropic(size)});
+    }
+    return sources;
+}
+
+std::vector<Metric> evaluated(const ConeField& field, const std::vector<Point>& points) {
+    std::vector<Metric> out(points.size());
+    field.evaluate(points, out);
+    return out;
+}
+
+std::vector<Metric> by_definition(const std::vector<PointSource>& sources,
+                                  const std::vector<Point>& points) {
+    std::vector<Metric> out(points.size());
+    brute_force_reference(sources, g, wide)->evaluate(points, out);
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("Isotropic sources that another's cone reaches are dropped, and no others") {
+    Draw draw(1);
+    const auto sources = scattered(draw, 1000, 1);
+    const auto reached = [&](const PointSource& i) {
+        return std::any_of(sources.begin(), sources.end(), [&](const PointSource& j) {
+            return cone_factor(j, g, i.position) * j.metric.xx < i.metric.xx;
+        });
+    };
+    const auto count = std::count_if(sources.begin(), sources.end(), reached);
+    const ConeField field(sources, g, wide);
+    CHECK(count > 100);
+    CHECK(count < 900);
+    CHECK(field.dropped() == static_cast<std::size_t>(count));
+    const auto points = places(draw, 300);
+    CHECK(evaluated(field, points) == by_definition(sources, points));
+}
+
+TEST_CASE("Sources that are there twice are dropped once") {
+    const double s_n = GENERATE(1.0, 0.25);
+    auto sources = sample_sphere({.h = 0.1, .s_n = s_n, .rho = 1});
+    std::vector<PointSource> different;
+    for (const PointSource& s : sources) {
+        if (std::find(different.begin(), different.end(), s) == different.end())
+            different.push_back(s);
+    }
+    const std::size_t twice = sources.size() - different.size();
+    CHECK(twice > 0);
+    CHECK(ConeField(sources, g, wide).dropped() == twice);
+}
+
+TEST_CASE("Anisotropic sources that cannot matter are dropped, and the field stays") {
+    const Metric m = metric_from_frame({0.1, 0.2, 0.4}, Draw(2).rotation());
+    const PointSource governs{Point::Zero(), m};
+    const Point away(0.3, 0, 0);
+    const double k = cone_factor(governs, g, away);
+    const auto dropped = [&](const PointSource& other) {
+        const std::vector<PointSource> sources{governs, other};
+        const ConeField field(sources, g, wide);
+        Draw draw(3);
+        const auto points = places(draw, 100);
+        const auto now = evaluated(field, points);
+        const auto wanted = by_definition(sources, points);
+        double worst = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            worst = std::max(worst, difference(now[i], wanted[i]));
+        }
+        CHECK(worst < 1e-12);
+        return field.dropped() == 1;
+    };
+    CHECK(dropped(governs));
+    // Of the same shape, just outside of the cone and just within.
+    CHECK(dropped({away, 1.001 * k * m}));
+    CHECK_FALSE(dropped({away, 0.999 * k * m}));
+    // Of another shape, outside of the cone here. Further out the cone outgrows it, so it can be
+    // left out only if it has met the largest metric by then.
+    const Metric longer{0.5, 0.45, 0.5, 0, 0, 0};
+    CHECK(is_within(m, k, longer));
+    CHECK_FALSE(dropped({away, longer}));
+    CHECK(dropped({away, 4.0 * longer}));
+    // Crossing.
+    CHECK_FALSE(dropped({Point::Zero(), metric_from_frame({0.1, 0.2, 0.4}, Draw(4).rotation())}));
+}
+
+TEST_CASE("Dropping anisotropic sources of many sizes leaves the field as it is") {
+    const double anisotropy = GENERATE(1.01, 1.3, 4.0);
+    Draw draw(5);
+    auto sources = scattered(draw, 400, anisotropy);
+    const auto points = places(draw, 200);
+    const ConeField field(sources, g, wide);
+    const auto now = evaluated(field, points);
+    const auto wanted = by_definition(sources, points);
+    double worst = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        worst = std::max(worst, difference(now[i], wanted[i]));
+    }
+    CHECK(worst < 1e-12);
+    if (anisotropy < 1.1) CHECK(field.dropped() > 40);
+}
+
+TEST_CASE("With a tolerance no cone is exceeded by more") {
+    Draw draw(6);
+    const auto sources = sample_sphere({.h = 0.1, .s_a = 4, .s_n = 0.25});
+    const auto points = places(draw, 100);
+    const auto exact = evaluated(ConeField(sources, g, wide), points);
+    for (const double tolerance : {1e-6, 1e-3, 1e-1}) {
+        const auto near = evaluated(ConeField(sources, g, wide, tolerance), points);
+        double worst = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            for (const PointSource& s : sources) {
+                const double factor = cone_factor(s, g, points[i]);
+                worst = std::max(worst, growth(near[i], factor * s.metric) - 1);
+            }
+        }
+        CHECK(worst < tolerance * (1 + 1e-6));
+        CHECK(near != exact);
+    }
+}
+
+TEST_CASE("A spatial order names every point once, and neighbours together") {
+    Draw draw(7);
+    std::vector<Point> points = places(draw, 5000);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const auto way = [&](const std::vector<std::uint32_t>& order) {
+        double sum = 0;
+        for (std::size_t i = 1; i < order.size(); ++i) {
+            sum += (points[order[i]] - points[order[i - 1]]).norm();
+        }
+        return sum;
+    };
+    auto order = spatial_order(points);
+    auto sorted = order;
+    std::sort(sorted.begin(), sorted.end());
+    for (std::uint32_t i = 0; i < sorted.size(); ++i) REQUIRE(sorted[i] == i);
+    CHECK(way(order) < 0.2 * way(sorted));
+
+    CHECK(spatial_order({}).empty());
+    CHECK(spatial_order(std::vector<Point>(3, Point::Zero())).size() == 3);
+    points[10] = Point::Constant(nan);
+    points[11] = Point::Constant(std::numeric_limits<double>::infinity());
+    CHECK(spatial_order(points).size() == points.size());
+}
