@@ -128,7 +128,8 @@ AnisotropicCones::AnisotropicCones(std::span<const PointSource> sources, double 
     std::vector<double> anisotropies(sources.size());
     tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t i) {
         const auto lengths = eigen_frame(sources[i].metric).lengths;
-        cones[i] = {sources[i], lengths[0], static_cast<std::uint32_t>(i)};
+        cones[i] = {sources[i], square(sources[i].metric), lengths[0],
+                    static_cast<std::uint32_t>(i)};
         anisotropies[i] = lengths[2] / lengths[0];
     });
     for (const double a : anisotropies) uncertainty_ = std::max(uncertainty_, 4096 * epsilon * a);
@@ -181,13 +182,12 @@ void AnisotropicCones::build(std::vector<Cone> cones) {
 bool AnisotropicCones::is_dominated(const Cone& cone) const {
     const double certain = 1 - uncertainty_;
     const double reach = std::max(0.0, cap_ / cone.length - 1);
-    const Metric squared = square(cone.source.metric);
     const Point& q = cone.source.position;
     const auto by = [&](const Cone& other) {
         const double k = cone_factor(other.source, g_, q);
         const auto is_below = [&](double factor) {
             const double safe = factor / certain;
-            return certainly_below(safe * safe * square(other.source.metric), 1, squared);
+            return certainly_below(safe * safe * other.square, 1, cone.square);
         };
         if (!(k * other.length < certain * cone.length) || !is_below(k)) return false;
         const double r = growth(cone.source.metric, other.source.metric);
@@ -197,7 +197,7 @@ bool AnisotropicCones::is_dominated(const Cone& cone) const {
     while (!stack.empty()) {
         const std::uint32_t n = stack.back();
         stack.pop_back();
-        if (!(least_factor(nodes_[n], q) * nodes_[n].length < cone.length)) continue;
+        if (!(least_factor(nodes_[n], q) * nodes_[n].length < certain * cone.length)) continue;
         if (!shape_.is_leaf(n)) {
             stack.insert(stack.end(), {2 * n, 2 * n + 1});
         } else if (std::any_of(cones_.data() + shape_.begin(n), cones_.data() + shape_.end(n),
@@ -273,7 +273,7 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, Queue&
         const Cone& cone = cones_[place];
         const double factor = cone_factor(cone.source, g_, p);
         const double shortest = factor * cone.length;
-        if (!within(shortest, factor, square(cone.source.metric))) {
+        if (!within(shortest, factor, cone.square)) {
             wait({shortest, cone.index + 1, place});
         }
     };
@@ -297,10 +297,10 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, Queue&
                 }
             }
         } else {
-            const PointSource& source = cones_[next.place].source;
-            const double factor = cone_factor(source, g_, p);
-            if (within(next.length, factor, square(source.metric))) continue;
-            found.shorten_to(intersection(found.metric, factor * source.metric));
+            const Cone& cone = cones_[next.place];
+            if (within(next.length, next.length / cone.length, cone.square)) continue;
+            const double factor = cone_factor(cone.source, g_, p);
+            found.shorten_to(intersection(found.metric, factor * cone.source.metric));
         }
     }
     return found.metric;

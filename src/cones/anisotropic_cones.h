@@ -43,6 +43,7 @@ public:
 private:
     struct Cone {
         PointSource source;
+        Metric square;  ///< of the metric
         double length;  ///< the metric's smallest
         std::uint32_t index;
     };
