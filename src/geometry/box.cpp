@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string_view>
 
 #include "error.h"
 
@@ -26,12 +29,26 @@ Box bounding_box(std::span<const Point> points, double margin) {
 }
 
 const Box& require_volume(const Box& box) {
+    // With fewer places across it than this, boxes within it cannot be halved as often as needed.
+    constexpr double least_places = 1e6;
     for (Axis a = 0; a < 3; ++a) {
-        const double edge = box.edges()[a];
-        if (!std::isfinite(edge) || !(edge > 0)) {
+        const auto fail = [&](std::string_view what, std::string_view remedy) {
             throw InputError(
-                fmt::format("domain {} has no extent along {}: give low < high, finite",
-                            to_string(box), "xyz"[a]));
+                fmt::format("domain {} {} along {}: {}", to_string(box), what, "xyz"[a], remedy));
+        };
+        const double edge = box.edges()[a];
+        const double farthest = std::max(std::abs(box.low[a]), std::abs(box.high[a]));
+        if (!(edge > 0)) fail("has no extent", "give low < high, finite");
+        if (farthest > largest_magnitude) {
+            fail(fmt::format("goes beyond {:.0e}", largest_magnitude),
+                 "give another unit of length");
+        }
+        if (edge < 1 / largest_magnitude) {
+            fail(fmt::format("is shorter than {:.0e}", 1 / largest_magnitude),
+                 "give another unit of length");
+        }
+        if (edge < least_places * std::numeric_limits<double>::epsilon() * farthest) {
+            fail("is too thin for its distance from the origin", "move the origin nearer");
         }
     }
     return box;

@@ -32,7 +32,9 @@ inline Point corner(const Box& box, int i) {
 /// edge there, or 1 where it has none, so that the box always has a volume.
 Box bounding_box(std::span<const Point> points, double margin);
 
-/// `box` itself; throws InputError, naming the axis, if an edge is zero, negative or not finite.
+/// `box` itself; throws InputError, naming the axis, where numbers cannot work in it: an edge that
+/// is zero, negative, not finite or shorter than 1 / largest_magnitude, coordinates beyond
+/// largest_magnitude, or an edge shorter than 2e-10 of its distance from the origin.
 const Box& require_volume(const Box& box);
 
 /// "[x0, x1] x [y0, y1] x [z0, z1]", for messages.

@@ -18,10 +18,6 @@ struct PointSource {
 /// Smallest length that any of the sources asks for, in any direction. Throws InputError for none.
 double finest_length(std::span<const PointSource> sources);
 
-/// Largest magnitude of a number that is taken from a user, and the inverse of the smallest length:
-/// beyond it, squares of squares leave the range of double.
-inline constexpr double largest_magnitude = 1e50;
-
 /// Whether a number can be a coordinate, a desired length, a metric of a source.
 bool is_coordinate(double x);
 bool is_length(double h);

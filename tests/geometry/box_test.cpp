@@ -1,0 +1,46 @@
+#include "geometry/box.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <vector>
+
+#include "error.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+TEST_CASE("a box is fit for a domain from 1e-50 to 1e50, and near enough to the origin") {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double inf = std::numeric_limits<double>::infinity();
+    struct Interval {
+        double low, high;
+        const char* wrong;  // null: nothing
+    };
+    const auto c = GENERATE_COPY(
+        Interval{-1, 1, nullptr}, Interval{0, 1e-50, nullptr}, Interval{-1e50, 1e50, nullptr},
+        Interval{1e9, 1e9 + 1, nullptr}, Interval{0, 0, "no extent"}, Interval{1, 0, "no extent"},
+        Interval{nan, 1, "no extent"}, Interval{0, nan, "no extent"}, Interval{0, inf, "beyond"},
+        Interval{-inf, 0, "beyond"}, Interval{inf, inf, "no extent"}, Interval{0, 1e51, "beyond"},
+        Interval{-1e308, 1e308, "beyond"}, Interval{0, 1e-300, "shorter"},
+        Interval{1e16, 1e16 + 4, "too thin"}, Interval{-1e9 - 0.1, -1e9, "too thin"});
+    CAPTURE(c.low, c.high);
+    for (Axis a = 0; a < 3; ++a) {
+        Box box{Point::Constant(-1), Point::Constant(1)};
+        box.low[a] = c.low;
+        box.high[a] = c.high;
+        if (c.wrong == nullptr) {
+            CHECK(require_volume(box) == box);
+        } else {
+            CHECK_THROWS_WITH(require_volume(box),
+                              Contains(c.wrong) && Contains(std::string("along ") + "xyz"[a]));
+        }
+    }
+}
+
+TEST_CASE("the box around points has a volume, whatever their shape") {
+    const std::vector<Point> points{{0, 0, 0}, {2, 0, 0}, {1, 1, 0}};
+    CHECK(bounding_box(points, 0.1) == Box{{-0.2, -0.2, -1.2}, {2.2, 1.2, 1.2}});
+    CHECK(bounding_box({points.data(), 2}, 0) == Box{{0, -1, -1}, {2, 1, 1}});
+    CHECK(bounding_box({points.data(), 1}, 0) == Box{Point::Constant(-0.5), Point::Constant(0.5)});
+    CHECK_THROWS_AS(bounding_box({}, 0.1), InputError);
+}
