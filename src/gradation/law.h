@@ -32,8 +32,12 @@ struct Growth {
 
     /// The largest ratio that gradation ratio g allows at this distance.
     double allowed(double g) const { return 1 + (g - 1) * length; }
-    /// The gradation ratio that this growth shows (paper §3.2).
-    double gradation() const { return ratio > 1 ? 1 + (ratio - 1) / length : 1; }
+    /// The gradation ratio that this growth shows (paper §3.2); at most g where `exceeds(g)` is
+    /// false, however close the two are.
+    double gradation() const {
+        const double growth = ratio / (1 + settled) - 1;
+        return growth > 0 ? 1 + growth / length : 1;
+    }
     bool exceeds(double g) const { return ratio > allowed(g) * (1 + settled); }
 
     /// Relative growth that counts as none: rounding of strongly anisotropic metrics stays below.

@@ -122,3 +122,15 @@ TEST_CASE("gradation ratios of other programs") {
     CHECK_THROWS_AS(gradation_ratio_from_mmg(-1), InputError);
     CHECK_THROWS_AS(gradation_ratio_from_refine(std::nan("")), InputError);
 }
+
+TEST_CASE("growth within the allowed ratio shows a gradation within g, however short the way") {
+    for (const double length : {1e-15, 1e-12, 1e-9, 1e-3, 1.0, 1e6}) {
+        for (const double noise : {-2e-9, -0.5e-9, 0.0, 0.5e-9, 2e-9}) {
+            CAPTURE(length, noise);
+            const Growth growth{.ratio = (1 + (g - 1) * length) * (1 + noise), .length = length};
+            const bool within = growth.gradation() <= g * (1 + 1e-12) + 1e-15 / length;
+            CHECK(within == !growth.exceeds(g));
+        }
+    }
+    CHECK(Growth{.ratio = 3, .length = 2}.gradation() == Approx(2));
+}
