@@ -18,7 +18,9 @@ struct SpaceOptions {
     int octree_depth = 14;     ///< deepest level of an octree, the root being 0
     double finest_length = 0;  ///< smallest length any source asks for; grids size voxels by it
     double ratio = 1.25;       ///< g_r of the gradation to come, for structures that keep sources
-    std::size_t max_bytes = std::size_t{4} << 30;  ///< cap on a grid, gradation's copy included
+    /// Cap on memory, gradation included: grids get coarser, trees that outgrow it throw
+    /// InputError.
+    std::size_t max_bytes = std::size_t{4} << 30;
 };
 
 /// M_max, which a new control space holds everywhere: H I, H half of the domain's diagonal.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <span>
@@ -107,12 +109,29 @@ private:
         if (topology_.is_full()) {
             throw InputError("a tree holds 2^30 leaves at most: raise l_min or lower the depth");
         }
+        if (topology_.leaves() >= next_look_) require_memory();
         if constexpr (is_octree) {
             if (balanced_) refine_coarser_neighbours(place);
         }
         const auto first_new = static_cast<LeafIndex>(topology_.leaves());
         topology_.split(place, subdivision);
         storage_.split(subdivision, place.leaf, first_new);
+    }
+
+    // Stops a tree that outgrows the cap, long before the system stops the program.
+    void require_memory() {
+        // Gradation copies the nodes and links them: 145 bytes for a leaf, 290 for its vertices.
+        constexpr std::size_t gradation_bytes_per_leaf = 300;
+        const std::size_t bytes =
+            footprint().bytes_total() + topology_.leaves() * gradation_bytes_per_leaf;
+        if (bytes > options_.max_bytes) {
+            constexpr double gib = 1024.0 * 1024 * 1024;
+            throw InputError(fmt::format(
+                "the tree would take more than {:.3g} GiB, gradation included: raise tau (l_min) "
+                "or max_memory",
+                static_cast<double>(options_.max_bytes) / gib));
+        }
+        next_look_ = topology_.leaves() + topology_.leaves() / 16;
     }
 
     // Brings all face neighbours to the leaf's own level at least, so that it may be split.
@@ -128,6 +147,7 @@ private:
     bool balanced_;
     Topology<Node> topology_;
     Storage storage_;
+    std::size_t next_look_ = 1024;  // number of leaves at which memory is looked at again
 };
 
 }  // namespace controlspace

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "counting_allocator.h"
+#include "error.h"
 #include "gradation/grade.h"
 #include "sources/sampled_surfaces.h"
 #include "spaces/catalogue.h"
@@ -23,5 +24,50 @@ TEST_CASE("the footprint of a tree is what it has allocated") {
         CHECK(footprint.bytes_payload == footprint.control_nodes * sizeof(Metric));
         space.reset();
         CHECK(live_bytes() == before);
+    }
+}
+
+TEST_CASE("a tree that outgrows the memory cap stops below it, with what would help") {
+    const std::vector<PointSource> sources = sample_sphere({.h = 0.01, .rho = 2});
+    constexpr std::size_t cap = 8'000'000;
+    for (const CatalogueEntry& entry : tree_catalogue()) {
+        CAPTURE(entry.id);
+        const auto space = entry.make(
+            {.domain = {Point::Constant(-1), Point::Constant(1)}, .l_min = 0.1, .max_bytes = cap});
+        const std::size_t before = live_bytes();
+        reset_peak_bytes();
+        CHECK_THROWS_WITH(space->insert(sources),
+                          Catch::Matchers::Contains("more than 0.00745 GiB") &&
+                              Catch::Matchers::Contains("raise tau"));
+        // While an array grows, the old one and a new one twice as long are there.
+        CHECK(peak_bytes() - before < cap);
+        CHECK(peak_bytes() - before > cap / 8);
+    }
+}
+
+TEST_CASE("the memory cap holds for gradation too") {
+    const std::vector<PointSource> sources = sample_sphere({.h = 0.02, .rho = 2});
+    for (const CatalogueEntry& entry : tree_catalogue()) {
+        CAPTURE(entry.id);
+        // The smallest cap, in steps of 10 %, that takes the sources.
+        std::unique_ptr<ControlSpace> space;
+        std::size_t cap = 1'000'000;
+        std::size_t before = 0;
+        while (!space) {
+            cap += cap / 10;
+            before = live_bytes();
+            space =
+                entry.make({.domain = {Point::Constant(-1), Point::Constant(1)}, .max_bytes = cap});
+            try {
+                space->insert(sources);
+            } catch (const InputError&) {
+                space.reset();
+            }
+        }
+        CAPTURE(cap, space->footprint().leaves);
+        reset_peak_bytes();
+        space->grade({});
+        CHECK(peak_bytes() - before < cap);
+        CHECK(peak_bytes() - before > cap / 4);
     }
 }
