@@ -85,6 +85,11 @@ Command parse_command_line(int argc, const char* const* argv) {
         "controlspace");
     app.set_version_flag("--version", "controlspace " + version_text(current_provenance()));
     app.require_subcommand(1);
+    const std::string statuses =
+        "Exit status: 0 if all went well, 1 for a failure of the program or of the system, 2 for "
+        "bad input,\n3 if some cases failed (results are written, their rows say why), 130 after "
+        "Ctrl-C.";
+    app.footer(statuses);
 
     CompareOptions options;
     GivenSettings given;
@@ -108,6 +113,7 @@ Command parse_command_line(int argc, const char* const* argv) {
     }
     add_options(*compare, study_settings(), Study{}, "Settings of the study", given);
     compare->add_flag("--quiet", options.quiet, "No progress on standard error");
+    compare->footer(statuses);
     CLI::App* list =
         app.add_subcommand("list", "Name the structures, splits, laws, schedules and references");
 

@@ -74,8 +74,8 @@ std::unique_ptr<tbb::global_control> limit_threads(int threads) {
                                                  static_cast<std::size_t>(threads));
 }
 
-/// Runs `prepared` and keeps what lies in `folder` up to date.
-void run_and_record(PreparedStudy prepared, const ResultsFolder& folder,
+/// Runs `prepared` and keeps what lies in `folder` up to date. Returns whether all cases succeeded.
+bool run_and_record(PreparedStudy prepared, const ResultsFolder& folder,
                     const Provenance& provenance, Progress& progress, Interruption& interruption) {
     const Study study = prepared.study();
     std::vector<Row> rows;
@@ -101,6 +101,7 @@ void run_and_record(PreparedStudy prepared, const ResultsFolder& folder,
     progress.finish();
     print(render_tables(study, rows, TableStyle::terminal));
     print(fmt::format("\nResults: {}\n", folder.path().string()));
+    return std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.error.empty(); });
 }
 
 }  // namespace
@@ -121,7 +122,7 @@ Study study_of(const CompareOptions& options) {
     return study;
 }
 
-void compare(const CompareOptions& options) {
+bool compare(const CompareOptions& options) {
     Interruption interruption;
     const Study study = study_of(options);
     const auto threads = limit_threads(study.threads);
@@ -136,10 +137,10 @@ void compare(const CompareOptions& options) {
         interruption, [&] { progress.show(); },
         [&] {
             progress.finish();
-            fmt::print(stderr, "controlspace: interrupted: {} of {} cases are in {}\n",
-                       progress.finished(), progress.count(), folder.path().string());
+            print_error(fmt::format("controlspace: interrupted: {} of {} cases are in {}\n",
+                                    progress.finished(), progress.count(), folder.path().string()));
         });
-    run_and_record(std::move(prepared), folder, provenance, progress, interruption);
+    return run_and_record(std::move(prepared), folder, provenance, progress, interruption);
 }
 
 }  // namespace controlspace

@@ -22,7 +22,8 @@ struct CompareOptions {
 /// The study that `options` ask for. Throws InputError.
 Study study_of(const CompareOptions& options);
 
-/// Runs the study, with progress on standard error and tables on standard output.
-void compare(const CompareOptions& options);
+/// Runs the study, with progress on standard error and tables on standard output. Returns whether
+/// all cases succeeded; the rows of those that did not say why.
+bool compare(const CompareOptions& options);
 
 }  // namespace controlspace

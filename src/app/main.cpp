@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
@@ -18,7 +17,7 @@ namespace {
 
 int fail(int status, std::string what) {
     std::replace(what.begin(), what.end(), '\n', ' ');
-    fmt::print(stderr, "controlspace: error: {}\n", what);
+    controlspace::print_error(fmt::format("controlspace: error: {}\n", what));
     return status;
 }
 
@@ -35,7 +34,7 @@ int main(int argc, char** argv) {
         } else if (std::holds_alternative<ListCommand>(command)) {
             print(list_text());
         } else {
-            compare(std::get<CompareOptions>(command));
+            return compare(std::get<CompareOptions>(command)) ? 0 : 3;
         }
         return 0;
     } catch (const InputError& error) {

@@ -4,7 +4,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <cstdio>
+#include "app/standard_output.h"
 
 namespace controlspace {
 namespace {
@@ -54,8 +54,9 @@ void Progress::case_finished(const Row& row) {
     estimate_.case_finished(seconds);
     ++finished_;
     if (style_ == ProgressStyle::lines) {
-        fmt::print(stderr, "case {}/{}: {}, {}: {}{:.2f} s\n", finished_, count_, case_,
-                   setting_label(row.setting), row.measures ? "" : "failed, ", seconds);
+        print_error(fmt::format("case {}/{}: {}, {}: {}{:.2f} s\n", finished_, count_, case_,
+                                setting_label(row.setting), row.measures ? "" : "failed, ",
+                                seconds));
     }
     clear_line();
 }
@@ -68,8 +69,7 @@ void Progress::show() {
         fmt::format("case {}/{}  {}  {}  {} elapsed{}", finished_ + 1, count_, case_, phase_,
                     duration_text(seconds_between(start_, Clock::now())),
                     left ? ", about " + duration_text(*left) + " left" : "");
-    fmt::print(stderr, "\r\033[K{}", line.substr(0, terminal_width() - 1));
-    std::fflush(stderr);
+    print_error(fmt::format("\r\033[K{}", line.substr(0, terminal_width() - 1)));
 }
 
 void Progress::finish() {
@@ -85,8 +85,7 @@ std::size_t Progress::finished() const {
 
 void Progress::clear_line() {
     if (style_ != ProgressStyle::live || over_) return;
-    fmt::print(stderr, "\r\033[K");
-    std::fflush(stderr);
+    print_error("\r\033[K");
 }
 
 }  // namespace controlspace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -142,8 +143,10 @@ const Setting<Study> study_table[] = {
     {"name", text_type, 1, "", "Name of the study, and of its folder of results",
      [](Study& s, const SettingValues& v) {
          s.name = text(v.front());
-         if (s.name.empty() || s.name.find('/') != std::string::npos) {
-             throw InputError(fmt::format("'{}' cannot name a folder: leave out '/'", s.name));
+         const auto unfit = [](char c) { return c == '/' || (c >= 0 && c < ' ') || c == 127; };
+         if (s.name.empty() || std::any_of(s.name.begin(), s.name.end(), unfit)) {
+             throw InputError(fmt::format(
+                 "'{}' cannot name a folder: leave out '/' and control characters", s.name));
          }
      },
      [](const Study& s) { return SettingValues{s.name}; }},
@@ -167,7 +170,8 @@ const Setting<Study> study_table[] = {
      [](Study& s, const SettingValues& v) { s.margin = within(number(v.front()), 0, 1000); },
      [](const Study& s) { return one(s.margin); }},
     {"max_memory", number_type, 1, "",
-     "Most memory that a grid may take, gradation included [GiB]; a coarser grid is taken instead",
+     "Most memory that a structure may take, gradation included [GiB]; a grid is made coarser, a "
+     "tree that outgrows it fails",
      [](Study& s, const SettingValues& v) {
          s.max_memory_gib = within(positive(number(v.front())), 0, 1 << 20);
      },

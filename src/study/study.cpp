@@ -55,10 +55,19 @@ void require_few(std::size_t cases) {
 
 void require_sensible(const Study& study, const Run& run) {
     const Run defaults;
+    const SourcesChoice plain;
     if (study.sources.kind == SourcesKind::file &&
-        (run.rho != defaults.rho || run.s_a != defaults.s_a || run.s_n != defaults.s_n)) {
+        (run.rho != defaults.rho || run.s_a != defaults.s_a || run.s_n != defaults.s_n ||
+         study.sources.h != plain.h)) {
         throw InputError(
-            "rho, s_a and s_n are for sampled surfaces: leave them out with sources from a file");
+            "h, rho, s_a and s_n are for sampled surfaces: leave them out with sources from a "
+            "file");
+    }
+    if (study.sources.kind != SourcesKind::sphere && study.sources.radius != plain.radius) {
+        throw InputError("radius is for the sphere: leave it out with other sources");
+    }
+    if (study.sources.kind != SourcesKind::planes && study.sources.slope != plain.slope) {
+        throw InputError("slope is for the planes: leave it out with other sources");
     }
     const bool published = std::find(run.reference.begin(), run.reference.end(),
                                      ReferenceKind::published_sphere) != run.reference.end();

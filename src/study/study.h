@@ -38,7 +38,7 @@ struct Study {
     SourcesChoice sources;      ///< rho, s_a and s_n come from the runs
     std::optional<Box> domain;  ///< none: [-1, 1]^3 for sampled surfaces, else from the sources
     double margin = 0.05;       ///< around sources from a file, in units of their longest extent
-    double max_memory_gib = 4;  ///< cap on a grid
+    double max_memory_gib = 4;  ///< cap on a structure
     std::uint64_t seed = 1;     ///< of the random places that access is timed at
     int threads = 0;            ///< of the untimed work; 0: all
     std::size_t access_points = 100000;  ///< random places

@@ -195,7 +195,10 @@ TEST_CASE("bad input ends with one line and status 2, and writes nothing") {
         {"compare --sources .", "."},
         {"compare --sources s.csv --domain 0 0.5 0 1 0 1", "domain"},
         {"compare --sources s.csv --domain 0 1 0 1", "--domain"},
+        {"compare --sources s.csv --domain 0 1e300 0 1 0 1", "--domain"},
         {"compare --sources s.csv --rho 0.5", "rho"},
+        {"compare --sources s.csv --radius 2", "radius"},
+        {"compare --name 'two\nlines'", "--name"},
         {"compare --sources s.csv --as-published", "published-sphere"},
         {"compare --sources s.csv --output file", "file"},
         {"compare --sources s.csv --output file/out", "file/out"},
@@ -205,6 +208,36 @@ TEST_CASE("bad input ends with one line and status 2, and writes nothing") {
     check_refused(box.run(arguments), expected);
     CHECK_FALSE(fs::exists(box / "results"));
     CHECK_FALSE(fs::exists(box / "out"));
+}
+
+TEST_CASE("a case that fails is a row with its reason, and status 3") {
+    const Sandbox box("failed");
+    const Outcome outcome = box.run(
+        "compare --sources sphere --h 0.05 --structures K_oL,K_oV --tau 1,100 --max-memory 0.001 "
+        "--output out" +
+        quick);
+    INFO(outcome.err);
+    CHECK(outcome.status == 3);
+    const auto json = nlohmann::json::parse(file_text(box / "out" / "results.json"));
+    CHECK(json["complete"] == true);
+    REQUIRE(json["rows"].size() == 4);
+    for (const auto& row : json["rows"]) CHECK((row["error"] != "") == (row["tau"] == 1));
+    CHECK_THAT(outcome.err, Contains("raise tau"));
+    CHECK_THAT(outcome.out, Contains("failed: ") && Contains("raise tau"));
+}
+
+TEST_CASE("a standard error that takes nothing does not stop the program") {
+    const Sandbox box("stderr");
+    box.write("s.csv", sources_csv);
+    const auto run_with = [&](const std::string& redirection, const std::string& arguments) {
+        return box.run(arguments, "exec sh -c 'exec \"$@\" " + redirection + "' sh ").status;
+    };
+    CHECK(run_with("2>/dev/full", "compare --sources none.csv") == 2);
+    CHECK(run_with("2>/dev/full", "compare --sources s.csv --output full" + quick) == 0);
+    CHECK(run_with("2>&-", "compare --sources s.csv --output closed" + quick) == 0);
+    for (const char* folder : {"full", "closed"}) {
+        CHECK(nlohmann::json::parse(file_text(box / folder / "results.json"))["complete"] == true);
+    }
 }
 
 TEST_CASE("results that lie there are not written over") {

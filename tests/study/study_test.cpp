@@ -95,6 +95,12 @@ TEST_CASE("studies that make no sense are refused") {
     study.runs[0].rho = {0.5};
     CHECK_THROWS_WITH(expand(study), Contains("rho, s_a and s_n"));
     study.runs[0].rho = {1};
+    study.sources.radius = 0.5;
+    CHECK_THROWS_WITH(expand(study), Contains("radius is for the sphere"));
+    study.sources.radius = SourcesChoice{}.radius;
+    study.sources.slope = 0.5;
+    CHECK_THROWS_WITH(expand(study), Contains("slope is for the planes"));
+    study.sources.slope = SourcesChoice{}.slope;
     study.runs[0].reference = {ReferenceKind::published_sphere};
     CHECK_THROWS_WITH(expand(study), Contains("for the sphere"));
     study.sources.kind = SourcesKind::sphere;
