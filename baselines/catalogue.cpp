@@ -28,6 +28,8 @@ CatalogueEntry grid(std::string id, std::string description) {
 std::vector<CatalogueEntry> all_structures() {
     const std::span<const CatalogueEntry> trees = tree_catalogue();
     std::vector<CatalogueEntry> all(trees.begin(), trees.end());
+    const std::span<const CatalogueEntry> anchored = anchored_catalogue();
+    all.insert(all.end(), anchored.begin(), anchored.end());
     all.push_back(grid<make_uniform_grid, Interpolation::nearest>(
         "uniform-nearest", "uniform grid, a metric per cell, constant"));
     all.push_back(grid<make_uniform_grid, Interpolation::trilinear>(

@@ -8,39 +8,44 @@
 
 namespace controlspace {
 
-namespace {
-
-template <class Graph>
-double largest_ratio(const Graph& graph, std::span<const Metric> metrics, GradationLaw law) {
-    double largest = 1;
-    for (NodeIndex i = 0; i < graph.size(); ++i) {
-        const Point p = graph.position(i);
-        graph.for_each_neighbour(i, [&](NodeIndex j) {
-            const Vector v = graph.position(j) - p;
-            largest = std::max(largest, growth_between(law, metrics[i], metrics[j], v).gradation());
-        });
-    }
-    return largest;
-}
-
-}  // namespace
-
-GradationReport grade(const ControlGraph& graph, std::span<Metric> metrics,
-                      const GradationOptions& options) {
+void require_valid(const GradationOptions& options) {
     if (!std::isfinite(options.ratio) || options.ratio < 1) {
         throw InputError(fmt::format("gradation ratio g_r is {}: give a finite value of at least 1",
                                      options.ratio));
     }
-    return std::visit(
-        [&](const auto& g) {
-            GradationReport report;
-            report.operations = options.schedule == GradationSchedule::queue
-                                    ? grade_by_queue(g, metrics, options.law, options.ratio)
-                                    : PassSchedule(g, metrics, options.law, options.ratio).run();
-            report.largest_ratio_left = largest_ratio(g, metrics, options.law);
-            return report;
+}
+
+double largest_gradation(const ControlGraph& graph, std::span<const Metric> metrics,
+                         GradationLaw law) {
+    double largest = 1;
+    std::visit(
+        [&](const auto& nodes) {
+            for (NodeIndex i = 0; i < nodes.size(); ++i) {
+                const Point p = nodes.position(i);
+                nodes.for_each_neighbour(i, [&](NodeIndex j) {
+                    const Vector v = nodes.position(j) - p;
+                    const Growth growth = growth_between(law, metrics[i], metrics[j], v);
+                    largest = std::max(largest, growth.gradation());
+                });
+            }
         },
         graph);
+    return largest;
+}
+
+GradationReport grade(const ControlGraph& graph, std::span<Metric> metrics,
+                      const GradationOptions& options) {
+    require_valid(options);
+    GradationReport report;
+    report.operations = std::visit(
+        [&](const auto& nodes) {
+            return options.schedule == GradationSchedule::queue
+                       ? grade_by_queue(nodes, metrics, options.law, options.ratio)
+                       : PassSchedule(nodes, metrics, options.law, options.ratio).run();
+        },
+        graph);
+    report.largest_ratio_left = largest_gradation(graph, metrics, options.law);
+    return report;
 }
 
 }  // namespace controlspace

@@ -29,8 +29,15 @@ struct GradationReport {
     double largest_ratio_left = 1;  ///< over all neighbours, under the law that was applied
 };
 
+/// Throws InputError for a ratio below 1 or not finite.
+void require_valid(const GradationOptions& options);
+
+/// The largest gradation ratio that neighbours show under `law`; 1 where all are alike.
+double largest_gradation(const ControlGraph& graph, std::span<const Metric> metrics,
+                         GradationLaw law);
+
 /// Makes the metrics of the control nodes grow smoothly, in place; they only ever get smaller.
-/// `metrics.size()` must be the graph's size. Throws InputError for a ratio below 1 or not finite.
+/// `metrics.size()` must be the graph's size. Throws as require_valid does.
 GradationReport grade(const ControlGraph& graph, std::span<Metric> metrics,
                       const GradationOptions& options);
 

@@ -18,6 +18,11 @@ public:
     explicit NodeQueue(std::size_t nodes) : ring_(nodes), waits_(nodes, 1), size_(nodes) {
         std::iota(ring_.begin(), ring_.end(), NodeIndex{0});
     }
+    /// Some of `nodes` nodes, in the order given, each once.
+    NodeQueue(std::size_t nodes, std::span<const NodeIndex> some)
+        : ring_(nodes), waits_(nodes, 0), size_(0) {
+        for (const NodeIndex node : some) push(node);
+    }
     bool empty() const { return size_ == 0; }
     NodeIndex pop() {
         const NodeIndex node = ring_[head_];

@@ -115,4 +115,48 @@ NodeGraph graph_from_pairs(std::size_t nodes,
 /// Removes repeated neighbours and sorts each row.
 void sort_rows_uniquely(NodeGraph& graph);
 
+/// The leaves of a tree as a graph: nodes at their centres, in depth-first order.
+struct LeafGraph {
+    NodeGraph graph;
+    std::vector<LeafIndex> order;  ///< the leaf of each node
+};
+
+template <class Node>
+LeafGraph leaf_graph(const Topology<Node>& tree, Neighbourhood neighbourhood) {
+    LeafGraph leaves;
+    std::vector<NodeIndex> rank(tree.leaves());
+    std::vector<Point> centres;
+    leaves.order.reserve(tree.leaves());
+    centres.reserve(tree.leaves());
+    tree.for_each_leaf([&](LeafIndex leaf, const Box& box) {
+        rank[leaf] = static_cast<NodeIndex>(leaves.order.size());
+        leaves.order.push_back(leaf);
+        centres.push_back(box.centre());
+    });
+
+    NodeGraph& graph = leaves.graph;
+    if (neighbourhood == Neighbourhood::faces) {
+        std::vector<std::pair<NodeIndex, NodeIndex>> pairs;
+        pairs.reserve(3 * tree.leaves());
+        for_each_face_pair(tree, [&](LeafIndex low, LeafIndex high) {
+            pairs.emplace_back(rank[low], rank[high]);
+        });
+        graph = graph_from_pairs(centres.size(), pairs);
+    } else {
+        graph.first.reserve(centres.size() + 1);
+        graph.first.push_back(0);
+        tree.for_each_leaf([&](LeafIndex, const Box& box) {
+            LeafPlace across;
+            for (int face = 0; face < 6; ++face) {
+                if (locate_across(tree, box, face, box.centre(), across)) {
+                    graph.neighbours.push_back(rank[across.leaf]);
+                }
+            }
+            graph.first.push_back(graph.neighbours.size());
+        });
+    }
+    graph.positions = std::move(centres);
+    return leaves;
+}
+
 }  // namespace controlspace

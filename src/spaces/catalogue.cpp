@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "spaces/anchored_values.h"
 #include "spaces/leaf_values.h"
 #include "spaces/quadratic_values.h"
 #include "spaces/topology.h"
@@ -20,12 +21,16 @@ std::unique_ptr<ControlSpace> make(const SpaceOptions& options) {
 
 template <class Node, class Storage, bool balanced = false>
 CatalogueEntry entry(const char* id, const char* description) {
-    return {id,
-            description,
-            std::is_same_v<Node, KdNode>,
-            Storage::exact_at_nodes,
-            Storage::order,
-            make<Node, Storage, balanced>};
+    CatalogueEntry entry;
+    entry.id = id;
+    entry.description = description;
+    entry.has_split_rules = std::is_same_v<Node, KdNode>;
+    entry.exact_at_nodes = Storage::exact_at_nodes;
+    entry.order = Storage::order;
+    entry.make = make<Node, Storage, balanced>;
+    entry.takes_metrics = !std::is_same_v<Storage, AnchoredValues>;
+    entry.group = entry.takes_metrics ? "trees" : "anchored";
+    return entry;
 }
 
 }  // namespace
@@ -40,6 +45,14 @@ std::span<const CatalogueEntry> tree_catalogue() {
         entry<OctreeNode, LeafValues, true>("K_oLB",
                                             "as K_oL, balanced 2:1 over the faces of leaves"),
         entry<OctreeNode, VertexValues>("K_oV", "octree, trilinear between the vertices of a leaf"),
+    };
+    return trees;
+}
+
+std::span<const CatalogueEntry> anchored_catalogue() {
+    static const std::array<CatalogueEntry, 2> trees{
+        entry<KdNode, AnchoredValues>("K_LA", "kd-tree, up to three sources in each leaf"),
+        entry<OctreeNode, AnchoredValues>("K_oLA", "octree, up to three sources in each leaf"),
     };
     return trees;
 }

@@ -19,12 +19,19 @@ struct CatalogueEntry {
     bool has_split_rules = false;  ///< a kd-tree: to be run with each SplitRule
     bool exact_at_nodes = true;    ///< answers a control node's own metric at its position
     int order = 0;                 ///< of interpolation: 0 constant, 1 linear, 2 quadratic
-    std::unique_ptr<ControlSpace> (*make)(const SpaceOptions&);
+    std::unique_ptr<ControlSpace> (*make)(const SpaceOptions&) = nullptr;
+    /// How it is chosen with others: "trees" (the paper's), "anchored", "baselines".
+    std::string group = "baselines";
+    /// Holds metrics, so that assign() sets them; otherwise sources, and assign() is refused.
+    bool takes_metrics = true;
     /// Answers the cones of its sources at once, without gradation, and its nodes are the sources.
     bool graded_from_start = false;
 };
 
 /// The six trees of the paper.
 std::span<const CatalogueEntry> tree_catalogue();
+
+/// Trees whose leaves keep sources in place of metrics.
+std::span<const CatalogueEntry> anchored_catalogue();
 
 }  // namespace controlspace

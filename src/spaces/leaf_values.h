@@ -65,40 +65,11 @@ protected:
 template <class Node>
 ControlNodes LeafValues::control_nodes(const Topology<Node>& tree,
                                        Neighbourhood neighbourhood) const {
-    std::vector<NodeIndex> rank(tree.leaves());  // of a leaf in depth-first order
-    std::vector<Point> centres;
+    LeafGraph leaves = leaf_graph(tree, neighbourhood);
     std::vector<Metric> metrics;
-    centres.reserve(tree.leaves());
-    metrics.reserve(tree.leaves());
-    tree.for_each_leaf([&](LeafIndex leaf, const Box& box) {
-        rank[leaf] = static_cast<NodeIndex>(centres.size());
-        centres.push_back(box.centre());
-        metrics.push_back(metrics_[leaf]);
-    });
-
-    NodeGraph graph;
-    if (neighbourhood == Neighbourhood::faces) {
-        std::vector<std::pair<NodeIndex, NodeIndex>> pairs;
-        pairs.reserve(3 * tree.leaves());
-        for_each_face_pair(tree, [&](LeafIndex low, LeafIndex high) {
-            pairs.emplace_back(rank[low], rank[high]);
-        });
-        graph = graph_from_pairs(centres.size(), pairs);
-    } else {
-        graph.first.reserve(centres.size() + 1);
-        graph.first.push_back(0);
-        tree.for_each_leaf([&](LeafIndex, const Box& box) {
-            LeafPlace across;
-            for (int face = 0; face < 6; ++face) {
-                if (locate_across(tree, box, face, box.centre(), across)) {
-                    graph.neighbours.push_back(rank[across.leaf]);
-                }
-            }
-            graph.first.push_back(graph.neighbours.size());
-        });
-    }
-    graph.positions = std::move(centres);
-    return {std::move(graph), std::move(metrics)};
+    metrics.reserve(leaves.order.size());
+    for (const LeafIndex leaf : leaves.order) metrics.push_back(metrics_[leaf]);
+    return {std::move(leaves.graph), std::move(metrics)};
 }
 
 }  // namespace controlspace

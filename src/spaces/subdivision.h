@@ -56,4 +56,11 @@ inline Subdivision halves(const Box& box, Axis a, double cut) {
     return s;
 }
 
+/// Across the middle of the longest edge, z before y before x where edges are equally long.
+inline Subdivision longest_edge_halves(const Box& box) {
+    const Vector e = box.edges();
+    const Axis axis = e.x() > e.y() && e.x() > e.z() ? 0 : e.y() > e.z() ? 1 : 2;
+    return halves(box, axis, 0.5 * (box.low[axis] + box.high[axis]));
+}
+
 }  // namespace controlspace

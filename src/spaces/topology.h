@@ -62,6 +62,7 @@ struct KdNode {
         child = ref.with_spare(child.spare());
     }
     Subdivision subdivision(const Box& box) const { return halves(box, axis(), at); }
+    static Subdivision even_subdivision(const Box& box) { return longest_edge_halves(box); }
 
     /// Number of the child that holds `x`.
     int child_with(const Point& x) const { return x[axis()] > at ? 1 : 0; }
@@ -82,6 +83,7 @@ struct OctreeNode {
     OctreeNode(const Subdivision&) {}
     void set_child(int c, Ref ref) { children[static_cast<std::size_t>(c)] = ref; }
     Subdivision subdivision(const Box& box) const { return octants(box); }
+    static Subdivision even_subdivision(const Box& box) { return octants(box); }
 
     int descend(const Point& x, Box& box) const {
         int c = 0;

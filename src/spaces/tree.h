@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <type_traits>
 
 #include "error.h"
 #include "spaces/adjacency.h"
+#include "spaces/anchored_values.h"
 #include "spaces/catalogue.h"
 #include "spaces/control_space.h"
 #include "spaces/leaf_values.h"
@@ -51,7 +53,21 @@ public:
     ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
         return storage_.control_nodes(topology_, neighbourhood);
     }
-    void assign(std::span<const Metric> metrics) override { storage_.assign(topology_, metrics); }
+    void assign(std::span<const Metric> metrics) override {
+        if constexpr (keeps_sources) {
+            throw std::logic_error("this structure keeps sources: it takes no metrics");
+        } else {
+            storage_.assign(topology_, metrics);
+        }
+    }
+
+    GradationReport grade(const GradationOptions& options) override {
+        if constexpr (keeps_sources) {
+            return storage_.grade(topology_, options, max_depth());
+        } else {
+            return ControlSpace::grade(options);
+        }
+    }
 
     const Box& domain() const override { return topology_.domain(); }
 
@@ -71,6 +87,7 @@ public:
     Box element_at(const Point& x) const override { return topology_.locate(x).box; }
 
 private:
+    static constexpr bool keeps_sources = std::is_same_v<Storage, AnchoredValues>;
     static constexpr bool is_octree = std::is_same_v<Node, OctreeNode>;
 
     int max_depth() const { return is_octree ? options_.octree_depth : options_.kd_depth; }

@@ -212,7 +212,7 @@ const Setting<Study> study_table[] = {
 
 const Setting<Run> run_table[] = {
     {"structures", text_type, 0, "",
-     "Structures (see `controlspace list`), or all, trees, baselines",
+     "Structures (see `controlspace list`), or all, trees, anchored, baselines",
      [](Run& r, const SettingValues& v) { fill(r.structures, v, text); },
      [](const Run& r) {
          return SettingValues{r.structures.begin(), r.structures.end()};

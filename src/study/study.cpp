@@ -11,12 +11,6 @@
 namespace controlspace {
 namespace {
 
-bool is_tree(const CatalogueEntry& entry) {
-    const auto trees = tree_catalogue();
-    return std::any_of(trees.begin(), trees.end(),
-                       [&](const CatalogueEntry& tree) { return tree.id == entry.id; });
-}
-
 std::vector<const CatalogueEntry*> chosen(const std::vector<std::string>& names,
                                           std::span<const CatalogueEntry> catalogue) {
     std::vector<const CatalogueEntry*> entries;
@@ -26,10 +20,9 @@ std::vector<const CatalogueEntry*> chosen(const std::vector<std::string>& names,
         }
     };
     for (const std::string& name : names) {
-        bool known = name == "all" || name == "trees" || name == "baselines";
+        bool known = name == "all" || name == "trees" || name == "anchored" || name == "baselines";
         for (const CatalogueEntry& entry : catalogue) {
-            if (entry.id == name || name == "all" || (name == "trees" && is_tree(entry)) ||
-                (name == "baselines" && !is_tree(entry))) {
+            if (entry.id == name || entry.group == name || name == "all") {
                 add(entry);
                 known = true;
             }
@@ -37,9 +30,9 @@ std::vector<const CatalogueEntry*> chosen(const std::vector<std::string>& names,
         if (!known) {
             std::vector<std::string_view> ids;
             for (const CatalogueEntry& entry : catalogue) ids.push_back(entry.id);
-            throw InputError(
-                fmt::format("unknown structure '{}': give all, trees, baselines or some of {}",
-                            name, fmt::join(ids, ", ")));
+            throw InputError(fmt::format(
+                "unknown structure '{}': give all, trees, anchored, baselines or some of {}", name,
+                fmt::join(ids, ", ")));
         }
     }
     return entries;
@@ -114,7 +107,7 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
     if (entry.has_split_rules) {
         multiply(cases, run.splits, [](Case& c, SplitRule split) { c.split = split; });
         multiply(cases, run.kd_depth, [](Case& c, int depth) { c.max_depth = depth; });
-    } else if (is_tree(entry)) {
+    } else if (entry.group != "baselines") {
         multiply(cases, run.octree_depth, [](Case& c, int depth) { c.max_depth = depth; });
     }
     return cases;

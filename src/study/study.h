@@ -16,7 +16,7 @@ namespace controlspace {
 /// Lists of values whose product gives cases. Values that do not concern a structure (a split of an
 /// octree, a depth of a grid) do not multiply it.
 struct Run {
-    /// Ids, or the groups "all", "trees" and "baselines".
+    /// Ids, or the groups "all", "trees", "anchored" and "baselines".
     std::vector<std::string> structures{"all"};
     std::vector<SplitRule> splits{SplitRule::middle, SplitRule::golden, SplitRule::metric};
     std::vector<double> rho{1};

@@ -15,10 +15,11 @@ namespace controlspace {
 /// The structures with a lattice of nodes.
 inline std::span<const CatalogueEntry> grids() {
     static const std::vector<CatalogueEntry> all = [] {
-        const auto others = structures().subspan(tree_catalogue().size());
         std::vector<CatalogueEntry> lattices;
-        std::copy_if(others.begin(), others.end(), std::back_inserter(lattices),
-                     [](const CatalogueEntry& entry) { return !entry.graded_from_start; });
+        std::copy_if(structures().begin(), structures().end(), std::back_inserter(lattices),
+                     [](const CatalogueEntry& entry) {
+                         return entry.group == "baselines" && !entry.graded_from_start;
+                     });
         return lattices;
     }();
     return all;

@@ -92,17 +92,23 @@ TEST_CASE("at its place a source is met: never coarser than asked by epsilon") {
 TEST_CASE("gradation only makes smaller, and holds afterwards") {
     const auto law = GENERATE(GradationLaw::cone, GradationLaw::mean_length);
     const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+    const std::vector<Point> x = random_points(work.domain, 3000, 10);
     for_each_structure(work, [&](const Structure& structure) {
         const auto space = work.inserted(structure);
-        const std::vector<Metric> before = space->control_nodes(Neighbourhood::faces).metrics;
+        const std::vector<Metric> before = answers(*space, x);
         const GradationReport report = space->grade({.law = law, .ratio = g});
-        CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
-        const std::vector<Metric> after = space->control_nodes(Neighbourhood::faces).metrics;
-        bool smaller = true;
-        for (std::size_t i = 0; i < before.size(); ++i) {
-            smaller = smaller && is_within(after[i], 1 + 1e-9, before[i]);
+        // Three sources cannot stand for all tensors that cut a leaf.
+        const bool holds = structure.entry->takes_metrics || work.name == "isotropic";
+        if (holds) CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
+        const std::vector<Metric> after = answers(*space, x);
+        std::size_t larger = 0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            larger += !is_within(after[i], 1 + 1e-9, before[i]);
         }
-        CHECK(smaller);
+        // Quadratic functions undershoot where a neighbour is far larger, which gradation ends; and
+        // blends of smaller tensors are smaller as matrices, not always along each direction.
+        const int order = structure.entry->order;
+        if (holds && (order == 0 || (order == 1 && work.name == "isotropic"))) CHECK(larger == 0);
         CHECK((after != before) != structure.entry->graded_from_start);
     });
 }
@@ -172,6 +178,10 @@ TEST_CASE("a constant is answered as such; assigning what was read changes nothi
         const auto space = work.graded(structure);
         const std::vector<Metric> before = answers(*space, x);
         ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
+        if (!structure.entry->takes_metrics) {
+            CHECK_THROWS_AS(space->assign(nodes.metrics), std::logic_error);
+            return;
+        }
         space->assign(nodes.metrics);
         CHECK(answers(*space, x) == before);
         if (structure.entry->graded_from_start) return;  // a constant at the sources only

@@ -1,0 +1,30 @@
+#include "spaces/source_table.h"
+
+namespace controlspace {
+
+SourceIndex SourceTable::add(const PointSource& source) {
+    if (metrics_.empty() || metrics_.back() != source.metric) metrics_.push_back(source.metric);
+    all_isotropic_ = all_isotropic_ && is_isotropic(source.metric);
+    positions_.push_back(source.position);
+    metric_of_.push_back(static_cast<std::uint32_t>(metrics_.size() - 1));
+    return static_cast<SourceIndex>(positions_.size() - 1);
+}
+
+std::vector<SourceIndex> SourceTable::keep(const std::vector<std::uint8_t>& kept) {
+    std::vector<SourceIndex> renamed(size());
+    SourceTable table;
+    for (SourceIndex i = 0; i < size(); ++i) {
+        if (kept[i] != 0) renamed[i] = table.add(source(i));
+    }
+    table.shrink_to_fit();
+    *this = std::move(table);
+    return renamed;
+}
+
+void SourceTable::shrink_to_fit() {
+    positions_.shrink_to_fit();
+    metric_of_.shrink_to_fit();
+    metrics_.shrink_to_fit();
+}
+
+}  // namespace controlspace

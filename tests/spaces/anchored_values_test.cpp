@@ -1,0 +1,105 @@
+#include "spaces/anchored_values.h"
+
+#include <catch2/catch.hpp>
+
+#include "measure/accuracy.h"
+#include "metric/nonconformity.h"
+#include "sources/sampled_surfaces.h"
+#include "spaces/catalogue.h"
+
+using namespace controlspace;
+
+namespace {
+
+const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
+constexpr double g = 1.25;
+
+}  // namespace
+
+TEST_CASE("one source: its cone everywhere, to rounding, where leaf values give steps") {
+    const PointSource source{Point(0.3, -0.2, 0.1), Metric::isotropic(0.05)};
+    for (const CatalogueEntry& entry : anchored_catalogue()) {
+        CAPTURE(entry.id);
+        const auto space = entry.make({.domain = domain});
+        space->insert(source);
+        space->grade({});
+        for (const Point& x : cell_centres(domain, 9)) {
+            const double h = 0.05 + (g - 1) * (x - source.position).norm();
+            CHECK(sample_at(*space, x).xx == Approx(h).epsilon(1e-14));
+        }
+    }
+}
+
+TEST_CASE("one tensor: its cone everywhere") {
+    const PointSource source{Point(0.3, -0.2, 0.1), {0.1, 0.3, 0.2, 0.02, -0.03, 0.05}};
+    for (const CatalogueEntry& entry : anchored_catalogue()) {
+        CAPTURE(entry.id);
+        const auto space = entry.make({.domain = domain});
+        space->insert(source);
+        space->grade({});
+        const Metric largest = largest_metric(domain);
+        for (const Point& x : cell_centres(domain, 9)) {
+            const double factor = 1 + (g - 1) * metric_length(source.metric, x - source.position);
+            const Metric cone = intersection(largest, factor * source.metric);
+            CHECK(nonconformity(sample_at(*space, x), cone) < 1e-12);
+        }
+    }
+}
+
+TEST_CASE("sphere: nearer to the exact field than the other trees, with fewer bytes than K_L") {
+    const std::vector<PointSource> sources = sample_sphere({.rho = 1});
+    const auto field = exact_reference(sources, g, largest_metric(domain));
+    const Probes coarse = make_probes(*field, cell_centres(domain, 30));
+    const Probes fine = make_probes(*field, cell_centres(domain, 101));
+    const auto k_l = tree_catalogue()[0].make({.domain = domain});
+    k_l->insert(sources);
+    for (const CatalogueEntry& entry : anchored_catalogue()) {
+        CAPTURE(entry.id);
+        const auto space = entry.make({.domain = domain});
+        space->insert(sources);
+        const GradationReport report = space->grade({});
+        CHECK(accuracy(*space, coarse).max <= 0.10);
+        const Accuracy everywhere = accuracy(*space, fine);
+        CHECK(everywhere.max <= 0.15);
+        CHECK(everywhere.mean <= 0.005);
+        CHECK(space->footprint().bytes_total() < k_l->footprint().bytes_total());
+        CHECK(report.largest_ratio_left <= g * (1 + 1e-9));
+    }
+}
+
+TEST_CASE("more sources than anchors at one place: all are met") {
+    // Five discs that cross at one place, each 0.1 across and 1 along.
+    std::vector<PointSource> sources;
+    const Point place(0.1, 0.2, 0.3);
+    for (int i = 0; i < 5; ++i) {
+        const Vector n = Vector(1, i - 2, 0.5 * i).normalized();
+        Metric m = Metric::from_matrix(Eigen::Matrix3d::Identity() - 0.9 * n * n.transpose());
+        sources.push_back({place + 1e-4 * n, m});
+    }
+    for (const CatalogueEntry& entry : anchored_catalogue()) {
+        CAPTURE(entry.id);
+        const auto space = entry.make({.domain = domain});
+        space->insert(sources);
+        for (const PointSource& s : sources) {
+            const Metric held = sample_at(*space, s.position);
+            CHECK(nonconformity(held, intersection(held, s.metric)) < 0.2);
+        }
+    }
+}
+
+TEST_CASE("sources of one metric share it; idle ones go") {
+    SourceTable table;
+    const Metric m = Metric::isotropic(0.1);
+    for (int i = 0; i < 100; ++i) table.add({Point(i, 0, 0), m});
+    table.add({Point(0, 1, 0), {1, 2, 3, 0.1, 0.2, 0.3}});
+    CHECK_FALSE(table.all_isotropic());
+    std::vector<std::uint8_t> kept(101, 0);
+    kept[7] = kept[42] = 1;
+    const auto renamed = table.keep(kept);
+    CHECK(table.size() == 2);
+    CHECK(table.all_isotropic());
+    CHECK(renamed[42] == 1);
+    CHECK(table.source(0) == PointSource{Point(7, 0, 0), m});
+    CHECK(table.bytes() == 2 * (sizeof(Point) + sizeof(std::uint32_t)) + sizeof(Metric));
+    CHECK(table.cone(1, g, Point(42, 3, 4)).xx == Approx(0.1 + 0.25 * 5));
+}
