@@ -37,7 +37,7 @@ std::string read_text_file(const std::filesystem::path& path) {
         throw InputError(fmt::format("cannot read {}: {}", name, std::strerror(errno)));
     }
     if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-    if (text.empty()) throw InputError(fmt::format("{} is empty: give a file with sources", name));
+    if (text.empty()) throw InputError(fmt::format("{} is empty: name another file", name));
     return text;
 }
 

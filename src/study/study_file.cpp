@@ -64,8 +64,10 @@ private:
     SettingValues values(const toml::node& node) const {
         SettingValues values;
         const auto add = [&](const toml::node& item) {
-            if (const auto x = item.value<double>(); x && item.is_number()) {
-                values.emplace_back(*x);
+            if (const auto* x = item.as_floating_point()) {
+                values.emplace_back(x->get());
+            } else if (const auto* n = item.as_integer()) {
+                values.emplace_back(static_cast<double>(n->get()));
             } else if (const auto* s = item.as_string()) {
                 values.emplace_back(s->get());
             } else {

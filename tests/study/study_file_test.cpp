@@ -141,6 +141,7 @@ TEST_CASE("what is wrong in a study file is named with its line") {
         {"schedule = 1", "schedule: 1 is not a text"},
         {"seed = [1, 2]", "seed: 2 values: give 1 at most"},
         {"seed = -1", "seed: -1 is out of range"},
+        {"seed = 9223372036854775807", "seed: 9.223372036854776e+18 is out of range"},
         {"threads = 1e9", "threads: 1000000000 is out of range"},
         {"domain = [0, 1]", "domain: give six numbers"},
         {"domain = [0, 1, 0, 1, 1, 1]", "no extent along z"},
