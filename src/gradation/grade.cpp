@@ -21,9 +21,7 @@ double largest_gradation(const ControlGraph& graph, std::span<const Metric> metr
     std::visit(
         [&](const auto& nodes) {
             for (NodeIndex i = 0; i < nodes.size(); ++i) {
-                const Point p = nodes.position(i);
-                nodes.for_each_neighbour(i, [&](NodeIndex j) {
-                    const Vector v = nodes.position(j) - p;
+                nodes.for_each_link(i, [&](NodeIndex j, const Vector& v) {
                     const Growth growth = growth_between(law, metrics[i], metrics[j], v);
                     largest = std::max(largest, growth.gradation());
                 });

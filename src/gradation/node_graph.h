@@ -34,9 +34,16 @@ struct NodeGraph {
 
     std::size_t size() const { return positions.size(); }
     const Point& position(NodeIndex i) const { return positions[i]; }
+    /// visit(j) for the neighbours j of node i.
     template <class Visit>
     void for_each_neighbour(NodeIndex i, Visit&& visit) const {
         for (std::size_t k = first[i]; k < first[i + 1]; ++k) visit(neighbours[k]);
+    }
+    /// visit(j, v) for the same, v the way from i to j.
+    template <class Visit>
+    void for_each_link(NodeIndex i, Visit&& visit) const {
+        const Point p = positions[i];
+        for_each_neighbour(i, [&](NodeIndex j) { visit(j, Vector(positions[j] - p)); });
     }
 };
 
@@ -59,12 +66,18 @@ struct Lattice {
     }
     template <class Visit>
     void for_each_neighbour(NodeIndex n, Visit&& visit) const {
+        for_each_link(n, [&](NodeIndex j, const Vector&) { visit(j); });
+    }
+    template <class Visit>
+    void for_each_link(NodeIndex n, Visit&& visit) const {
         const auto c = coordinates(n);
         NodeIndex stride = 1;
-        for (std::size_t a = 0; a < 3; ++a) {
-            if (c[a] > 0) visit(n - stride);
-            if (c[a] + 1 < nodes[a]) visit(n + stride);
-            stride *= nodes[a];
+        for (Axis a = 0; a < 3; ++a) {
+            const auto axis = static_cast<std::size_t>(a);
+            const Vector step = spacing[a] * Vector::Unit(a);
+            if (c[axis] > 0) visit(n - stride, -step);
+            if (c[axis] + 1 < nodes[axis]) visit(n + stride, step);
+            stride *= nodes[axis];
         }
     }
 };

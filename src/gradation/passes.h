@@ -51,11 +51,9 @@ private:
     std::uint64_t limit_around(NodeIndex i) {
         constexpr double alike = 0.01;  // non-conformity
         Metric& m0 = metrics_[i];
-        const Point p = graph_.position(i);
         bool all_alike = true;
         links_.clear();
-        graph_.for_each_neighbour(i, [&](NodeIndex j) {
-            const Vector v = graph_.position(j) - p;
+        graph_.for_each_link(i, [&](NodeIndex j, const Vector& v) {
             links_.push_back({j, v, growth_between(law_, metrics_[j], m0, v)});
             all_alike = all_alike && nonconformity(m0, metrics_[j]) < alike;
         });
@@ -77,11 +75,9 @@ private:
 
     bool is_too_steep(NodeIndex i) const {
         constexpr double slack = 1.05;
-        const Point p = graph_.position(i);
         const Metric& m0 = metrics_[i];
         bool steep = false;
-        graph_.for_each_neighbour(i, [&](NodeIndex j) {
-            const Vector v = graph_.position(j) - p;
+        graph_.for_each_link(i, [&](NodeIndex j, const Vector& v) {
             const Metric& m1 = metrics_[j];
             steep = steep || growth_between(law_, m0, m1, v).gradation() > slack * g_ ||
                     growth_between(law_, m1, m0, v).gradation() > slack * g_;

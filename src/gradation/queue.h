@@ -56,10 +56,8 @@ std::uint64_t grade_by_queue(const Graph& graph, std::span<Metric> metrics, Grad
     NodeQueue queue(graph.size());
     while (!queue.empty()) {
         const NodeIndex i = queue.pop();
-        const Point p = graph.position(i);
-        graph.for_each_neighbour(i, [&](NodeIndex j) {
-            const Limited limited =
-                limit_growth(law, g, graph.position(j) - p, metrics[i], metrics[j]);
+        graph.for_each_link(i, [&](NodeIndex j, const Vector& v) {
+            const Limited limited = limit_growth(law, g, v, metrics[i], metrics[j]);
             if (limited.first) {
                 ++operations;
                 queue.push(i);
