@@ -114,6 +114,22 @@ Command parse_command_line(int argc, const char* const* argv) {
     add_options(*compare, study_settings(), Study{}, "Settings of the study", given);
     compare->add_flag("--quiet", options.quiet, "No progress on standard error");
     compare->footer(statuses);
+
+    PaperOptions paper_options;
+    CLI::App* paper = app.add_subcommand(
+        "paper", "Set our values beside the paper's, cell by cell, with the reasons");
+    paper
+        ->add_option("INPUT", paper_options.inputs,
+                     "Folders of results to read, or a study file (.toml) to run; left out: the "
+                     "paper's tables at rho = 1 and the experiments")
+        ->option_text("FOLDER ... | FILE.toml");
+    paper->add_flag("--full", paper_options.full, "The paper's rho = 0.2 too (many minutes)");
+    paper
+        ->add_option("--output", paper_options.output,
+                     "New folder for the results; left out: results/NAME-DATE-TIME")
+        ->option_text("TEXT");
+    paper->add_flag("--quiet", paper_options.quiet, "No progress on standard error");
+
     CLI::App* list =
         app.add_subcommand("list", "Name the structures, splits, laws, schedules and references");
 
@@ -127,6 +143,10 @@ Command parse_command_line(int argc, const char* const* argv) {
         throw InputError(fmt::format("{} (see controlspace --help)", error.what()));
     }
     if (list->parsed()) return ListCommand{};
+    if (paper->parsed()) {
+        paper_options.command_line = command_line_text(argc, argv);
+        return paper_options;
+    }
     for (const auto& [key, words] : given) {
         if (!words.empty()) options.settings.emplace_back(key, words);
     }

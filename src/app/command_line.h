@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "app/compare.h"
+#include "app/paper.h"
 
 namespace controlspace {
 
@@ -13,7 +14,7 @@ struct TextCommand {
 };
 struct ListCommand {};
 
-using Command = std::variant<TextCommand, ListCommand, CompareOptions>;
+using Command = std::variant<TextCommand, ListCommand, CompareOptions, PaperOptions>;
 
 /// Throws InputError for what is no valid command line.
 Command parse_command_line(int argc, const char* const* argv);

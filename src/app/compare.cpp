@@ -1,22 +1,14 @@
 #include "app/compare.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <charconv>
-#include <memory>
-#include <optional>
 
-#include "app/progress.h"
+#include "app/run_study.h"
 #include "app/signals.h"
 #include "app/standard_output.h"
-#include "baselines/catalogue.h"
 #include "error.h"
-#include "study/provenance.h"
-#include "study/results.h"
-#include "study/run.h"
 #include "study/settings.h"
 #include "study/study_file.h"
 #include "study/tables.h"
@@ -68,42 +60,6 @@ Study starting_point(const CompareOptions& options) {
     return one_mode ? Study{} : parse_study(quick_study_text(), "built-in study");
 }
 
-std::unique_ptr<tbb::global_control> limit_threads(int threads) {
-    if (threads == 0) return nullptr;
-    return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                 static_cast<std::size_t>(threads));
-}
-
-/// Runs `prepared` and keeps what lies in `folder` up to date. Returns whether all cases succeeded.
-bool run_and_record(PreparedStudy prepared, const ResultsFolder& folder,
-                    const Provenance& provenance, Progress& progress, Interruption& interruption) {
-    const Study study = prepared.study();
-    std::vector<Row> rows;
-    const auto record = [&](bool complete) {
-        const auto whole = interruption.postpone();
-        folder.write(provenance, study, rows, complete);
-    };
-    record(false);
-    std::move(prepared).run({
-        .case_started = [&](const Case& c) { progress.case_started(c); },
-        .phase_started = [&](std::string_view phase) { progress.phase_started(phase); },
-        .case_finished =
-            [&](const Row& row) {
-                rows.push_back(row);
-                progress.case_finished(row);
-                record(false);
-                if (!row.error.empty()) {
-                    spdlog::warn("{}: {}", structure_label(row.setting), row.error);
-                }
-            },
-    });
-    record(true);
-    progress.finish();
-    print(render_tables(study, rows, TableStyle::terminal));
-    print(fmt::format("\nResults: {}\n", folder.path().string()));
-    return std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.error.empty(); });
-}
-
 }  // namespace
 
 Study study_of(const CompareOptions& options) {
@@ -124,23 +80,12 @@ Study study_of(const CompareOptions& options) {
 
 bool compare(const CompareOptions& options) {
     Interruption interruption;
-    const Study study = study_of(options);
-    const auto threads = limit_threads(study.threads);
-    PreparedStudy prepared(study, structures());
-
-    Provenance provenance = current_provenance();
-    provenance.command_line = options.command_line;
-    const ResultsFolder folder(results_path(study, provenance));
-    Progress progress(prepared.cases(), prepared.source_counts(),
-                      options.quiet ? ProgressStyle::none : progress_style_of_stderr());
-    const Interruption::Watch watch(
-        interruption, [&] { progress.show(); },
-        [&] {
-            progress.finish();
-            print_error(fmt::format("controlspace: interrupted: {} of {} cases are in {}\n",
-                                    progress.finished(), progress.count(), folder.path().string()));
-        });
-    return run_and_record(std::move(prepared), folder, provenance, progress, interruption);
+    const FinishedStudy finished =
+        run_study(study_of(options), options.command_line, options.quiet, interruption);
+    print(render_tables(finished.study, finished.rows, TableStyle::terminal));
+    print(fmt::format("\nResults: {}\n", finished.folder.string()));
+    return std::all_of(finished.rows.begin(), finished.rows.end(),
+                       [](const Row& row) { return row.error.empty(); });
 }
 
 }  // namespace controlspace

@@ -33,6 +33,8 @@ int main(int argc, char** argv) {
             print(text->text);
         } else if (std::holds_alternative<ListCommand>(command)) {
             print(list_text());
+        } else if (const auto* paper_options = std::get_if<PaperOptions>(&command)) {
+            paper(*paper_options);
         } else {
             return compare(std::get<CompareOptions>(command)) ? 0 : 3;
         }

@@ -2,10 +2,14 @@
 # Sets CONTROLSPACE_EMBEDDED to their names.
 set(embedded_data
     ${PROJECT_SOURCE_DIR}/data/paper/sphere_tables.csv
-    ${PROJECT_SOURCE_DIR}/data/studies/paper-sphere-quick.toml)
+    ${PROJECT_SOURCE_DIR}/data/studies/paper-sphere-quick.toml
+    ${PROJECT_SOURCE_DIR}/data/studies/paper.toml
+    ${PROJECT_SOURCE_DIR}/data/studies/paper-tie-order.toml)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${embedded_data})
 file(READ ${PROJECT_SOURCE_DIR}/data/paper/sphere_tables.csv PAPER_TABLES)
 file(READ ${PROJECT_SOURCE_DIR}/data/studies/paper-sphere-quick.toml QUICK_STUDY)
+file(READ ${PROJECT_SOURCE_DIR}/data/studies/paper.toml PAPER_STUDY)
+file(READ ${PROJECT_SOURCE_DIR}/data/studies/paper-tie-order.toml TIE_ORDER_STUDY)
 configure_file(study/embedded.cpp.in ${CMAKE_CURRENT_BINARY_DIR}/embedded.cpp @ONLY)
 
 string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)

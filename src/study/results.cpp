@@ -8,6 +8,7 @@
 
 #include "error.h"
 #include "sources/output_file.h"
+#include "study/paper_page.h"
 #include "study/row_json.h"
 #include "study/settings.h"
 #include "study/tables.h"
@@ -16,8 +17,6 @@ namespace controlspace {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr int schema_version = 1;
 
 /// File names and command lines need not be UTF-8; JSON must.
 std::string dump(const Json& json, int indent) {
@@ -85,7 +84,7 @@ void replace_file(const std::filesystem::path& path, const std::string& text) {
 std::string results_json(const Provenance& p, const Study& study, std::span<const Row> rows,
                          bool complete) {
     Json json;
-    json["schema_version"] = schema_version;
+    json["schema_version"] = results_schema_version;
     json["program"] = "controlspace";
     json["version"] = p.version;
     json["commit"] = p.commit;
@@ -134,6 +133,22 @@ std::string results_summary(const Provenance& p, const Study& study, std::span<c
     return text + render_tables(study, rows, TableStyle::markdown);
 }
 
+std::string origin_text(const Provenance& p, bool complete) {
+    return fmt::format("controlspace {}, {}, {}{}: `{}`", version_text(p), p.cpu, p.date,
+                       complete ? "" : ", not complete", p.command_line);
+}
+
+std::string results_paper_page(const Provenance& p, const Study& study, std::span<const Row> rows) {
+    PaperEvidence evidence;
+    evidence.add(study, rows);
+    if (evidence.cells().empty()) return "";
+    return paper_page(evidence, std::vector{origin_text(p, true)});
+}
+
+void write_paper_page(const std::filesystem::path& folder, const std::string& page) {
+    replace_file(folder / "paper.md", page);
+}
+
 ResultsFolder::ResultsFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
@@ -152,6 +167,8 @@ void ResultsFolder::write(const Provenance& provenance, const Study& study,
     replace_file(folder_ / "results.json", results_json(provenance, study, rows, complete));
     replace_file(folder_ / "results.csv", results_csv(rows));
     replace_file(folder_ / "summary.md", results_summary(provenance, study, rows, complete));
+    const std::string page = complete ? results_paper_page(provenance, study, rows) : "";
+    if (!page.empty()) write_paper_page(folder_, page);
 }
 
 std::filesystem::path results_path(const Study& study, const Provenance& provenance) {

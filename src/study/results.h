@@ -10,6 +10,9 @@
 
 namespace controlspace {
 
+/// Of results.json: another number where its fields mean something else.
+constexpr int results_schema_version = 1;
+
 /// results.json: provenance, settings and rows with all raw samples. `complete` is false while
 /// cases are still to come.
 std::string results_json(const Provenance& provenance, const Study& study,
@@ -22,6 +25,16 @@ std::string results_csv(std::span<const Row> rows);
 std::string results_summary(const Provenance& provenance, const Study& study,
                             std::span<const Row> rows, bool complete);
 
+/// One line: which program, machine and command line made results, and when.
+std::string origin_text(const Provenance& provenance, bool complete);
+
+/// paper.md (see paper_page), from rows that were run as the paper's tables; empty without any.
+std::string results_paper_page(const Provenance& provenance, const Study& study,
+                               std::span<const Row> rows);
+
+/// Writes paper.md into `folder`, at once; throws InputError, naming it, if that fails.
+void write_paper_page(const std::filesystem::path& folder, const std::string& page);
+
 /// The folder a study's results go to. Each write replaces each file at once, so that whatever
 /// happens whole files lie there.
 class ResultsFolder {
@@ -32,7 +45,8 @@ public:
 
     const std::filesystem::path& path() const { return folder_; }
 
-    /// Throws InputError, naming the file, if it cannot be written.
+    /// Writes results.json, results.csv, summary.md and, once complete, a paper.md that is not
+    /// empty. Throws InputError, naming the file, if it cannot be written.
     void write(const Provenance& provenance, const Study& study, std::span<const Row> rows,
                bool complete) const;
 

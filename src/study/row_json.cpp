@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "error.h"
 #include "study/names.h"
 
 namespace controlspace {
@@ -78,7 +80,100 @@ void add_measures(Json& json, const Measures& m) {
     json["remark"] = m.footprint.remark;
 }
 
+template <class Enum>
+Enum named(const Json& json, const char* key) {
+    const std::string name = json.at(key);
+    if (const auto e = from_name<Enum>(name)) return *e;
+    throw InputError(fmt::format("unknown {} '{}'", key, name));
+}
+
+template <class T>
+std::optional<T> optional_from(const Json& json, const char* key) {
+    const Json& value = json.at(key);
+    return value.is_null() ? std::nullopt : std::optional<T>(value.get<T>());
+}
+
+Case setting_from(const Json& json, const SourcesChoice& sources) {
+    Case c;
+    c.structure = json.at("structure");
+    if (!json.at("split").is_null()) c.split = named<SplitRule>(json, "split");
+    c.sources = sources;
+    c.sources.rho = optional_from<double>(json, "rho").value_or(sources.rho);
+    c.sources.s_a = optional_from<double>(json, "s_a").value_or(sources.s_a);
+    c.sources.s_n = optional_from<double>(json, "s_n").value_or(sources.s_n);
+    c.tau = json.at("tau");
+    c.epsilon = json.at("epsilon");
+    c.g_r = json.at("g_r");
+    c.max_depth = optional_from<int>(json, "max_depth");
+    c.law = named<GradationLaw>(json, "law");
+    c.schedule = named<GradationSchedule>(json, "schedule");
+    c.reference = named<ReferenceKind>(json, "reference");
+    return c;
+}
+
+Accuracy accuracy_from(const Json& json, const std::string& key) {
+    Accuracy accuracy;
+    accuracy.max = json.at(key + "_max");
+    accuracy.mean = json.at(key + "_mean");
+    accuracy.p95 = json.at(key + "_p95");
+    accuracy.p99 = json.at(key + "_p99");
+    return accuracy;
+}
+
+std::uint64_t checksum_from(const std::string& text) {
+    std::uint64_t value = 0;
+    const char* end = text.data() + text.size();
+    const auto read = std::from_chars(text.data(), end, value, 16);
+    if (read.ec != std::errc() || read.ptr != end) {
+        throw InputError(fmt::format("'{}' is no checksum", text));
+    }
+    return value;
+}
+
+AccessTime access_time_from(const Json& json, const char* key) {
+    AccessTime time;
+    json.at(key).get_to(time.samples_ns);
+    if (time.samples_ns.empty()) throw InputError(fmt::format("no samples in {}", key));
+    return time;
+}
+
+Measures measures_from(const Json& json) {
+    Measures m;
+    m.sources_inserted = json.at("sources_inserted");
+    Footprint& f = m.footprint;
+    f.elements = json.at("elements");
+    f.leaves = json.at("leaves");
+    f.control_nodes = json.at("control_nodes");
+    f.depth = json.at("depth");
+    f.bytes_payload = json.at("bytes_payload");
+    f.bytes_topology = json.at("bytes_topology");
+    f.bytes_auxiliary = json.at("bytes_auxiliary");
+    f.bytes_published = optional_from<std::size_t>(json, "bytes_published_accounting");
+    f.remark = json.at("remark");
+    m.insert_s = json.at("t_insert_s");
+    m.gradation_s = json.at("t_gradation_s");
+    m.access_random = access_time_from(json, "t_access_ns_random_samples");
+    m.access_random.checksum = checksum_from(json.at("checksum"));
+    m.access_grid = access_time_from(json, "t_access_ns_grid_samples");
+    m.source_accuracy = json.at("delta_S_max");
+    m.accuracy = accuracy_from(json, "delta_R");
+    m.accuracy.riemannian_max = json.at("delta_metric_R_max");
+    m.accuracy_fine = accuracy_from(json, "delta_R_fine");
+    m.gradation.largest_ratio_left = json.at("gradation_max_left");
+    m.gradation.operations = json.at("gradation_operations");
+    return m;
+}
+
 }  // namespace
+
+Row row_from_json(const Json& json, const SourcesChoice& sources) {
+    Row row;
+    row.setting = setting_from(json, sources);
+    row.sources = json.at("sources");
+    row.error = json.at("error");
+    if (row.error.empty()) row.measures = measures_from(json);
+    return row;
+}
 
 Json to_json(const Row& row) {
     Json json;

@@ -11,4 +11,10 @@ namespace controlspace {
 /// a row with an `error` all measures are.
 nlohmann::ordered_json to_json(const Row& row);
 
+/// The way back, for rows of a study of `sources`, whose rho, s_a and s_n are the row's. What is
+/// not written stays as it is in an empty row: the worst place, the Riemannian maximum of the finer
+/// probes, the checksum of access in order. Throws InputError or nlohmann::json::exception for what
+/// is no such row.
+Row row_from_json(const nlohmann::ordered_json& json, const SourcesChoice& sources);
+
 }  // namespace controlspace

@@ -7,47 +7,37 @@
 #include <utility>
 
 #include "study/names.h"
-#include "study/paper.h"
+#include "study/paper_evidence.h"
 
 namespace controlspace {
 namespace {
 
 constexpr double mb = 1e6;  // bytes, as in the paper's Table 1
 
-/// A row of ours that the paper has too.
-struct Pair {
-    const Row* ours;
-    const PaperRow* paper;
-};
+using Pair = PaperEvidence::Cell;
 
 /// How one of the paper's tables is shown.
 struct Comparison {
     std::string_view title;
     std::string_view note;
-    double (*ours)(const Measures&);
-    double (*paper)(const PaperRow&);
-    bool ranks;  ///< only ranks can be compared: another machine, another clock
+    PaperTable table;
+    double unit;  ///< our values are shown in 1 / unit of the paper's unit
+    bool ranks;   ///< only ranks can be compared: another machine, another clock
 };
 
 constexpr Comparison comparisons[] = {
     {"Table 1: size as published [MB], ours / paper",
      "The paper's own accounting, which counts no metrics in leaf trees: not the memory taken.",
-     [](const Measures& m) {
-         return static_cast<double>(m.footprint.bytes_published.value_or(0)) / mb;
-     },
-     [](const PaperRow& p) { return p.size_mb; }, false},
+     PaperTable::size, 1, false},
     {"Table 2: creation time [s], ours (rank) / paper (rank)",
      "Ranks in the column; seconds are of different machines and cannot be compared.",
-     [](const Measures& m) { return m.insert_s + m.gradation_s; },
-     [](const PaperRow& p) { return p.creation_s; }, true},
+     PaperTable::creation, 1, true},
     {"Table 3: access time, ours [ns] (rank) / paper [µs] (rank)",
-     "Ranks in the column; the paper's times are whole ticks of 0.370 µs.",
-     [](const Measures& m) { return m.access_random.median_ns(); },
-     [](const PaperRow& p) { return p.access_us; }, true},
+     "Ranks in the column; the paper's times are whole ticks of 0.370 µs.", PaperTable::access, 1e3,
+     true},
     {"Table 4: largest delta_R, ours / paper",
      "At the centres of 30 x 30 x 30 cells, against the published field of the sphere.",
-     [](const Measures& m) { return m.accuracy.max; },
-     [](const PaperRow& p) { return p.delta_r_max; }, false},
+     PaperTable::delta_r, 1, false},
 };
 
 constexpr std::string_view absent = "–";
@@ -111,8 +101,10 @@ private:
 };
 
 TextTable comparison_table(const Grid& grid, const Comparison& comparison) {
-    const auto ours = [&](const Pair& p) { return comparison.ours(*p.ours->measures); };
-    const auto paper = [&](const Pair& p) { return comparison.paper(*p.paper); };
+    const auto ours = [&](const Pair& p) {
+        return comparison.unit * value(comparison.table, *p.ours->measures);
+    };
+    const auto paper = [&](const Pair& p) { return value(comparison.table, *p.paper); };
     return grid.table(comparison.title, comparison.note, [&](const Pair& p, std::size_t column) {
         if (!p.ours->measures) return fmt::format("failed / {}", paper(p));
         if (!comparison.ranks) return fmt::format("{:.2f} / {}", ours(p), paper(p));

@@ -1,0 +1,142 @@
+#include "study/read_results.h"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "error.h"
+#include "study/results.h"
+#include "study/row_json.h"
+#include "study/sample_rows.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// Rows of every kind: measured, failed, without a split, with other names.
+std::vector<Row> some_rows() {
+    std::vector<Row> rows{sample_row(published_case()), sample_row(Case{})};
+    rows[1].setting.structure = "uniform-nearest";
+    rows[1].setting.split.reset();
+    rows[1].setting.tau = 0.1 + 0.2;  // no short decimal
+    rows[1].setting.sources.rho = 0.2;
+    rows[1].measures->footprint.bytes_published.reset();
+    rows.push_back({published_case(), 36186, std::nullopt, "out of memory, \"really\""});
+    return rows;
+}
+
+class Folder {
+public:
+    explicit Folder(const std::string& name)
+        : path(std::filesystem::temp_directory_path() / ("controlspace-read-" + name)) {
+        std::filesystem::remove_all(path);
+        std::filesystem::create_directories(path);
+    }
+    ~Folder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path, ignored);
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+
+    void write(const std::string& text) const { std::ofstream(path / "results.json") << text; }
+    const std::filesystem::path path;
+};
+
+Json valid_json() {
+    return Json::parse(results_json(current_provenance(), Study{}, some_rows(), true));
+}
+
+}  // namespace
+
+TEST_CASE("what was written is read back") {
+    const Folder folder("whole");
+    Study study;
+    study.name = "mine";
+    study.seed = 7;
+    study.domain = Box{Point(-2, -1, -1), Point(1, 1.000000001, 3)};
+    study.sources.radius = 0.7;
+    auto rows = some_rows();
+    for (Row& row : rows) row.setting.sources.radius = 0.7;
+    Provenance provenance = current_provenance();
+    provenance.command_line = "controlspace compare";
+    ResultsFolder(folder.path).write(provenance, study, rows, false);
+
+    const StoredResults read = read_results(folder.path);
+    CHECK_FALSE(read.complete);
+    CHECK(read.study.name == "mine");
+    CHECK(read.study.seed == 7);
+    CHECK(read.study.domain == study.domain);
+    CHECK(read.provenance.cpu == provenance.cpu);
+    CHECK(read.provenance.command_line == "controlspace compare");
+    REQUIRE(read.rows.size() == rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        CHECK(read.rows[i].setting == rows[i].setting);
+        CHECK(to_json(read.rows[i]) == to_json(rows[i]));
+    }
+    CHECK(results_json(read.provenance, read.study, read.rows, false) ==
+          results_json(provenance, study, rows, false));
+}
+
+TEST_CASE("what is no file of results is refused by name") {
+    const Folder folder("refused");
+    CHECK_THROWS_WITH(read_results(folder.path / "none"), Contains("results.json"));
+    CHECK_THROWS_AS(read_results(folder.path), InputError);
+    const auto refuse = [&](const std::string& text, const std::string& expected) {
+        folder.write(text);
+        CHECK_THROWS_AS(read_results(folder.path), InputError);
+        CHECK_THROWS_WITH(read_results(folder.path),
+                          Contains("results.json: ") && Contains(expected));
+    };
+    folder.write("");
+    CHECK_THROWS_WITH(read_results(folder.path), Contains("results.json is empty"));
+    refuse("{", "parse error");
+    refuse("[]", "not written by this program");
+    refuse("{}", "not written by this program");
+    refuse("7", "not written by this program");
+    Json json = valid_json();
+    json["program"] = 3;
+    refuse(json.dump(), "not written by this program");
+    json = valid_json();
+    json["schema_version"] = 99;
+    refuse(json.dump(), "schema version 99");
+    json = valid_json();
+    json.erase("settings");
+    refuse(json.dump(), "settings");
+    json = valid_json();
+    json["settings"]["seed"] = "x";
+    refuse(json.dump(), "'x' is not a number");
+    json = valid_json();
+    json["settings"]["seed"] = true;
+    refuse(json.dump(), "seed");
+    json = valid_json();
+    json["complete"] = "yes";
+    refuse(json.dump(), "type");
+    json = valid_json();
+    json["rows"] = 3;
+    refuse(json.dump(), "rows");
+}
+
+TEST_CASE("a row that is no row is refused by its number") {
+    const Folder folder("rows");
+    const auto refuse = [&](const char* field, const Json& value, const std::string& expected) {
+        Json json = valid_json();
+        json["rows"][1][field] = value;
+        folder.write(json.dump());
+        CHECK_THROWS_WITH(read_results(folder.path), Contains("row 2: ") && Contains(expected));
+    };
+    refuse("split", "s_X", "unknown split 's_X'");
+    refuse("law", "none", "unknown law 'none'");
+    refuse("tau", "1", "type");
+    refuse("leaves", nullptr, "type");
+    refuse("checksum", "xyz", "no checksum");
+    refuse("t_access_ns_random_samples", "1 2", "type");
+    refuse("t_access_ns_random_samples", Json::array(), "no samples");
+    Json json = valid_json();
+    json["rows"][1].erase("delta_R_max");
+    folder.write(json.dump());
+    CHECK_THROWS_WITH(read_results(folder.path), Contains("row 2: ") && Contains("delta_R_max"));
+}
