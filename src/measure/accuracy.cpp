@@ -63,7 +63,7 @@ std::vector<Point> cell_centres(const Box& box, int n) {
     return points;
 }
 
-Probes make_probes(const ReferenceField& field, std::vector<Point> points) {
+Probes make_probes(const MetricField& field, std::vector<Point> points) {
     Probes probes{std::move(points), {}};
     probes.reference.resize(probes.points.size());
     field.evaluate(probes.points, probes.reference);

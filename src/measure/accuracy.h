@@ -20,7 +20,7 @@ struct Probes {
     std::vector<Point> points;
     std::vector<Metric> reference;
 };
-Probes make_probes(const ReferenceField& field, std::vector<Point> points);
+Probes make_probes(const MetricField& field, std::vector<Point> points);
 
 /// Non-conformity δ between a structure and its reference over a set of places. Where the structure
 /// answers something that is no metric, δ is infinite.

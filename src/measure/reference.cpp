@@ -73,7 +73,7 @@ void require_usable(std::span<const PointSource> sources, double g, const Metric
     }
 }
 
-class ExactReference : public ReferenceField {
+class ExactReference : public MetricField {
 public:
     ExactReference(std::span<const PointSource> sources, double g, const Metric& largest)
         : field_(sources, g, largest) {}
@@ -87,7 +87,7 @@ private:
     ConeField field_;
 };
 
-class BruteForceReference : public ReferenceField {
+class BruteForceReference : public MetricField {
 public:
     BruteForceReference(std::vector<PointSource> sources, double g, const Metric& largest)
         : sources_(std::move(sources)), g_(g), largest_(largest) {
@@ -122,7 +122,7 @@ private:
     Metric largest_;
 };
 
-class PublishedSphereReference : public ReferenceField {
+class PublishedSphereReference : public MetricField {
 public:
     PublishedSphereReference(double radius, double h, double slope, double largest)
         : radius_(radius), h_(h), slope_(slope), largest_(largest) {}
@@ -140,20 +140,20 @@ private:
 
 }  // namespace
 
-std::unique_ptr<ReferenceField> exact_reference(std::vector<PointSource> sources, double g,
-                                                const Metric& largest) {
+std::unique_ptr<MetricField> exact_reference(std::vector<PointSource> sources, double g,
+                                             const Metric& largest) {
     require_usable(sources, g, largest);
     return std::make_unique<ExactReference>(sources, g, largest);
 }
 
-std::unique_ptr<ReferenceField> brute_force_reference(std::vector<PointSource> sources, double g,
-                                                      const Metric& largest) {
+std::unique_ptr<MetricField> brute_force_reference(std::vector<PointSource> sources, double g,
+                                                   const Metric& largest) {
     require_usable(sources, g, largest);
     return std::make_unique<BruteForceReference>(std::move(sources), g, largest);
 }
 
-std::unique_ptr<ReferenceField> published_sphere_reference(double radius, double h, double g,
-                                                           double largest) {
+std::unique_ptr<MetricField> published_sphere_reference(double radius, double h, double g,
+                                                        double largest) {
     require_ratio(g);
     if (!std::isfinite(radius) || radius < 0 || !(h > 0) || !std::isfinite(h) || !(largest > 0) ||
         !std::isfinite(largest)) {

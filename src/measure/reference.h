@@ -1,23 +1,13 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <vector>
 
-#include "geometry/point.h"
 #include "metric/metric.h"
+#include "metric/metric_field.h"
 #include "sources/point_source.h"
 
 namespace controlspace {
-
-/// The field that structures are measured against. Reading is thread-safe.
-class ReferenceField {
-public:
-    virtual ~ReferenceField() = default;
-
-    /// Metrics at `x`; out.size() == x.size(). Large batches run on all of TBB's threads.
-    virtual void evaluate(std::span<const Point> x, std::span<Metric> out) const = 0;
-};
 
 /// The exact field of paper §5.2 (defined in cones/cone_field.h).
 ///
@@ -27,17 +17,17 @@ public:
 ///
 /// Throws InputError, naming the source by its index (0-based), for a position that is not finite
 /// or a metric that is not positive definite; for g < 1 or not finite; for such a `largest`.
-std::unique_ptr<ReferenceField> exact_reference(std::vector<PointSource> sources, double g,
-                                                const Metric& largest);
+std::unique_ptr<MetricField> exact_reference(std::vector<PointSource> sources, double g,
+                                             const Metric& largest);
 
 /// The same by intersecting with every source, without a search: the oracle of the tests.
-std::unique_ptr<ReferenceField> brute_force_reference(std::vector<PointSource> sources, double g,
-                                                      const Metric& largest);
+std::unique_ptr<MetricField> brute_force_reference(std::vector<PointSource> sources, double g,
+                                                   const Metric& largest);
 
 /// What the paper's Table 4 was measured against, for spheres around the origin: the isotropic
 /// field h(p) = min(largest, h + s ||p| - radius|), s = 2 (g-1) / (g+1).
 /// Throws InputError for lengths that are not positive or finite, and for g as above.
-std::unique_ptr<ReferenceField> published_sphere_reference(double radius, double h, double g,
-                                                           double largest);
+std::unique_ptr<MetricField> published_sphere_reference(double radius, double h, double g,
+                                                        double largest);
 
 }  // namespace controlspace

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+
+#include "geometry/point.h"
+#include "metric/metric.h"
+
+namespace controlspace {
+
+/// A metric at every point of space, without a structure: what structures are made to follow, and
+/// what they are measured against. Reading is thread-safe.
+class MetricField {
+public:
+    virtual ~MetricField() = default;
+
+    /// Metrics at `x`; out.size() == x.size(). Large batches run on all of TBB's threads.
+    virtual void evaluate(std::span<const Point> x, std::span<Metric> out) const = 0;
+};
+
+}  // namespace controlspace
