@@ -100,12 +100,14 @@ struct Accumulated {
     explicit Accumulated(const Metric& m)
         : metric(m), squared(square(m)), longest(eigen_frame(m).lengths[2]) {}
 
-    void shorten_to(const Metric& m) {
-        if (m == metric) return;
+    // Whether `m` is another.
+    bool shorten_to(const Metric& m) {
+        if (m == metric) return false;
         metric = m;
         squared = square(m);
         constexpr unsigned now_and_then = 8;
         if (++changes % now_and_then == 0) longest = eigen_frame(m).lengths[2];
+        return true;
     }
 
 private:
@@ -121,9 +123,8 @@ struct Later {
 
 }  // namespace
 
-AnisotropicCones::AnisotropicCones(std::span<const PointSource> sources, double g, double cap,
-                                   double tolerance)
-    : g_(g), cap_(cap), tolerance_(tolerance) {
+AnisotropicCones::AnisotropicCones(std::span<const PointSource> sources, double g, double cap)
+    : g_(g), cap_(cap) {
     std::vector<Cone> cones(sources.size());
     std::vector<double> anisotropies(sources.size());
     tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t i) {
@@ -251,9 +252,10 @@ double AnisotropicCones::least_factor(const Node& node, const Point& p) const {
     return 1 + (g_ - 1) * std::max(0.0, away - (1 + uncertainty_) * node.radius);
 }
 
-Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, Queue& queue) const {
+Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double tolerance,
+                                   Queue& queue, std::vector<std::uint32_t>* governing) const {
     const double certain = 1 - uncertainty_;
-    const double enough = certain * (1 + tolerance_);
+    const double enough = certain * (1 + tolerance);
     Accumulated found(largest);
     const auto within = [&](double shortest, double factor, const Metric& squared) {
         return enough * shortest >= found.longest ||
@@ -300,7 +302,10 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, Queue&
             const Cone& cone = cones_[next.place];
             if (within(next.length, next.length / cone.length, cone.square)) continue;
             const double factor = cone_factor(cone.source, g_, p);
-            found.shorten_to(intersection(found.metric, factor * cone.source.metric));
+            const Metric shortened = intersection(found.metric, factor * cone.source.metric);
+            if (found.shorten_to(shortened) && governing != nullptr) {
+                governing->push_back(cone.index);
+            }
         }
     }
     return found.metric;

@@ -15,8 +15,8 @@ namespace controlspace {
 /// bounding-volume hierarchy; only cones that provably leave the result as it is are left out.
 class AnisotropicCones {
 public:
-    /// g >= 1; `tolerance` as ConeField has it. Lengths of `cap` or more do not matter.
-    AnisotropicCones(std::span<const PointSource> sources, double g, double cap, double tolerance);
+    /// g >= 1. Lengths of `cap` or more do not matter.
+    AnisotropicCones(std::span<const PointSource> sources, double g, double cap);
 
     /// A cone or a node of the hierarchy that waits for its turn.
     struct Waiting {
@@ -28,7 +28,10 @@ public:
     using Queue = std::vector<Waiting>;
 
     /// `largest`, no longer than the cap, intersected with the cones at `p`, one after the other.
-    Metric intersect(const Point& p, const Metric& largest, Queue& queue) const;
+    /// Cones that would shorten no length by more than the fraction `tolerance` are passed over.
+    /// Appends the indices of the sources that shortened one to `governing`, if there is such.
+    Metric intersect(const Point& p, const Metric& largest, double tolerance, Queue& queue,
+                     std::vector<std::uint32_t>* governing) const;
 
     /// Sources that change the result nowhere, and were left out.
     std::size_t dropped() const { return dropped_; }
@@ -65,7 +68,6 @@ private:
 
     double g_;
     double cap_;
-    double tolerance_;
     std::size_t dropped_ = 0;
     double uncertainty_ = 0;  ///< relative, of lengths computed from the metrics given
     ConeTreeShape shape_;

@@ -12,15 +12,16 @@ ConeField::ConeField(std::span<const PointSource> sources, double g, const Metri
                      double tolerance)
     : largest_(largest),
       longest_(eigen_frame(largest).lengths[2]),
-      cones_(make_cones(sources, g, largest, tolerance)) {}
+      tolerance_(tolerance),
+      cones_(make_cones(sources, g, largest)) {}
 
 ConeField::Cones ConeField::make_cones(std::span<const PointSource> sources, double g,
-                                       const Metric& largest, double tolerance) {
+                                       const Metric& largest) {
     const bool isotropic = std::all_of(sources.begin(), sources.end(),
                                        [](const PointSource& s) { return is_isotropic(s.metric); });
     const double cap = eigen_frame(largest).lengths[2];
     if (isotropic) return IsotropicCones(sources, g, cap);
-    return AnisotropicCones(sources, g, cap, tolerance);
+    return AnisotropicCones(sources, g, cap);
 }
 
 void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out) const {
@@ -35,9 +36,32 @@ void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out) const 
     } else {
         AnisotropicCones::Queue queue;
         for (std::size_t i = 0; i < x.size(); ++i) {
-            out[i] = std::get<AnisotropicCones>(cones_).intersect(x[i], largest_, queue);
+            out[i] = std::get<AnisotropicCones>(cones_).intersect(x[i], largest_, tolerance_, queue,
+                                                                  nullptr);
         }
     }
+}
+
+void ConeField::governing(const Point& x, double tolerance, std::vector<std::uint32_t>& sources,
+                          Metric& m, Memory& memory) const {
+    sources.clear();
+    const auto* isotropic = std::get_if<IsotropicCones>(&cones_);
+    if (isotropic == nullptr) {
+        m = std::get<AnisotropicCones>(cones_).intersect(x, largest_, tolerance, memory.queue,
+                                                         &sources);
+        return;
+    }
+    const double h = isotropic->smallest_length(x, memory.hint);
+    m = largest_;
+    if (h * (1 + tolerance) >= longest_) return;
+    m = intersection(largest_, Metric::isotropic(h));
+    sources.push_back(isotropic->source_of(x, h, memory.hint));
+}
+
+void ConeField::governing(const Point& x, double tolerance, std::vector<std::uint32_t>& sources,
+                          Metric& m) const {
+    Memory memory;
+    governing(x, tolerance, sources, m, memory);
 }
 
 std::size_t ConeField::dropped() const {

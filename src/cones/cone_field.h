@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <variant>
+#include <vector>
 
 #include "cones/anisotropic_cones.h"
 #include "cones/isotropic_cones.h"
@@ -32,6 +34,23 @@ public:
     /// Metrics at `x`, on the calling thread. Thread-safe.
     void evaluate(std::span<const Point> x, std::span<Metric> out) const;
 
+    /// What `governing` remembers from one call to the next: best kept from place to nearby place,
+    /// by one thread for one field.
+    struct Memory {
+        IsotropicCones::Hint hint = 0;
+        AnisotropicCones::Queue queue;
+    };
+
+    /// The metric `m` at `x`, and the `sources` that make it so: their indices, in the order of the
+    /// definition. `m` is `largest` intersected with their cones, one after the other; cones that
+    /// would shorten no length by more than the fraction `tolerance` are passed over, whatever the
+    /// field's own. Isotropic sources: the one whose cone is the smallest, any of several. Empty
+    /// where `largest` stands. Costs as much as `evaluate` at one place. Thread-safe.
+    void governing(const Point& x, double tolerance, std::vector<std::uint32_t>& sources, Metric& m,
+                   Memory& memory) const;
+    void governing(const Point& x, double tolerance, std::vector<std::uint32_t>& sources,
+                   Metric& m) const;
+
     /// Sources that were left out because others lie below them everywhere.
     std::size_t dropped() const;
 
@@ -41,11 +60,11 @@ public:
 
 private:
     using Cones = std::variant<IsotropicCones, AnisotropicCones>;
-    static Cones make_cones(std::span<const PointSource> sources, double g, const Metric& largest,
-                            double tolerance);
+    static Cones make_cones(std::span<const PointSource> sources, double g, const Metric& largest);
 
     Metric largest_;
     double longest_;  ///< of the lengths of `largest_`
+    double tolerance_;
     Cones cones_;
 };
 

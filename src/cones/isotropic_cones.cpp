@@ -142,6 +142,9 @@ void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const PointS
         return items.subspan(shape_.begin(node), shape_.end(node) - shape_.begin(node));
     };
     sort_for_tree(shape_, items);
+    indices_ = std::vector<std::uint32_t>(items.size());
+    std::transform(items.begin(), items.end(), indices_.begin(),
+                   [](const ConeTreeItem& item) { return item.index; });
 
     leaves_ = std::vector<Leaf>(items.empty() ? 0 : shape_.first_leaf());
     tbb::parallel_for(std::size_t{0}, leaves_.size(), [&](std::size_t l) {
@@ -220,6 +223,12 @@ IsotropicCones::Children IsotropicCones::lower_bounds(const Node& node, const Po
     return safely_ * (node.length + slope_ * (above.square() + beside.square()).sqrt());
 }
 
+double IsotropicCones::length_at(const Leaf& leaf, Eigen::Index lane, const Point& p) const {
+    const double h = leaf.length[lane];
+    const PointSource source{{leaf.x[lane], leaf.y[lane], leaf.z[lane]}, Metric::isotropic(h)};
+    return cone_factor(source, g_, p) * h;
+}
+
 void IsotropicCones::visit_leaf(std::uint32_t index, const Point& p, double& smallest,
                                 Hint& hint) const {
     // Negative where h_i + (g-1) |p - Q_i| may be below `smallest`: compared as squares, all lanes.
@@ -232,9 +241,7 @@ void IsotropicCones::visit_leaf(std::uint32_t index, const Point& p, double& sma
     if (!(excess.minCoeff() < 0)) return;
     for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(leaf_size); ++i) {
         if (!(excess[i] < 0)) continue;
-        const double h = leaf.length[i];
-        const PointSource source{{leaf.x[i], leaf.y[i], leaf.z[i]}, Metric::isotropic(h)};
-        const double length = cone_factor(source, g_, p) * h;
+        const double length = length_at(leaf, i, p);
         if (length < smallest) {
             smallest = length;
             hint = index;
@@ -244,6 +251,12 @@ void IsotropicCones::visit_leaf(std::uint32_t index, const Point& p, double& sma
 
 double IsotropicCones::smallest_length(const Point& p, Hint& hint) const {
     return search(p, cap_, hint);
+}
+
+std::uint32_t IsotropicCones::source_of(const Point& p, double smallest, Hint hint) const {
+    Eigen::Index lane = 0;
+    while (length_at(leaves_[hint], lane, p) != smallest) ++lane;
+    return indices_[shape_.begin(shape_.first_leaf() + hint) + static_cast<std::size_t>(lane)];
 }
 
 double IsotropicCones::search(const Point& p, double cap, Hint& hint) const {

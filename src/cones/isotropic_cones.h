@@ -27,6 +27,10 @@ public:
     /// minimum over all sources of `cone_factor` times the source's length, whatever `hint` is.
     double smallest_length(const Point& p, Hint& hint) const;
 
+    /// Index of the source that has the `smallest` length at `p`, one of them where several have;
+    /// `smallest` and `hint` as `smallest_length` left them, `smallest` below the cap.
+    std::uint32_t source_of(const Point& p, double smallest, Hint hint) const;
+
     /// Sources that are the smallest nowhere, and were left out.
     std::size_t dropped() const { return dropped_; }
 
@@ -34,7 +38,8 @@ public:
     std::size_t bytes_payload() const { return leaves_.capacity() * sizeof(Lanes); }
     std::size_t bytes_topology() const {
         return leaves_.capacity() * (sizeof(Leaf) - sizeof(Lanes)) +
-               nodes_.capacity() * sizeof(Node) + first_of_level_.capacity() * sizeof(std::size_t);
+               nodes_.capacity() * sizeof(Node) + first_of_level_.capacity() * sizeof(std::size_t) +
+               indices_.capacity() * sizeof(std::uint32_t);
     }
 
 private:
@@ -61,6 +66,7 @@ private:
     void build(std::span<ConeTreeItem> items, std::span<const PointSource> sources);
     bool is_dominated(const PointSource& source) const;
     Children lower_bounds(const Node& node, const Point& p) const;
+    double length_at(const Leaf& leaf, Eigen::Index lane, const Point& p) const;
     void visit_leaf(std::uint32_t leaf, const Point& p, double& smallest, Hint& hint) const;
     double search(const Point& p, double cap, Hint& hint) const;
 
@@ -73,6 +79,7 @@ private:
     std::vector<Node> nodes_;                  ///< level by level
     std::vector<std::size_t> first_of_level_;  ///< places in nodes_
     std::vector<Leaf> leaves_;
+    std::vector<std::uint32_t> indices_;  ///< of the sources in tree order
 };
 
 }  // namespace controlspace

@@ -148,6 +148,76 @@ TEST_CASE("With a tolerance no cone is exceeded by more") {
     }
 }
 
+TEST_CASE("The governing sources make the field, and each of them counts") {
+    const double anisotropy = GENERATE(1.0, 4.0);
+    Draw draw(8);
+    // Many at one place, and many dropped: indices are those of the sources as given.
+    auto sources = scattered(draw, 500, anisotropy);
+    sources.insert(sources.begin() + 100, sources.begin(), sources.begin() + 50);
+    auto points = places(draw, 200);
+    points.push_back(Point::Constant(100));  // out of reach
+    const Metric largest = draw.metric(0.6, 1.5);
+    const ConeField field(sources, g, largest);
+    const auto exact = evaluated(field, points);
+    std::vector<std::uint32_t> governing{1, 2, 3};
+    std::size_t most = 0;
+    std::size_t without = 0;
+    ConeField::Memory memory;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        Metric m;
+        field.governing(points[i], 0, governing, m, memory);
+        CHECK(m == exact[i]);
+        Metric again = largest;
+        double shortest = 0;
+        for (const std::uint32_t s : governing) {
+            REQUIRE(s < sources.size());
+            const Metric cone = cone_factor(sources[s], g, points[i]) * sources[s].metric;
+            CHECK(eigen_frame(cone).lengths[0] >= shortest * (1 - 1e-12));
+            shortest = eigen_frame(cone).lengths[0];
+            const Metric before = again;
+            again = intersection(again, cone);
+            CHECK(again != before);
+        }
+        CHECK(again == m);
+        most = std::max(most, governing.size());
+        without += governing.empty() ? 1 : 0;
+    }
+    CHECK((anisotropy > 1 ? most > 3 : most == 1));
+    CHECK(without == 1);
+}
+
+TEST_CASE("Sources that cut by less than the tolerance do not govern") {
+    const double s_n = GENERATE(1.0, 0.25);
+    Draw draw(9);
+    const auto sources = sample_sphere({.h = 0.1, .s_a = 4, .s_n = s_n});
+    const ConeField field(sources, g, wide);
+    std::size_t last = sources.size() * sources.size();
+    const auto points = places(draw, 50);
+    for (const double tolerance : {1e-9, 1e-3, 0.1, 100.0}) {
+        std::size_t count = 0;
+        for (const Point& p : points) {
+            std::vector<std::uint32_t> governing;
+            Metric m;
+            field.governing(p, tolerance, governing, m);
+            count += governing.size();
+            Metric again = wide;
+            for (const std::uint32_t s : governing) {
+                const Metric cone = cone_factor(sources[s], g, p) * sources[s].metric;
+                CHECK(growth(again, cone) > (1 + tolerance) * (1 - 1e-6));
+                again = intersection(again, cone);
+            }
+            CHECK(again == m);
+            for (const PointSource& s : sources) {
+                const double factor = cone_factor(s, g, p);
+                CHECK(growth(m, factor * s.metric) < (1 + tolerance) * (1 + 1e-9));
+            }
+        }
+        CHECK((s_n < 1 ? count < last : count <= last));
+        last = count;
+    }
+    CHECK(last == 0);
+}
+
 TEST_CASE("A spatial order names every point once, and neighbours together") {
     Draw draw(7);
     std::vector<Point> points = places(draw, 5000);
