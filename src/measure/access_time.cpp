@@ -6,10 +6,10 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <random>
 #include <stdexcept>
 
 #include "error.h"
+#include "geometry/random_fractions.h"
 
 namespace controlspace {
 
@@ -38,9 +38,7 @@ double quantile(std::vector<double> samples, double fraction) {
 std::vector<Point> random_points(const Box& box, std::size_t n, std::uint64_t seed) {
     constexpr std::size_t most = std::size_t{1} << 28;
     if (n > most) throw InputError(fmt::format("{} random points: give at most {}", n, most));
-    // The standard fixes the engine's numbers, but not what its distributions make of them.
-    std::mt19937_64 engine(seed);
-    const auto fraction = [&] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
+    RandomFractions fraction(seed);
     std::vector<Point> points(n);
     for (Point& p : points) {
         for (Axis a = 0; a < 3; ++a) p[a] = box.low[a] + fraction() * (box.high[a] - box.low[a]);

@@ -46,6 +46,14 @@ bool is_positive_definite(const Metric& m);
 /// Equal lengths give exactly `Metric::isotropic`, whatever the directions.
 Metric metric_from_frame(const std::array<double, 3>& lengths, const Eigen::Matrix3d& directions);
 
+/// Length `across` along the unit vector `normal`, and `along` at right angles to it; exactly
+/// `Metric::isotropic` where the two are equal.
+inline Metric layer_metric(const Vector& normal, double across, double along) {
+    const Vector dn = (across - along) * normal;
+    return {along + dn.x() * normal.x(), along + dn.y() * normal.y(), along + dn.z() * normal.z(),
+            dn.x() * normal.y(),         dn.x() * normal.z(),         dn.y() * normal.z()};
+}
+
 /// Eigen-decomposition of a metric; of any symmetric tensor too, whose "lengths" may be negative.
 struct EigenFrame {
     std::array<double, 3> lengths;  ///< ascending

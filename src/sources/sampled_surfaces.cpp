@@ -38,13 +38,6 @@ void require_lengths(const Sampling& s) {
     require_length("h * rho", s.h * s.rho);
 }
 
-// `across` along the unit normal, `along` in the plane: along I + (across - along) n n^T.
-Metric surface_metric(const Vector& n, double along, double across) {
-    const Vector dn = (across - along) * n;
-    return {along + dn.x() * n.x(), along + dn.y() * n.y(), along + dn.z() * n.z(),
-            dn.x() * n.y(),         dn.x() * n.z(),         dn.y() * n.z()};
-}
-
 // -1, -1 + step, ... 1: the last step is the shorter one.
 std::vector<double> steps_across(double step) {
     constexpr double rounding = 1e-9;  // a last step this short is none
@@ -60,6 +53,10 @@ std::vector<double> steps_across(double step) {
 std::vector<PointSource> sample_sphere(const SphereSampling& s) {
     require_lengths(s);
     require_length("radius", s.radius);
+    if (!std::all_of(s.centre.begin(), s.centre.end(), is_coordinate)) {
+        throw InputError(fmt::format("centre = ({}, {}, {}): give three finite coordinates",
+                                     s.centre.x(), s.centre.y(), s.centre.z()));
+    }
     constexpr double quarter = std::numbers::pi / 2;
     const double a = quarter * s.radius / (s.h * s.rho);
     require_few(16 / std::numbers::pi * a * a, s.h, s.rho);
@@ -68,7 +65,8 @@ std::vector<PointSource> sample_sphere(const SphereSampling& s) {
     const double along = s.h * s.s_a;
     const auto add = [&](double x, double y, double z) {
         const Vector normal(x, y, z);
-        sources.push_back({s.radius * normal, surface_metric(normal, along, along * s.s_n)});
+        sources.push_back(
+            {s.centre + s.radius * normal, layer_metric(normal, along * s.s_n, along)});
     };
     const auto add_quadrants = [&](double sine, double cosine, double z) {
         for (const double x : {sine, -sine}) {
@@ -110,11 +108,11 @@ std::vector<PointSource> sample_planes(const PlanesSampling& s) {
     const double along = s.h * s.s_a;
     const double across = along * s.s_n;
     const std::vector<double> rows = steps_across(spacing);
-    const Metric first = surface_metric(Vector::UnitX(), along, across);
+    const Metric first = layer_metric(Vector::UnitX(), across, along);
     for (const double v : rows) {
         for (const double u : rows) sources.push_back({{-0.5, u, v}, first});
     }
-    const Metric second = surface_metric(Vector(s.slope, -1, 0) / stretch, along, across);
+    const Metric second = layer_metric(Vector(s.slope, -1, 0) / stretch, across, along);
     const std::vector<double> columns = steps_across(spacing / stretch);
     for (const double v : rows) {
         for (const double u : columns) sources.push_back({{u, -0.2 + s.slope * u, v}, second});

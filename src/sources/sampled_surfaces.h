@@ -10,6 +10,7 @@ namespace controlspace {
 /// across it; samples are `h rho` apart, whatever s_a and s_n. [s_a, s_n] = [2, 1] of the paper is
 /// isotropic 0.03, and [4, 0.25] is 0.015 across and 0.06 along.
 struct SphereSampling {
+    Point centre = Point::Zero();
     double radius = 0.8;
     double h = 0.015;
     double s_a = 2;
@@ -31,11 +32,11 @@ struct PlanesSampling {
 /// Most sources that sampling makes; more is refused as a slip of the pen.
 inline constexpr double most_samples = 1e8;
 
-/// Sources on a sphere around the origin, as published: the equator, then pairs of latitudes
-/// towards the poles, then the two poles. Latitudes go by quadrants that start at x = 0 and stop
-/// one step before y = 0: sources at x = 0 are there twice, and at y = 0 two steps meet without
-/// one. 36186 for the defaults. Throws InputError for values that are not positive or make too
-/// many.
+/// Sources on a sphere, as published (there around the origin): the equator, then pairs of
+/// latitudes towards the poles, then the two poles. Latitudes go by quadrants that start at x = 0
+/// and stop one step before y = 0: sources at x = 0 are there twice, and at y = 0 two steps meet
+/// without one. 36186 for the defaults. Throws InputError for values that are not positive or make
+/// too many.
 std::vector<PointSource> sample_sphere(const SphereSampling& sampling);
 
 /// Sources on both planes, the first plane first, in rows along u, each row ending at u = 1.

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sources/sampled_surfaces.h"
+
+namespace controlspace {
+
+/// How sources lie on a surface that are not in rows.
+enum class Scatter {
+    /// Each anywhere, with equal chance for equal areas.
+    random,
+    /// Each around one of `cluster_count` places, which are anywhere: its distance from it is
+    /// nearly normal, `cluster_spread` in standard deviation along either direction.
+    clustered,
+    /// Anywhere, but no two nearer than h rho (Poisson disks). Every place is tried so often that
+    /// little room is left.
+    poisson,
+};
+
+inline constexpr int cluster_count = 16;
+inline constexpr double cluster_spread = 0.03;  ///< in units of the square root of the area
+
+/// Sources on the same surfaces and with the same metrics as those of sample_sphere and
+/// sample_planes; of `random` and `clustered` as many too, of `poisson` about two thirds. The same
+/// for the same seed. Errors as there.
+std::vector<PointSource> scatter_sphere(const SphereSampling& sampling, Scatter scatter,
+                                        std::uint64_t seed);
+std::vector<PointSource> scatter_planes(const PlanesSampling& sampling, Scatter scatter,
+                                        std::uint64_t seed);
+
+}  // namespace controlspace
