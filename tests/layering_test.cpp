@@ -11,9 +11,10 @@ namespace fs = std::filesystem;
 namespace {
 
 // Folders with the same number know nothing of each other.
-const std::map<std::string, int> layers{
-    {"geometry", 0}, {"metric", 1},    {"sources", 2}, {"gradation", 2}, {"cones", 3},
-    {"spaces", 4},   {"baselines", 5}, {"measure", 5}, {"study", 6},     {"app", 7}};
+const std::map<std::string, int> layers{{"geometry", 0},  {"metric", 1},    {"sources", 2},
+                                        {"gradation", 2}, {"cones", 3},     {"fields", 3},
+                                        {"spaces", 4},    {"baselines", 5}, {"measure", 5},
+                                        {"study", 6},     {"app", 7}};
 
 bool is_source(const fs::path& path) {
     return path.extension() == ".h" || path.extension() == ".cpp";

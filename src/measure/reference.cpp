@@ -1,11 +1,8 @@
 #include "measure/reference.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -14,31 +11,13 @@
 #include "cones/cone.h"
 #include "cones/cone_field.h"
 #include "error.h"
+#include "fields/surface_fields.h"
+#include "metric/evaluate.h"
 #include "metric/intersection.h"
 
 namespace controlspace {
 
 namespace {
-
-// Points of one task: enough that a task's start does not matter.
-constexpr std::size_t points_per_task = 64;
-
-template <class Block>
-void for_each_block(std::span<const Point> x, std::span<Metric> out, Block&& block) {
-    assert(x.size() == out.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, x.size(), points_per_task),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          block(x.subspan(range.begin(), range.size()),
-                                out.subspan(range.begin(), range.size()));
-                      });
-}
-
-template <class At>
-void for_all(std::span<const Point> x, std::span<Metric> out, At&& at) {
-    for_each_block(x, out, [&](auto points, auto metrics) {
-        std::transform(points.begin(), points.end(), metrics.begin(), at);
-    });
-}
 
 void require_ratio(double g) {
     if (!std::isfinite(g) || g < 1) {
@@ -79,8 +58,8 @@ public:
         : field_(sources, g, largest) {}
 
     void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
-        for_each_block(x, out,
-                       [this](auto points, auto metrics) { field_.evaluate(points, metrics); });
+        evaluate_blocks(x, out,
+                        [this](auto points, auto metrics) { field_.evaluate(points, metrics); });
     }
 
 private:
@@ -96,7 +75,7 @@ public:
     }
 
     void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
-        for_all(x, out, [this](const Point& p) { return at(p); });
+        evaluate_each(x, out, [this](const Point& p) { return at(p); });
     }
 
 private:
@@ -122,22 +101,6 @@ private:
     Metric largest_;
 };
 
-class PublishedSphereReference : public MetricField {
-public:
-    PublishedSphereReference(double radius, double h, double slope, double largest)
-        : radius_(radius), h_(h), slope_(slope), largest_(largest) {}
-
-    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
-        for_all(x, out, [this](const Point& p) {
-            return Metric::isotropic(
-                std::min(largest_, h_ + slope_ * std::abs(p.norm() - radius_)));
-        });
-    }
-
-private:
-    double radius_, h_, slope_, largest_;
-};
-
 }  // namespace
 
 std::unique_ptr<MetricField> exact_reference(std::vector<PointSource> sources, double g,
@@ -152,17 +115,11 @@ std::unique_ptr<MetricField> brute_force_reference(std::vector<PointSource> sour
     return std::make_unique<BruteForceReference>(std::move(sources), g, largest);
 }
 
-std::unique_ptr<MetricField> published_sphere_reference(double radius, double h, double g,
-                                                        double largest) {
+std::shared_ptr<const MetricField> published_sphere_reference(double radius, double h, double g,
+                                                              double largest) {
     require_ratio(g);
-    if (!std::isfinite(radius) || radius < 0 || !(h > 0) || !std::isfinite(h) || !(largest > 0) ||
-        !std::isfinite(largest)) {
-        throw InputError(
-            fmt::format("reference of a sphere of radius {}, length {}, largest length "
-                        "{}: give finite ones, the lengths positive",
-                        radius, h, largest));
-    }
-    return std::make_unique<PublishedSphereReference>(radius, h, 2 * (g - 1) / (g + 1), largest);
+    return sphere_field({.radius = radius, .lengths = {h, h, 2 * (g - 1) / (g + 1), largest}})
+        .field;
 }
 
 }  // namespace controlspace

@@ -27,7 +27,7 @@ std::unique_ptr<MetricField> brute_force_reference(std::vector<PointSource> sour
 /// What the paper's Table 4 was measured against, for spheres around the origin: the isotropic
 /// field h(p) = min(largest, h + s ||p| - radius|), s = 2 (g-1) / (g+1).
 /// Throws InputError for lengths that are not positive or finite, and for g as above.
-std::unique_ptr<MetricField> published_sphere_reference(double radius, double h, double g,
-                                                        double largest);
+std::shared_ptr<const MetricField> published_sphere_reference(double radius, double h, double g,
+                                                              double largest);
 
 }  // namespace controlspace

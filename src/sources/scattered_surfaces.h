@@ -23,7 +23,7 @@ inline constexpr int cluster_count = 16;
 inline constexpr double cluster_spread = 0.03;  ///< in units of the square root of the area
 
 /// Sources on the same surfaces and with the same metrics as those of sample_sphere and
-/// sample_planes; of `random` and `clustered` as many too, of `poisson` about two thirds. The same
+/// sample_planes; of `random` and `clustered` as many too, of `poisson` six tenths. The same
 /// for the same seed. Errors as there.
 std::vector<PointSource> scatter_sphere(const SphereSampling& sampling, Scatter scatter,
                                         std::uint64_t seed);

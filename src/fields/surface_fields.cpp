@@ -1,0 +1,79 @@
+#include "fields/surface_fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "error.h"
+#include "fields/formula_field.h"
+#include "metric/intersection.h"
+#include "sources/point_source.h"
+
+namespace controlspace {
+
+namespace {
+
+void require_length(std::string_view name, double value) {
+    if (!is_length(value)) {
+        throw InputError(fmt::format("{} {} of a field: give a positive number", name, value));
+    }
+}
+
+void require_valid(const SurfaceLengths& lengths) {
+    require_length("length across", lengths.across);
+    require_length("length along", lengths.along);
+    require_length("largest length", lengths.largest);
+    if (!(lengths.growth >= 0 && is_coordinate(lengths.growth))) {
+        throw InputError(
+            fmt::format("growth {} of a field: give 0 or a positive number", lengths.growth));
+    }
+}
+
+double finest_length(const SurfaceLengths& l) { return std::min({l.across, l.along, l.largest}); }
+
+Metric metric_at(const SurfaceLengths& l, const Vector& normal, double distance) {
+    const auto grown = [&](double length) {
+        return std::min(l.largest, length + l.growth * distance);
+    };
+    return layer_metric(normal, grown(l.across), grown(l.along));
+}
+
+template <class Formula>
+AnalyticField with_lengths(const SurfaceLengths& lengths, Formula formula) {
+    return {std::make_shared<FormulaField<Formula>>(formula), everywhere(), finest_length(lengths)};
+}
+
+}  // namespace
+
+AnalyticField sphere_field(const SphereField& sphere) {
+    require_valid(sphere.lengths);
+    require_length("radius", sphere.radius);
+    if (!std::all_of(sphere.centre.begin(), sphere.centre.end(), is_coordinate)) {
+        throw InputError(fmt::format("centre ({}, {}, {}) of a field: give finite coordinates",
+                                     sphere.centre.x(), sphere.centre.y(), sphere.centre.z()));
+    }
+    return with_lengths(sphere.lengths, [sphere](const Point& p) {
+        const Vector v = p - sphere.centre;
+        const double r = v.norm();
+        const Vector normal = r > 0 ? Vector(v / r) : Vector(Vector::UnitX());
+        return metric_at(sphere.lengths, normal, std::abs(r - sphere.radius));
+    });
+}
+
+AnalyticField planes_field(const PlanesField& planes) {
+    require_valid(planes.lengths);
+    if (!is_coordinate(planes.slope)) {
+        throw InputError(fmt::format("slope {} of a field: give a finite number", planes.slope));
+    }
+    const double stretch = std::sqrt(1 + planes.slope * planes.slope);
+    const Vector second = Vector(planes.slope, -1, 0) / stretch;
+    return with_lengths(
+        planes.lengths, [lengths = planes.lengths, second, offset = 0.2 / stretch](const Point& p) {
+            return intersection(metric_at(lengths, Vector::UnitX(), std::abs(p.x() + 0.5)),
+                                metric_at(lengths, second, std::abs(second.dot(p) - offset)));
+        });
+}
+
+}  // namespace controlspace
