@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "error.h"
+#include "metric/intersection.h"
 #include "metric/nonconformity.h"
 
 namespace controlspace {
@@ -76,6 +77,8 @@ Accuracy accuracy(const ControlSpace& space, const Probes& probes) {
     struct Partial {
         double sum = 0;
         double riemannian_max = 0;
+        double coarser_max = 0;
+        std::size_t coarser = 0;
     };
     std::vector<double> deltas(n);
     std::vector<Partial> partials((n + block_size - 1) / block_size);
@@ -85,20 +88,34 @@ Accuracy accuracy(const ControlSpace& space, const Probes& probes) {
         Partial& partial = partials[b];
         for (std::size_t i = begin; i < end; ++i) {
             const Metric& value = values[i - begin];
-            deltas[i] = or_infinite(nonconformity(value, probes.reference[i]));
+            const Metric& reference = probes.reference[i];
+            deltas[i] = or_infinite(nonconformity(value, reference));
             partial.sum += deltas[i];
-            partial.riemannian_max =
-                std::max(partial.riemannian_max,
-                         or_infinite(riemannian_nonconformity(value, probes.reference[i])));
+            partial.riemannian_max = std::max(
+                partial.riemannian_max, or_infinite(riemannian_nonconformity(value, reference)));
+            if (!is_positive_definite(value)) {
+                partial.coarser_max = std::numeric_limits<double>::infinity();
+                ++partial.coarser;
+                continue;
+            }
+            // The ratio itself is dear for tensors: asked for where it may be the largest.
+            if (!is_within(value, partial.coarser_max, reference)) {
+                partial.coarser_max = std::max(partial.coarser_max, growth(value, reference));
+            }
+            if (!is_within(value, 1 + coarser_tolerance, reference)) ++partial.coarser;
         }
     });
 
     Accuracy result;
+    std::size_t coarser = 0;
     for (const Partial& partial : partials) {
         result.mean += partial.sum;
         result.riemannian_max = std::max(result.riemannian_max, partial.riemannian_max);
+        result.coarser_max = std::max(result.coarser_max, partial.coarser_max);
+        coarser += partial.coarser;
     }
     result.mean /= static_cast<double>(n);
+    result.coarser_share = static_cast<double>(coarser) / static_cast<double>(n);
     const auto worst = std::max_element(deltas.begin(), deltas.end());
     result.max = *worst;
     result.worst = probes.points[static_cast<std::size_t>(worst - deltas.begin())];

@@ -22,8 +22,14 @@ struct Probes {
 };
 Probes make_probes(const MetricField& field, std::vector<Point> points);
 
-/// Non-conformity δ between a structure and its reference over a set of places. Where the structure
-/// answers something that is no metric, δ is infinite.
+/// A place counts as coarser where some length that the structure asks for is longer than the
+/// reference's by more than this part of it. Beyond rounding, and far below what the lengths of a
+/// mesh's edges scatter by.
+constexpr double coarser_tolerance = 0.01;
+
+/// Non-conformity δ between a structure and its reference over a set of places; and apart from it,
+/// since δ is symmetric, the errors of the dangerous kind, larger elements than the reference asks
+/// for. Where the structure answers something that is no metric, all errors are infinite.
 struct Accuracy {
     double max = 0;
     double mean = 0;
@@ -31,6 +37,11 @@ struct Accuracy {
     double p99 = 0;               ///< 99th percentile (nearest rank)
     double riemannian_max = 0;    ///< maximum of δ on the Riemannian metrics
     Point worst = Point::Zero();  ///< where max is; the first such place
+    /// Largest ratio, over all places and directions, of the length that the structure asks for to
+    /// the reference's; 1 or less where it is nowhere longer.
+    double coarser_max = 0;
+    /// Share of the places where that ratio is above 1 + coarser_tolerance in some direction.
+    double coarser_share = 0;
 };
 
 /// δ_R of the paper (§5.2). Runs on all of TBB's threads, with the same result whatever their

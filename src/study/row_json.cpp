@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -62,6 +63,11 @@ void add_accuracy(Json& json, const std::string& key, const Accuracy& accuracy) 
     json[key + "_p99"] = accuracy.p99;
 }
 
+void add_coarser(Json& json, const std::string& key, const Accuracy& accuracy) {
+    json[key + "_max"] = accuracy.coarser_max;
+    json[key + "_share"] = accuracy.coarser_share;
+}
+
 void add_measures(Json& json, const Measures& m) {
     json["sources_inserted"] = m.sources_inserted;
     add_footprint(json, m.footprint);
@@ -73,6 +79,8 @@ void add_measures(Json& json, const Measures& m) {
     add_accuracy(json, "delta_R", m.accuracy);
     add_accuracy(json, "delta_R_fine", m.accuracy_fine);
     json["delta_metric_R_max"] = m.accuracy.riemannian_max;
+    add_coarser(json, "coarser", m.accuracy);
+    add_coarser(json, "coarser_fine", m.accuracy_fine);
     json["gradation_max_left"] = m.gradation.largest_ratio_left;
     json["gradation_operations"] = m.gradation.operations;
     // As text: JSON readers keep 53 bits of a number.
@@ -111,13 +119,27 @@ Case setting_from(const Json& json, const SourcesChoice& sources) {
     return c;
 }
 
+/// JSON has no infinity: an error that is infinite is written as null.
+double error_from(const Json& json, const std::string& key) {
+    const Json& value = json.at(key);
+    return value.is_null() ? std::numeric_limits<double>::infinity() : value.get<double>();
+}
+
 Accuracy accuracy_from(const Json& json, const std::string& key) {
     Accuracy accuracy;
-    accuracy.max = json.at(key + "_max");
-    accuracy.mean = json.at(key + "_mean");
-    accuracy.p95 = json.at(key + "_p95");
-    accuracy.p99 = json.at(key + "_p99");
+    accuracy.max = error_from(json, key + "_max");
+    accuracy.mean = error_from(json, key + "_mean");
+    accuracy.p95 = error_from(json, key + "_p95");
+    accuracy.p99 = error_from(json, key + "_p99");
     return accuracy;
+}
+
+/// Not a number where the results are from before this was measured.
+void read_coarser(Accuracy& accuracy, const Json& json, const std::string& key) {
+    const bool measured = json.contains(key + "_share");
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    accuracy.coarser_max = measured ? error_from(json, key + "_max") : unknown;
+    accuracy.coarser_share = measured ? json.at(key + "_share").get<double>() : unknown;
 }
 
 std::uint64_t checksum_from(const std::string& text) {
@@ -155,10 +177,12 @@ Measures measures_from(const Json& json) {
     m.access_random = access_time_from(json, "t_access_ns_random_samples");
     m.access_random.checksum = checksum_from(json.at("checksum"));
     m.access_grid = access_time_from(json, "t_access_ns_grid_samples");
-    m.source_accuracy = json.at("delta_S_max");
+    m.source_accuracy = error_from(json, "delta_S_max");
     m.accuracy = accuracy_from(json, "delta_R");
-    m.accuracy.riemannian_max = json.at("delta_metric_R_max");
+    m.accuracy.riemannian_max = error_from(json, "delta_metric_R_max");
     m.accuracy_fine = accuracy_from(json, "delta_R_fine");
+    read_coarser(m.accuracy, json, "coarser");
+    read_coarser(m.accuracy_fine, json, "coarser_fine");
     m.gradation.largest_ratio_left = json.at("gradation_max_left");
     m.gradation.operations = json.at("gradation_operations");
     return m;

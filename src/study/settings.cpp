@@ -195,12 +195,14 @@ const Setting<Study> study_table[] = {
      },
      [](const Study& s) { return one(s.access_repeats); }},
     {"probe_grid", whole, 1, "",
-     "n: delta_R is taken at the centres of n x n x n cells, and access timed in their order",
+     "n: delta_R and what is coarser than asked are taken at the centres of n x n x n cells, and "
+     "access timed in their order",
      [](Study& s, const SettingValues& v) {
          s.probe_grid = integer_within<int>(v.front(), 1, 300);
      },
      [](const Study& s) { return one(s.probe_grid); }},
-    {"fine_probe_grid", whole, 1, "", "The same for the finer probes of delta_R_fine",
+    {"fine_probe_grid", whole, 1, "",
+     "The same for the finer probes of delta_R_fine and coarser_fine",
      [](Study& s, const SettingValues& v) {
          s.fine_probe_grid = integer_within<int>(v.front(), 1, 300);
      },

@@ -127,7 +127,7 @@ std::vector<std::string> measure_cells(const Row& row) {
     const Case& c = row.setting;
     std::vector<std::string> cells{c.structure, std::string(c.split ? name_of(*c.split) : "")};
     if (!row.measures) {
-        cells.insert(cells.end(), 10, std::string(absent));
+        cells.insert(cells.end(), 12, std::string(absent));
         cells.push_back("failed: " + row.error);
         return cells;
     }
@@ -142,28 +142,35 @@ std::vector<std::string> measure_cells(const Row& row) {
     cells.push_back(fmt::format("{:.4f}", m.accuracy.mean));
     cells.push_back(fmt::format("{:.4f}", m.accuracy.p99));
     cells.push_back(fmt::format("{:.4f}", m.accuracy_fine.max));
+    const Accuracy& fine = m.accuracy_fine;
+    cells.push_back(fmt::format("{:.2f} %", 100 * fine.coarser_share));
+    cells.push_back(fmt::format("{:.3f}", fine.coarser_max));
     cells.push_back(fmt::format("{:.4f}", m.gradation.largest_ratio_left));
     cells.push_back(m.footprint.remark);
     return cells;
 }
 
 TextTable empty_measure_table(const std::string& title) {
-    return {title,
-            "",
-            {{"structure", Align::left},
-             {"split", Align::left},
-             {"leaves"},
-             {"MB"},
-             {"creation s"},
-             {"random ns"},
-             {"grid ns"},
-             {"δ_R max"},
-             {"δ_R mean"},
-             {"δ_R p99"},
-             {"fine max"},
-             {"G left"},
-             {"remark", Align::left}},
-            {}};
+    return {
+        title,
+        "Fine: at the finer probes. Coarser: share of them where a length asked for exceeds the "
+        "reference's by over 1 % in some direction; worst: largest ratio of the two.",
+        {{"structure", Align::left},
+         {"split", Align::left},
+         {"leaves"},
+         {"MB"},
+         {"creation s"},
+         {"random ns"},
+         {"grid ns"},
+         {"δ_R max"},
+         {"δ_R mean"},
+         {"δ_R p99"},
+         {"fine max"},
+         {"fine coarser"},
+         {"worst"},
+         {"G left"},
+         {"remark", Align::left}},
+        {}};
 }
 
 }  // namespace

@@ -2,12 +2,14 @@
 
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 
 #include "error.h"
 #include "measure/access_time.h"
 #include "measure/fake_spaces.h"
+#include "metric/draw.h"
 
 using namespace controlspace;
 
@@ -131,6 +133,8 @@ TEST_CASE("Accuracy does not depend on the number of threads") {
     CHECK(many.p99 == single.p99);
     CHECK(many.riemannian_max == single.riemannian_max);
     CHECK(many.worst == single.worst);
+    CHECK(many.coarser_max == single.coarser_max);
+    CHECK(many.coarser_share == single.coarser_share);
 }
 
 TEST_CASE("An answer that is no metric is infinitely wrong") {
@@ -143,8 +147,54 @@ TEST_CASE("An answer that is no metric is infinitely wrong") {
     CHECK(a.max == infinity);
     CHECK(a.riemannian_max == infinity);
     CHECK(a.worst == Point(3, 0, 0));
+    CHECK(a.coarser_max == infinity);
+    CHECK(a.coarser_share == Approx(0.1));
     const std::vector<PointSource> sources{{Point(3, 0, 0), Metric::isotropic(1)}};
     CHECK(source_accuracy(broken, sources) == infinity);
+}
+
+TEST_CASE("Larger elements than asked for are counted apart from smaller ones") {
+    const Metric asked = Metric::isotropic(1);
+    const auto errors = [&](const Metric& answer) {
+        return accuracy(constant(answer), probes_of(along_x(5000), asked));
+    };
+    CHECK(errors(asked).coarser_share == 0);
+    CHECK(errors(asked).coarser_max == 1);
+    CHECK(errors(0.5 * asked).coarser_share == 0);
+    CHECK(errors(0.5 * asked).coarser_max == 0.5);
+    CHECK(errors(3 * asked).coarser_share == 1);
+    CHECK(errors(3 * asked).coarser_max == 3);
+    // One direction is enough, however small the others are.
+    CHECK(errors({0.1, 0.1, 2, 0, 0, 0}).coarser_share == 1);
+    CHECK(errors({0.1, 0.1, 2, 0, 0, 0}).coarser_max == 2);
+    CHECK(errors(1.0099 * asked).coarser_share == 0);
+    CHECK(errors(1.0101 * asked).coarser_share == 1);
+}
+
+TEST_CASE("The ratio of lengths is the largest over all directions") {
+    Draw draw(31);
+    for (int i = 0; i < 20; ++i) {
+        const Metric held = draw.metric(1, 10);
+        const Metric asked = draw.metric(1, 10);
+        const double k = accuracy(constant(held), probes_of(along_x(3), asked)).coarser_max;
+        // |asked^-1 d| / |held^-1 d| over all d.
+        const Eigen::Matrix3d a = asked.matrix().inverse();
+        const Eigen::Matrix3d h = held.matrix().inverse();
+        const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> squares(a * a, h * h);
+        CHECK(k == Approx(std::sqrt(squares.eigenvalues()[2])));
+        for (int j = 0; j < 100; ++j) {
+            const Vector d = draw.vector();
+            CHECK(metric_length(asked, d) <= k * (1 + 1e-9) * metric_length(held, d));
+        }
+    }
+}
+
+TEST_CASE("The share is that of the places, over blocks of any size") {
+    for (const int n : {1, 100, 10000}) {
+        const Accuracy a = accuracy(ramp, probes_of(along_x(n), Metric::isotropic(1)));
+        CHECK(a.coarser_max == Approx(1 + n / 10000.0));
+        CHECK(a.coarser_share == Approx(std::max(0, n - 100) / static_cast<double>(n)));
+    }
 }
 
 TEST_CASE("Accuracy at no places is refused") {

@@ -1,8 +1,10 @@
 #include "study/read_results.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "error.h"
@@ -139,4 +141,23 @@ TEST_CASE("a row that is no row is refused by its number") {
     json["rows"][1].erase("delta_R_max");
     folder.write(json.dump());
     CHECK_THROWS_WITH(read_results(folder.path), Contains("row 2: ") && Contains("delta_R_max"));
+}
+
+TEST_CASE("an infinite error is read back; what old results do not have is unknown") {
+    const Folder folder("errors");
+    auto rows = some_rows();
+    rows[0].measures->accuracy.max = std::numeric_limits<double>::infinity();
+    rows[0].measures->accuracy.coarser_max = std::numeric_limits<double>::infinity();
+    Json json = Json::parse(results_json(current_provenance(), Study{}, rows, true));
+    for (const char* field :
+         {"coarser_max", "coarser_share", "coarser_fine_max", "coarser_fine_share"}) {
+        json["rows"][1].erase(field);
+    }
+    folder.write(json.dump());
+    const StoredResults read = read_results(folder.path);
+    CHECK(std::isinf(read.rows[0].measures->accuracy.max));
+    CHECK(std::isinf(read.rows[0].measures->accuracy.coarser_max));
+    CHECK(read.rows[0].measures->accuracy.coarser_share == 0.06);
+    CHECK(std::isnan(read.rows[1].measures->accuracy.coarser_max));
+    CHECK(std::isnan(read.rows[1].measures->accuracy_fine.coarser_share));
 }

@@ -59,6 +59,10 @@ const std::vector<std::string> row_fields{"structure",
                                           "delta_R_fine_p95",
                                           "delta_R_fine_p99",
                                           "delta_metric_R_max",
+                                          "coarser_max",
+                                          "coarser_share",
+                                          "coarser_fine_max",
+                                          "coarser_fine_share",
                                           "gradation_max_left",
                                           "gradation_operations",
                                           "checksum",
@@ -149,6 +153,10 @@ TEST_CASE("each field of a row has its own measure") {
     CHECK(json["delta_R_p95"] == 0.3);
     CHECK(json["delta_R_fine_max"] == 2.78);
     CHECK(json["delta_metric_R_max"] == 9.5);
+    CHECK(json["coarser_max"] == 1.3);
+    CHECK(json["coarser_share"] == 0.06);
+    CHECK(json["coarser_fine_max"] == 1.4);
+    CHECK(json["coarser_fine_share"] == 0.07);
     CHECK(json["gradation_max_left"] == 1.2499);
     CHECK(json["gradation_operations"] == 105);
     CHECK(json["checksum"] == "ff00000000000001");

@@ -22,8 +22,19 @@ inline Row sample_row(Case setting) {
     m.gradation = {.operations = 105, .largest_ratio_left = 1.2499};
     m.access_random = {.samples_ns = {52, 50, 51}, .checksum = 0xff00000000000001};
     m.access_grid = {.samples_ns = {12, 10, 11}, .checksum = 2};
-    m.accuracy = {.max = 1.78, .mean = 0.08, .p95 = 0.3, .p99 = 0.4, .riemannian_max = 9.5};
-    m.accuracy_fine = {.max = 2.78, .mean = 0.09, .p95 = 0.31, .p99 = 0.41};
+    m.accuracy = {.max = 1.78,
+                  .mean = 0.08,
+                  .p95 = 0.3,
+                  .p99 = 0.4,
+                  .riemannian_max = 9.5,
+                  .coarser_max = 1.3,
+                  .coarser_share = 0.06};
+    m.accuracy_fine = {.max = 2.78,
+                       .mean = 0.09,
+                       .p95 = 0.31,
+                       .p99 = 0.41,
+                       .coarser_max = 1.4,
+                       .coarser_share = 0.07};
     m.source_accuracy = 0.19;
     return {std::move(setting), 36186, m, ""};
 }

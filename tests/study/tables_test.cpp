@@ -122,6 +122,8 @@ TEST_CASE("every row is in one table of measures that names its mode") {
     CHECK(cell(tables[0], "K_L", "s_L", "grid ns") == "11.0");
     CHECK(cell(tables[0], "K_L", "s_L", "δ_R p99") == "0.4000");
     CHECK(cell(tables[0], "K_L", "s_L", "fine max") == "2.7800");
+    CHECK(cell(tables[0], "K_L", "s_L", "fine coarser") == "7.00 %");
+    CHECK(cell(tables[0], "K_L", "s_L", "worst") == "1.400");
     CHECK(cell(tables[0], "K_L", "s_L", "G left") == "1.2499");
     CHECK(cell(tables[0], "uniform-nearest", "", "remark") == "failed: no memory");
     for (const auto& table : tables) {
