@@ -18,12 +18,27 @@ using Make = std::unique_ptr<ControlSpace> (*)(const SpaceOptions&, Interpolatio
 template <Make make, Interpolation interpolation>
 CatalogueEntry grid(std::string id, std::string description) {
     CatalogueEntry entry;
+    entry.has_voxels = true;
     entry.id = std::move(id);
     entry.description = std::move(description);
     entry.order = interpolation == Interpolation::nearest ? 0 : 1;
     entry.make = [](const SpaceOptions& options) { return make(options, interpolation); };
     return entry;
 }
+
+#ifdef CONTROLSPACE_OPENVDB
+std::vector<CatalogueEntry> openvdb_structures() {
+    std::vector<CatalogueEntry> entries{
+        grid<make_openvdb_grid, Interpolation::nearest>(
+            "openvdb-uniform-nearest", "OpenVDB 5-4-3 tree, dense, a metric per voxel, constant"),
+        grid<make_openvdb_grid, Interpolation::trilinear>(
+            "openvdb-uniform-trilinear",
+            "OpenVDB 5-4-3 tree, dense, a metric per voxel, trilinear")};
+    entries[0].former_id = "openvdb-nearest";
+    entries[1].former_id = "openvdb-trilinear";
+    return entries;
+}
+#endif
 
 std::vector<CatalogueEntry> all_structures() {
     const std::span<const CatalogueEntry> trees = tree_catalogue();
@@ -35,10 +50,7 @@ std::vector<CatalogueEntry> all_structures() {
     all.push_back(grid<make_uniform_grid, Interpolation::trilinear>(
         "uniform-trilinear", "uniform grid, a metric per vertex, trilinear"));
 #ifdef CONTROLSPACE_OPENVDB
-    all.push_back(grid<make_openvdb_grid, Interpolation::nearest>(
-        "openvdb-nearest", "OpenVDB 5-4-3 tree, dense, a metric per voxel, constant"));
-    all.push_back(grid<make_openvdb_grid, Interpolation::trilinear>(
-        "openvdb-trilinear", "OpenVDB 5-4-3 tree, dense, a metric per voxel, trilinear"));
+    for (CatalogueEntry& entry : openvdb_structures()) all.push_back(std::move(entry));
 #endif
     all.push_back({.id = "direct",
                    .description = "no structure: the sources, searched; exact everywhere",

@@ -18,9 +18,6 @@ constexpr double gradation_bytes_per_node = sizeof(Metric) + sizeof(NodeIndex) +
 
 constexpr double node_limit = 4294967296.0;  // NodeIndex has 32 bits
 
-// 2 / 0.02 cells should be 100, whichever way the quotient is rounded.
-Vector whole_cells(const Vector& cells) { return (cells.array() * (1 - 1e-12)).ceil().max(1); }
-
 std::string name_of(const Vector& cells) {
     if ((cells.array() == cells.x()).all()) return fmt::format("{:.0f}^3", cells.x());
     return fmt::format("{:.0f} x {:.0f} x {:.0f}", cells.x(), cells.y(), cells.z());
@@ -39,15 +36,22 @@ Vector lattice_nodes(const Vector& cells, Interpolation interpolation) {
     return interpolation == Interpolation::nearest ? cells : Vector(cells.array() + 1);
 }
 
-Voxels choose_voxels(const SpaceOptions& options, Interpolation interpolation,
-                     const std::function<double(const Vector& nodes)>& bytes_of) {
-    require_valid(options);
+Vector whole_cells(const Vector& cells) { return (cells.array() * (1 - 1e-12)).ceil().max(1); }
+
+double finest_voxel(const SpaceOptions& options) {
+    if (options.voxel > 0) return options.voxel;
     if (!std::isfinite(options.finest_length) || !(options.finest_length > 0)) {
         throw InputError(
             fmt::format("a grid cannot size its voxels by a finest length of {}: set SpaceOptions::"
-                        "finest_length to the smallest length that any source asks for",
+                        "voxel, or finest_length to the smallest length that any source asks for",
                         options.finest_length));
     }
+    return options.l_min * options.finest_length;
+}
+
+Voxels choose_voxels(const SpaceOptions& options, Interpolation interpolation,
+                     const std::function<double(const Vector& nodes)>& bytes_of) {
+    require_valid(options);
     const auto bytes_needed = [&](const Vector& cells) {
         const Vector nodes = lattice_nodes(cells, interpolation);
         return bytes_of(nodes) + nodes.prod() * gradation_bytes_per_node;
@@ -58,7 +62,7 @@ Voxels choose_voxels(const SpaceOptions& options, Interpolation interpolation,
     };
 
     const Vector edges = options.domain.edges();
-    const Vector wanted = whole_cells(edges / (options.l_min * options.finest_length));
+    const Vector wanted = whole_cells(edges / finest_voxel(options));
     if (fits(wanted)) return {wanted, ""};
 
     // Bisection over the number of cells along the longest edge.

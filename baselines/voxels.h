@@ -23,7 +23,14 @@ struct Voxels {
 /// Number of control nodes along x, y and z of a grid of `cells`.
 Vector lattice_nodes(const Vector& cells, Interpolation interpolation);
 
-/// Cells with edges of at most l_min * finest_length (plus a relative 1e-12 for rounding) where a
+/// `cells` rounded up, at least 1; 2 / 0.02 gives 100, whichever way the quotient is rounded.
+Vector whole_cells(const Vector& cells);
+
+/// Longest edge that the finest voxels may have: `voxel`, or l_min * finest_length where that is 0.
+/// Throws InputError where the options name neither.
+double finest_voxel(const SpaceOptions& options);
+
+/// Cells with edges of at most finest_voxel (plus a relative 1e-12 for rounding) where a
 /// grid of them fits `max_bytes`, the finest that fit otherwise. What has to fit is
 /// `bytes_of(nodes)`, the grid with so many nodes along x, y and z, and what gradation adds to it;
 /// besides, nodes must be fewer than 2^32. `bytes_of` must not shrink as nodes grow.

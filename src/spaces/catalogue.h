@@ -26,6 +26,10 @@ struct CatalogueEntry {
     bool takes_metrics = true;
     /// Answers the cones of its sources at once, without gradation, and its nodes are the sources.
     bool graded_from_start = false;
+    bool has_voxels = false;     ///< a grid, made finer by SpaceOptions::voxel
+    bool has_levels = false;     ///< a grid of voxels of many sizes: SpaceOptions::voxel_factor
+    bool can_prune = false;      ///< joins voxels that are alike: SpaceOptions::prune_delta
+    std::string former_id = {};  ///< still understood in options and study files
 };
 
 /// The six trees of the paper.

@@ -17,6 +17,9 @@ struct SpaceOptions {
     int kd_depth = 42;         ///< deepest level of a kd-tree, the root being 0
     int octree_depth = 14;     ///< deepest level of an octree, the root being 0
     double finest_length = 0;  ///< smallest length any source asks for; grids size voxels by it
+    double voxel = 0;          ///< longest edge of a grid's finest voxels; 0: l_min * finest_length
+    double voxel_factor = 1;   ///< grids in levels: longest edge of a voxel, in the metric it holds
+    double prune_delta = 0;    ///< δ up to which gradation may end in joined voxels; 0: none are
     double ratio = 1.25;       ///< g_r of the gradation to come, for structures that keep sources
     /// Cap on memory, gradation included: grids get coarser, trees that outgrow it throw
     /// InputError.

@@ -11,8 +11,18 @@ bool is_as_published(const Case& c) {
            c.reference == ReferenceKind::published_sphere;
 }
 
+std::string variant_label(const Case& c) {
+    std::string label = c.structure;
+    if (c.voxel) label += fmt::format(", voxel {:.4g}", *c.voxel);
+    if (c.voxel_factor && *c.voxel_factor != SpaceOptions().voxel_factor) {
+        label += fmt::format(", c {:.4g}", *c.voxel_factor);
+    }
+    if (c.prune_delta) label += fmt::format(", pruned at {:.4g}", *c.prune_delta);
+    return label;
+}
+
 std::string structure_label(const Case& c) {
-    return c.split ? fmt::format("{} {}", c.structure, name_of(*c.split)) : c.structure;
+    return c.split ? fmt::format("{} {}", c.structure, name_of(*c.split)) : variant_label(c);
 }
 
 std::string setting_label(const Case& c) {

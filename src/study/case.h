@@ -41,7 +41,10 @@ struct Case {
     double tau = 1;        ///< l_min: longest edge of a source's leaf, in the source's metric
     double epsilon = 0.2;  ///< ε_δ of insertion
     double g_r = 1.25;     ///< gradation ratio
-    std::optional<int> max_depth = {};  ///< trees only
+    std::optional<int> max_depth = {};        ///< trees only
+    std::optional<double> voxel = {};         ///< grids only; none: by tau and the sources
+    std::optional<double> voxel_factor = {};  ///< grids in levels only
+    std::optional<double> prune_delta = {};   ///< OpenVDB only; none: nothing is pruned
     GradationLaw law = GradationLaw::cone;
     GradationSchedule schedule = GradationSchedule::queue;
     ReferenceKind reference = ReferenceKind::exact;
@@ -56,7 +59,11 @@ inline bool is_sampled(const SourcesChoice& s) { return s.kind != SourcesKind::f
 /// reference.
 bool is_as_published(const Case& c);
 
-/// "K_L s_L", "K_oV".
+/// The structure's id and what its voxels were set to, where that is not the default: "K_oV",
+/// "openvdb-levels-nearest, c 0.5".
+std::string variant_label(const Case& c);
+
+/// "K_L s_L", "K_oV"; otherwise as variant_label.
 std::string structure_label(const Case& c);
 
 /// What rows of one table share: "rho 1, tau 0.5, epsilon 0.2, g_r 1.25, s_a 2, s_n 1; cone law,

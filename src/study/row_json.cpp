@@ -32,6 +32,9 @@ void add_setting(Json& json, const Case& c) {
     json["s_a"] = if_sampled(c.sources.s_a);
     json["s_n"] = if_sampled(c.sources.s_n);
     json["max_depth"] = or_null(c.max_depth);
+    json["voxel"] = or_null(c.voxel);
+    json["voxel_factor"] = or_null(c.voxel_factor);
+    json["prune_delta"] = or_null(c.prune_delta);
     json["law"] = name_of(c.law);
     json["schedule"] = name_of(c.schedule);
     json["reference"] = name_of(c.reference);
@@ -100,6 +103,11 @@ std::optional<T> optional_from(const Json& json, const char* key) {
     const Json& value = json.at(key);
     return value.is_null() ? std::nullopt : std::optional<T>(value.get<T>());
 }
+/// For fields that older results do not have.
+template <class T>
+std::optional<T> newer_from(const Json& json, const char* key) {
+    return json.contains(key) ? optional_from<T>(json, key) : std::nullopt;
+}
 
 Case setting_from(const Json& json, const SourcesChoice& sources) {
     Case c;
@@ -113,6 +121,9 @@ Case setting_from(const Json& json, const SourcesChoice& sources) {
     c.epsilon = json.at("epsilon");
     c.g_r = json.at("g_r");
     c.max_depth = optional_from<int>(json, "max_depth");
+    c.voxel = newer_from<double>(json, "voxel");
+    c.voxel_factor = newer_from<double>(json, "voxel_factor");
+    c.prune_delta = newer_from<double>(json, "prune_delta");
     c.law = named<GradationLaw>(json, "law");
     c.schedule = named<GradationSchedule>(json, "schedule");
     c.reference = named<ReferenceKind>(json, "reference");

@@ -74,6 +74,12 @@ template <std::vector<double> Run::*list>
 void set_positive(Run& run, const SettingValues& values) {
     fill(run.*list, values, [](const SettingValue& v) { return positive(number(v)); });
 }
+template <std::vector<double> Run::*list>
+void set_not_negative(Run& run, const SettingValues& values) {
+    fill(run.*list, values, [](const SettingValue& v) {
+        return within(number(v), 0, std::numeric_limits<double>::max());
+    });
+}
 template <auto list>
 SettingValues get_names(const Run& run) {
     return names(run.*list);
@@ -245,6 +251,15 @@ const Setting<Run> run_table[] = {
      set_depths<&Run::kd_depth>, get_depths<&Run::kd_depth>},
     {"octree_depth", whole, 0, "", "Deepest level of octrees, the root being 0",
      set_depths<&Run::octree_depth>, get_depths<&Run::octree_depth>},
+    {"voxel", number_type, 0, "",
+     "Longest edge of a grid's finest voxels [length]; 0: tau times the smallest length asked for",
+     set_not_negative<&Run::voxel>, get_numbers<&Run::voxel>},
+    {"voxel_factor", number_type, 0, "",
+     "c of grids in levels: longest edge of a voxel [metric length of the metric it holds]",
+     set_positive<&Run::voxel_factor>, get_numbers<&Run::voxel_factor>},
+    {"prune_delta", number_type, 0, "",
+     "Non-conformity up to which OpenVDB grids join voxels after gradation; 0: they do not",
+     set_not_negative<&Run::prune_delta>, get_numbers<&Run::prune_delta>},
     {"law", text_type, 0, "", "Law of gradation: cone, mean-length", set_names<&Run::law>,
      get_names<&Run::law>},
     {"schedule", text_type, 0, "",

@@ -22,7 +22,8 @@ std::vector<const CatalogueEntry*> chosen(const std::vector<std::string>& names,
     for (const std::string& name : names) {
         bool known = name == "all" || name == "trees" || name == "anchored" || name == "baselines";
         for (const CatalogueEntry& entry : catalogue) {
-            if (entry.id == name || entry.group == name || name == "all") {
+            if (entry.id == name || entry.group == name || name == "all" ||
+                (!name.empty() && entry.former_id == name)) {
                 add(entry);
                 known = true;
             }
@@ -100,7 +101,11 @@ std::vector<Case> settings_of(const Study& study, const Run& run) {
     return cases;
 }
 
-/// One structure under one setting: splits and depths multiply only those that have them.
+std::optional<double> unless_zero(double x) {
+    return x == 0 ? std::nullopt : std::optional<double>(x);
+}
+
+/// One structure under one setting: what a structure does not have does not multiply it.
 std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const Case& setting) {
     std::vector<Case> cases{setting};
     cases.front().structure = entry.id;
@@ -109,6 +114,16 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
         multiply(cases, run.kd_depth, [](Case& c, int depth) { c.max_depth = depth; });
     } else if (entry.group != "baselines") {
         multiply(cases, run.octree_depth, [](Case& c, int depth) { c.max_depth = depth; });
+    }
+    if (entry.has_voxels) {
+        multiply(cases, run.voxel, [](Case& c, double edge) { c.voxel = unless_zero(edge); });
+    }
+    if (entry.has_levels) {
+        multiply(cases, run.voxel_factor, [](Case& c, double factor) { c.voxel_factor = factor; });
+    }
+    if (entry.can_prune) {
+        multiply(cases, run.prune_delta,
+                 [](Case& c, double delta) { c.prune_delta = unless_zero(delta); });
     }
     return cases;
 }

@@ -27,6 +27,9 @@ struct Run {
     std::vector<double> s_n{1};
     std::vector<int> kd_depth{42};
     std::vector<int> octree_depth{14};
+    std::vector<double> voxel{0};  ///< 0: by tau and the smallest length that is asked for
+    std::vector<double> voxel_factor{1};
+    std::vector<double> prune_delta{0};  ///< 0: no pruning
     std::vector<GradationLaw> law{GradationLaw::cone};
     std::vector<GradationSchedule> schedule{GradationSchedule::queue};
     std::vector<ReferenceKind> reference{ReferenceKind::exact};

@@ -125,7 +125,7 @@ TextTable memory_table(const Grid& grid) {
 
 std::vector<std::string> measure_cells(const Row& row) {
     const Case& c = row.setting;
-    std::vector<std::string> cells{c.structure, std::string(c.split ? name_of(*c.split) : "")};
+    std::vector<std::string> cells{variant_label(c), std::string(c.split ? name_of(*c.split) : "")};
     if (!row.measures) {
         cells.insert(cells.end(), 12, std::string(absent));
         cells.push_back("failed: " + row.error);

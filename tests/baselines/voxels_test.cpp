@@ -40,6 +40,17 @@ TEST_CASE("voxels are as fine as the finest leaf, and not finer than that needs"
     CHECK(voxels.remark.empty());
 }
 
+TEST_CASE("voxels that are set need no finest length") {
+    SpaceOptions options = cube(0);
+    options.voxel = 0.1;
+    CHECK(choose_voxels(options, Interpolation::nearest, flat_bytes).cells == Vector(20, 20, 20));
+    options.finest_length = 0.05;
+    CHECK(choose_voxels(options, Interpolation::nearest, flat_bytes).cells == Vector(20, 20, 20));
+    options.voxel = -0.1;
+    CHECK_THROWS_WITH(choose_voxels(options, Interpolation::nearest, flat_bytes),
+                      Catch::Contains("voxel is -0.1"));
+}
+
 TEST_CASE("rounding does not add a cell") {
     for (const double n : {3, 7, 10, 49, 100, 125, 333}) {
         const Voxels voxels = choose_voxels(cube(2 / n), Interpolation::nearest, flat_bytes);

@@ -25,6 +25,9 @@ std::vector<Row> some_rows() {
     rows[1].setting.split.reset();
     rows[1].setting.tau = 0.1 + 0.2;  // no short decimal
     rows[1].setting.sources.rho = 0.2;
+    rows[1].setting.voxel = 0.01;
+    rows[1].setting.voxel_factor = 0.7;
+    rows[1].setting.prune_delta = 0.05;
     rows[1].measures->footprint.bytes_published.reset();
     rows.push_back({published_case(), 36186, std::nullopt, "out of memory, \"really\""});
     return rows;
@@ -81,6 +84,19 @@ TEST_CASE("what was written is read back") {
     }
     CHECK(results_json(read.provenance, read.study, read.rows, false) ==
           results_json(provenance, study, rows, false));
+}
+
+TEST_CASE("results of before grids had settings of their own are read") {
+    const Folder folder("older");
+    Json json = valid_json();
+    for (Json& row : json["rows"]) {
+        for (const char* field : {"voxel", "voxel_factor", "prune_delta"}) row.erase(field);
+    }
+    folder.write(json.dump());
+    const StoredResults read = read_results(folder.path);
+    REQUIRE(read.rows.size() == some_rows().size());
+    CHECK(read.rows[0].setting == some_rows()[0].setting);
+    CHECK_FALSE(read.rows[1].setting.voxel);
 }
 
 TEST_CASE("what is no file of results is refused by name") {

@@ -62,6 +62,9 @@ TEST_CASE("every key of a study file is read") {
         s_n = 0.25
         kd_depth = [10, 20]
         octree_depth = 9
+        voxel = [0, 0.01]
+        voxel_factor = 0.5
+        prune_delta = [0, 0.1]
         law = ["cone", "mean-length"]
         schedule = "passes"
         reference = "published-sphere"
@@ -96,6 +99,9 @@ TEST_CASE("every key of a study file is read") {
     CHECK(run.s_n == std::vector{0.25});
     CHECK(run.kd_depth == std::vector{10, 20});
     CHECK(run.octree_depth == std::vector{9});
+    CHECK(run.voxel == std::vector{0, 0.01});
+    CHECK(run.voxel_factor == std::vector{0.5});
+    CHECK(run.prune_delta == std::vector{0, 0.1});
     CHECK(run.law == std::vector{GradationLaw::cone, GradationLaw::mean_length});
     CHECK(run.schedule == std::vector{GradationSchedule::passes});
     CHECK(run.reference == std::vector{ReferenceKind::published_sphere});
@@ -135,6 +141,8 @@ TEST_CASE("what is wrong in a study file is named with its line") {
         {"refine_beta = 1.2\nmmg_hgrad = 1.3", "say the same"},
         {"epsilon = -1", "epsilon: -1 is not positive"},
         {"kd_depth = 1.5", "kd_depth: 1.5 is not a whole number"},
+        {"voxel = -0.1", "voxel: -0.1 is out of range"},
+        {"voxel_factor = 0", "voxel_factor: 0 is not positive"},
         {"kd_depth = -1", "kd_depth: -1 is out of range"},
         {"law = 'cones'", "law: unknown value 'cones': give cone, mean-length"},
         {"splits = ['s_L', 's_X']", "splits: unknown value 's_X': give s_L, s_G, s_M"},

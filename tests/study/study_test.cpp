@@ -48,6 +48,33 @@ TEST_CASE("splits multiply kd-trees only, depths those that have them") {
     CHECK_FALSE(cases[9].max_depth);
 }
 
+TEST_CASE("voxels, levels and pruning multiply the grids that have them") {
+    std::vector<CatalogueEntry> catalogue = catalogue_with_a_grid();
+    catalogue.push_back({.id = "flat", .description = "", .has_voxels = true});
+    catalogue.push_back({.id = "levels",
+                         .description = "",
+                         .has_voxels = true,
+                         .has_levels = true,
+                         .can_prune = true,
+                         .former_id = "stack"});
+    Study study = study_of({"K_oL", "grid", "flat", "stack"});
+    study.runs[0].voxel = {0, 0.5};
+    study.runs[0].voxel_factor = {1, 0.5, 0.25};
+    study.runs[0].prune_delta = {0, 0.1};
+    const auto cases = expand(study, catalogue);
+    REQUIRE(cases.size() == 1 + 1 + 2 + 2 * 3 * 2);
+    CHECK_FALSE(cases[1].voxel_factor);
+    CHECK_FALSE(cases[2].voxel);
+    CHECK(cases[3].voxel == 0.5);
+    CHECK_FALSE(cases[3].voxel_factor);
+    CHECK(cases[3].structure == "flat");
+    CHECK(structure_label(cases[3]) == "flat, voxel 0.5");
+    CHECK(structure_label(cases[4]) == "levels");
+    CHECK(cases[4].voxel_factor == 1);
+    CHECK_FALSE(cases[4].prune_delta);
+    CHECK(structure_label(cases.back()) == "levels, voxel 0.5, c 0.25, pruned at 0.1");
+}
+
 TEST_CASE("lists expand to their product, rho outermost and structures innermost") {
     Study study = study_of({"K_oL", "grid"});
     study.runs[0].rho = {1, 0.2};
