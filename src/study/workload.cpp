@@ -31,7 +31,7 @@ Box domain_of(const Study& study, const std::vector<PointSource>& sources) {
     return bounding_box(positions, study.margin);
 }
 
-std::unique_ptr<MetricField> make_reference(const Case& c, const Workload& workload) {
+std::shared_ptr<const MetricField> make_reference(const Case& c, const Workload& workload) {
     const double largest = workload.domain.half_diagonal();
     if (c.reference == ReferenceKind::published_sphere) {
         const SourcesChoice& s = c.sources;
