@@ -1,15 +1,19 @@
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <utility>
 
+#include "baselines/lattice_nodes.h"
 #include "baselines/stencil.h"
 #include "baselines/voxels.h"
+#include "gradation/regrade.h"
 #include "metric/intersection.h"
 #include "spaces/catalogue.h"
 #include "spaces/control_space.h"
@@ -32,7 +36,10 @@ public:
     /// Cells as fine as the options ask and allow. Throws InputError as choose_voxels does.
     explicit LatticeSpace(const SpaceOptions& options)
         : LatticeSpace(options,
-                       choose_voxels(options, Stencil::interpolation, Storage::bytes_for)) {}
+                       choose_voxels(options, Stencil::interpolation, [&](const Vector& nodes) {
+                           const int copies = options.takes_later_sources ? 2 : 1;
+                           return copies * Storage::bytes_for(nodes);
+                       })) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         assert(x.size() == out.size());
@@ -42,38 +49,54 @@ public:
 
     Insertion insert(const PointSource& source) override {
         require_valid(source, 0, domain());
-        auto nodes = storage_.writer();
-        return insert_through(nodes, source);
+        return with_writers(
+            [&](auto& field, auto& asked) { return insert_through(field, asked, source); });
     }
 
     InsertionReport insert(std::span<const PointSource> sources) override {
-        auto nodes = storage_.writer();
         InsertionReport report;
-        for (std::size_t i = 0; i < sources.size(); ++i) {
-            require_valid(sources[i], i, domain());
-            ++report.sources;
-            if (insert_through(nodes, sources[i]) == Insertion::inserted) ++report.inserted;
-        }
+        with_writers([&](auto& field, auto& asked) {
+            for (std::size_t i = 0; i < sources.size(); ++i) {
+                require_valid(sources[i], i, domain());
+                ++report.sources;
+                if (insert_through(field, asked, sources[i]) == Insertion::inserted) {
+                    ++report.inserted;
+                }
+            }
+        });
         return report;
     }
 
     ControlNodes control_nodes(Neighbourhood) const override {
-        const Lattice lattice = stencil_.lattice();
-        const auto read = storage_.reader();
-        std::vector<Metric> metrics;
-        metrics.reserve(lattice.size());
-        for_each_node(lattice, [&](auto i, auto j, auto k) { metrics.push_back(read(i, j, k)); });
-        return {lattice, std::move(metrics)};
+        return {stencil_.lattice(), metrics_of(storage_)};
     }
 
     void assign(std::span<const Metric> metrics) override {
-        const Lattice lattice = stencil_.lattice();
-        if (metrics.size() != lattice.size()) {
+        if (metrics.size() != stencil_.lattice().size()) {
             throw std::invalid_argument("assign() takes one metric for each control node");
         }
-        auto nodes = storage_.writer();
-        auto next = metrics.begin();
-        for_each_node(lattice, [&](auto i, auto j, auto k) { nodes.set(i, j, k, *next++); });
+        set_field(metrics);
+        asks_isotropic_ = std::all_of(metrics.begin(), metrics.end(), is_isotropic);
+        asked_.reset();
+        past_.reset();
+    }
+
+    GradationReport grade(const GradationOptions& options) override {
+        if (!takes_later_sources_) return ControlSpace::grade(options);
+        require_valid(options);
+        GradationReport report;
+        if (may_regrade(past_, options) && asks_isotropic_ &&
+            !are_many(lowered_.size(), stencil_.lattice().size())) {
+            report = regrade();
+        } else {
+            std::vector<Metric> metrics = metrics_of(asked_ ? *asked_ : storage_);
+            report = controlspace::grade(stencil_.lattice(), metrics, options);
+            if (!asked_) asked_ = std::make_unique<Storage>(storage_);
+            set_field(metrics);
+        }
+        lowered_.clear();
+        past_ = {options, report.largest_ratio_left};
+        return report;
     }
 
     const Box& domain() const override { return stencil_.domain(); }
@@ -86,31 +109,77 @@ public:
         footprint.depth = 1;
         footprint.remark = remark_;
         storage_.add_to(footprint);
+        if (asked_) {
+            Footprint beside;
+            asked_->add_to(beside);
+            footprint.bytes_auxiliary += beside.bytes_total();
+        }
         return footprint;
     }
 
 private:
     LatticeSpace(const SpaceOptions& options, Voxels voxels)
         : tolerance_(options.tolerance),
+          takes_later_sources_(options.takes_later_sources),
           stencil_(options.domain, voxels.cells),
           storage_(stencil_.lattice(), Metric::isotropic(options.domain.half_diagonal())),
           remark_(std::move(voxels.remark)) {}
 
+    std::vector<Metric> metrics_of(const Storage& storage) const {
+        const auto read = storage.reader();
+        std::vector<Metric> metrics;
+        metrics.reserve(stencil_.lattice().size());
+        for_each_node([&](auto i, auto j, auto k) { metrics.push_back(read(i, j, k)); });
+        return metrics;
+    }
+
+    void set_field(std::span<const Metric> metrics) {
+        auto nodes = storage_.writer();
+        auto next = metrics.begin();
+        for_each_node([&](auto i, auto j, auto k) { nodes.set(i, j, k, *next++); });
+    }
+
+    /// act(field, asked): writers to the field and to what sources ask for, which may be the same.
+    template <class Act>
+    auto with_writers(Act&& act) {
+        auto field = storage_.writer();
+        if (!asked_) return act(field, field);
+        auto asked = asked_->writer();
+        return act(field, asked);
+    }
+
     template <class Writer>
-    Insertion insert_through(Writer& nodes, const PointSource& source) {
+    Insertion insert_through(Writer& field, Writer& asked, const PointSource& source) {
         const Metric held = stencil_.value(
             source.position,
-            [&](auto i, auto j, auto k) -> const Metric& { return nodes.get(i, j, k); });
+            [&](auto i, auto j, auto k) -> const Metric& { return asked.get(i, j, k); });
         if (!calls_for_change(source.metric, held, tolerance_)) return Insertion::already_met;
-        stencil_.for_each_node(source.position, [&](auto i, auto j, auto k) {
+        const auto lower = [&](Writer& nodes, auto i, auto j, auto k) {
             nodes.set(i, j, k, intersection(nodes.get(i, j, k), source.metric));
+        };
+        stencil_.for_each_node(source.position, [&](auto i, auto j, auto k) {
+            lower(field, i, j, k);
+            if (!asked_) return;
+            lower(asked, i, j, k);
+            lowered_.push_back(stencil_.lattice().index(i, j, k));
         });
+        asks_isotropic_ = asks_isotropic_ && is_isotropic(source.metric);
         return Insertion::inserted;
+    }
+
+    GradationReport regrade() {
+        LatticeNodes nodes(stencil_.lattice(), asked_->reader(), storage_.writer());
+        Regradation regradation(nodes, past_->options.ratio);
+        std::sort(lowered_.begin(), lowered_.end());
+        lowered_.erase(std::unique(lowered_.begin(), lowered_.end()), lowered_.end());
+        for (const NodeIndex node : lowered_) regradation.touch(node);
+        return regradation.run(past_->largest_ratio_left);
     }
 
     /// x fastest, as Lattice numbers them.
     template <class Visit>
-    static void for_each_node(const Lattice& lattice, Visit&& visit) {
+    void for_each_node(Visit&& visit) const {
+        const Lattice lattice = stencil_.lattice();
         for (std::uint32_t k = 0; k < lattice.nodes[2]; ++k) {
             for (std::uint32_t j = 0; j < lattice.nodes[1]; ++j) {
                 for (std::uint32_t i = 0; i < lattice.nodes[0]; ++i) visit(i, j, k);
@@ -119,9 +188,16 @@ private:
     }
 
     double tolerance_;
+    bool takes_later_sources_;
     Stencil stencil_;
     Storage storage_;
     std::string remark_;
+
+    // Where sources may come after gradation: what they ask for, and what has changed since.
+    std::unique_ptr<Storage> asked_;
+    std::optional<PastGradation> past_;
+    std::vector<NodeIndex> lowered_;
+    bool asks_isotropic_ = true;
 };
 
 template <class Storage>

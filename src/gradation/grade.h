@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "gradation/law.h"
@@ -22,11 +23,18 @@ struct GradationOptions {
     GradationLaw law = GradationLaw::cone;
     GradationSchedule schedule = GradationSchedule::queue;
     double ratio = 1.25;  ///< g_r of the paper, >= 1
+
+    bool operator==(const GradationOptions&) const = default;
 };
 
 struct GradationReport {
-    std::uint64_t operations = 0;   ///< metrics made smaller
-    double largest_ratio_left = 1;  ///< over all neighbours, under the law that was applied
+    std::uint64_t operations = 0;  ///< metrics made smaller
+    /// Over all neighbours, under the law that was applied. Where only what had changed was graded
+    /// (gradation/regrade.h): over the nodes visited and all neighbours of the time before, so that
+    /// it may be more than is left.
+    double largest_ratio_left = 1;
+    /// Where only what had changed was graded: how often a node's neighbours were looked at.
+    std::optional<std::uint64_t> visits = std::nullopt;
 };
 
 /// Throws InputError for a ratio below 1 or not finite.

@@ -59,6 +59,9 @@ struct Limited {
 Limited limit_anisotropic_growth(GradationLaw law, double g, const Vector& v, Metric& m0,
                                  Metric& m1);
 
+/// The cone law for isotropic metrics: the largest size at `v` from a place of size h.
+inline double cone_limit(double h, double g, const Vector& v) { return h + (g - 1) * v.norm(); }
+
 /// Applies `law` to two metrics apart by `v`: makes either smaller where the other asks for it.
 ///
 /// For isotropic metrics under the cone law the limit is h0 + (g-1)|v| in floating point, which is
@@ -71,7 +74,7 @@ inline Limited limit_growth(GradationLaw law, double g, const Vector& v, Metric&
     const bool second = m0.xx < m1.xx;
     const double small = second ? m0.xx : m1.xx;
     Metric& large = second ? m1 : m0;
-    double limit = small + (g - 1) * v.norm();
+    double limit = cone_limit(small, g, v);
     if (law == GradationLaw::mean_length)
         limit = small + 0.5 * (limit - small) * (1 + small / large.xx);
     if (large.xx <= limit) return {};

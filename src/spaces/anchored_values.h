@@ -34,6 +34,10 @@ public:
         const Point x = place.cwiseMax(tree.domain().low).cwiseMin(tree.domain().high);
         return cones().at(x, anchors_[tree.find(x)].span());
     }
+    template <class Node>
+    Metric asked(const Topology<Node>& tree, const Point& place) const {
+        return value(tree, place);
+    }
 
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new);
 

@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include "metric/blend.h"
-#include "metric/intersection.h"
 #include "spaces/adjacency.h"
 #include "spaces/control_space.h"
+#include "spaces/leaf_changes.h"
+#include "spaces/node_metrics.h"
 #include "spaces/space_options.h"
 #include "spaces/topology.h"
 
@@ -16,9 +16,13 @@ namespace controlspace {
 // A storage says where the control nodes of a tree are and how the metric between them is made.
 // What Tree asks of one:
 //   value(tree, x)                       metric at x
+//   asked(tree, x)                       the same before gradation (see NodeMetrics)
 //   split(subdivision, leaf, first_new)  a leaf was cut; the field stays as it was
 //   lower(place, source)                 intersects what governs the leaf with the source
 //   control_nodes(tree, neighbourhood), assign(tree, metrics), describe(footprint), shrink_to_fit()
+// and, if it holds metrics, for sources that come after gradation:
+//   release_asked(), keep_asked(metrics) see NodeMetrics; from the latter on, changes are recorded
+//   is_regradable(), regrade(tree, past) whether changes are few and isotropic; grades those alone
 
 /// One metric a leaf, constant over it (K_L, K_oL): a control node stands at the leaf's centre.
 class LeafValues {
@@ -26,21 +30,26 @@ public:
     static constexpr bool exact_at_nodes = true;
     static constexpr int order = 0;
 
-    explicit LeafValues(const SpaceOptions& options) : metrics_{largest_metric(options.domain)} {}
+    explicit LeafValues(const SpaceOptions& options)
+        : metrics_(1, largest_metric(options.domain)) {}
 
     template <class Node>
     Metric value(const Topology<Node>& tree, const Point& x) const {
         return metrics_[tree.find(x)];
     }
+    template <class Node>
+    Metric asked(const Topology<Node>& tree, const Point& x) const {
+        return metrics_.asked()[tree.find(x)];
+    }
 
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex) {
-        const Metric inherited = metrics_[leaf];
-        metrics_.insert(metrics_.end(), static_cast<std::size_t>(subdivision.children() - 1),
-                        inherited);
+        if (keeps_asked()) changes_.cut(subdivision.box, leaf, metrics_[leaf].xx);
+        metrics_.repeat(leaf, static_cast<std::size_t>(subdivision.children() - 1));
     }
 
     void lower(const LeafPlace& place, const PointSource& source) {
-        metrics_[place.leaf] = intersection(metrics_[place.leaf], source.metric);
+        metrics_.lower(place.leaf, source.metric);
+        if (keeps_asked()) changes_.lower(place);
     }
 
     template <class Node>
@@ -48,18 +57,36 @@ public:
 
     template <class Node>
     void assign(const Topology<Node>& tree, std::span<const Metric> metrics) {
+        metrics_.forget_asked();
         auto next = metrics.begin();
-        tree.for_each_leaf([&](LeafIndex leaf, const Box&) { metrics_[leaf] = *next++; });
+        tree.for_each_leaf([&](LeafIndex leaf, const Box&) { metrics_.set(leaf, *next++); });
     }
 
-    void describe(Footprint& footprint) const {
-        footprint.control_nodes = metrics_.size();
-        footprint.bytes_payload = metrics_.capacity() * sizeof(Metric);
+    bool keeps_asked() const { return metrics_.keeps_asked(); }
+    std::vector<Metric> release_asked() { return metrics_.release_asked(); }
+    void keep_asked(std::vector<Metric> asked) {
+        metrics_.keep_asked(std::move(asked));
+        changes_.begin(metrics_.size());
     }
+    bool is_regradable() const {
+        return metrics_.asks_isotropic() &&
+               !are_many(changes_.count(metrics_.size()), metrics_.size());
+    }
+    template <class Node>
+    GradationReport regrade(const Topology<Node>& tree, const PastGradation& past) {
+        const GradationReport report = changes_.regrade(tree, metrics_, past);
+        changes_.begin(metrics_.size());
+        return report;
+    }
+
+    void describe(Footprint& footprint) const { metrics_.describe(footprint); }
     void shrink_to_fit() { metrics_.shrink_to_fit(); }
 
 protected:
-    std::vector<Metric> metrics_;
+    NodeMetrics metrics_;
+
+private:
+    LeafChanges changes_;
 };
 
 template <class Node>

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "metric/blend.h"
 #include "metric/decompose.h"
 
 namespace controlspace {

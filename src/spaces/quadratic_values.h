@@ -27,15 +27,26 @@ public:
     using LeafValues::LeafValues;
 
     template <class Node>
-    Metric value(const Topology<Node>& tree, const Point& place) const {
+    Metric value(const Topology<Node>& tree, const Point& x) const {
+        return interpolate(tree, x, metrics_.field());
+    }
+    template <class Node>
+    Metric asked(const Topology<Node>& tree, const Point& x) const {
+        return interpolate(tree, x, metrics_.asked());
+    }
+
+private:
+    template <class Node>
+    static Metric interpolate(const Topology<Node>& tree, const Point& place,
+                              std::span<const Metric> metrics) {
         const Point x = place.cwiseMax(tree.domain().low).cwiseMin(tree.domain().high);
         const LeafPlace here = tree.locate(x);
-        const Metric& own = metrics_[here.leaf];
+        const Metric& own = metrics[here.leaf];
         std::array<Metric, 6> across;
         for (int face = 0; face < 6; ++face) {
             LeafPlace neighbour;
             const bool inside = locate_across(tree, here.box, face, x, neighbour);
-            across[static_cast<std::size_t>(face)] = inside ? metrics_[neighbour.leaf] : own;
+            across[static_cast<std::size_t>(face)] = inside ? metrics[neighbour.leaf] : own;
         }
         const Vector t = 2 * (x - here.box.centre()).cwiseQuotient(here.box.edges());
         return triquadratic(own, across, t);

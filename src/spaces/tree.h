@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "error.h"
+#include "gradation/regrade.h"
 #include "spaces/adjacency.h"
 #include "spaces/anchored_values.h"
 #include "spaces/catalogue.h"
@@ -45,8 +46,11 @@ public:
             require_valid(source, report.sources++, domain());
             if (insert_valid(source) == Insertion::inserted) ++report.inserted;
         }
-        topology_.shrink_to_fit();
-        storage_.shrink_to_fit();
+        // After gradation, a copy of everything would be out of proportion.
+        if (!past_) {
+            topology_.shrink_to_fit();
+            storage_.shrink_to_fit();
+        }
         return report;
     }
 
@@ -58,6 +62,7 @@ public:
             throw std::logic_error("this structure keeps sources: it takes no metrics");
         } else {
             storage_.assign(topology_, metrics);
+            past_.reset();
         }
     }
 
@@ -65,7 +70,8 @@ public:
         if constexpr (keeps_sources) {
             return storage_.grade(topology_, options, max_depth());
         } else {
-            return ControlSpace::grade(options);
+            return options_.takes_later_sources ? grade_beside_asked(options)
+                                                : ControlSpace::grade(options);
         }
     }
 
@@ -94,7 +100,7 @@ private:
 
     Insertion insert_valid(const PointSource& source) {
         const Point& q = source.position;
-        if (!calls_for_change(source.metric, storage_.value(topology_, q), options_.tolerance)) {
+        if (!calls_for_change(source.metric, storage_.asked(topology_, q), options_.tolerance)) {
             return Insertion::already_met;
         }
         LeafPlace place = topology_.locate(q);
@@ -106,6 +112,22 @@ private:
         }
         storage_.lower(place, source);
         return Insertion::inserted;
+    }
+
+    // Grades what the sources ask for, which stays beside the field; where little has changed, that
+    // alone.
+    GradationReport grade_beside_asked(const GradationOptions& options) {
+        require_valid(options);
+        GradationReport report;
+        if (may_regrade(past_, options) && storage_.is_regradable()) {
+            report = storage_.regrade(topology_, *past_);
+        } else {
+            std::vector<Metric> asked = storage_.release_asked();
+            report = ControlSpace::grade(options);
+            storage_.keep_asked(std::move(asked));
+        }
+        past_ = {options, report.largest_ratio_left};
+        return report;
     }
 
     // Whether any edge of `box` is longer than l_min in the metric.
@@ -164,7 +186,8 @@ private:
     bool balanced_;
     Topology<Node> topology_;
     Storage storage_;
-    std::size_t next_look_ = 1024;  // number of leaves at which memory is looked at again
+    std::optional<PastGradation> past_;  // where sources may come after it
+    std::size_t next_look_ = 1024;       // number of leaves at which memory is looked at again
 };
 
 }  // namespace controlspace

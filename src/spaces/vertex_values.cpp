@@ -4,27 +4,29 @@
 
 namespace controlspace {
 
-VertexValues::VertexValues(const SpaceOptions& options) : corners_(1) {
+VertexValues::VertexValues(const SpaceOptions& options)
+    : corners_(1), metrics_(8, largest_metric(options.domain)) {
     for (int i = 0; i < 8; ++i) {
         const Point x = corner(options.domain, i);
         corners_[0][static_cast<std::size_t>(i)] =
             places_.find_or_enter(x, static_cast<NodeIndex>(i), positions_);
         positions_.push_back(x);
-        metrics_.push_back(largest_metric(options.domain));
     }
 }
 
 // The control node at `x`, a place on the border or inside of a leaf with this box and these
 // corners; it is as large as the leaf's field there at most.
 NodeIndex VertexValues::vertex_at(const Point& x, const Box& box, const Corners& corners) {
-    const Metric here = interpolate(corners, corner_weights(box, x));
+    const auto weights = corner_weights(box, x);
+    const Metric asked = interpolate(corners, weights, metrics_.asked());
     const auto next = static_cast<NodeIndex>(positions_.size());
     const NodeIndex node = places_.find_or_enter(x, next, positions_);
     if (node == next) {
         positions_.push_back(x);
-        metrics_.push_back(here);
+        metrics_.append(asked,
+                        keeps_asked() ? interpolate(corners, weights, metrics_.field()) : asked);
     } else {
-        metrics_[node] = intersection(metrics_[node], here);
+        metrics_.lower(node, asked);
     }
     return node;
 }
@@ -33,6 +35,7 @@ void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafInd
     // The children's corners stand on a lattice of up to 3 x 3 x 3 places: per axis the low face,
     // the cut and the high face. Those that are not corners of the leaf are looked up, once each.
     const Corners old = corners_[leaf];
+    if (keeps_asked()) changes_.cut(leaf, old);
     const Box& box = subdivision.box;
     constexpr NodeIndex unknown = ~NodeIndex{0};
     std::array<NodeIndex, 27> lattice;
@@ -67,11 +70,16 @@ void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafInd
             corners_[child][static_cast<std::size_t>(i)] = node_at(step);
         }
     }
+    if (!keeps_asked()) return;
+    for (const NodeIndex node : lattice) {
+        if (node != unknown) changes_.touch(node);
+    }
 }
 
 void VertexValues::lower(const LeafPlace& place, const PointSource& source) {
     for (const NodeIndex node : corners_[place.leaf]) {
-        metrics_[node] = intersection(metrics_[node], source.metric);
+        metrics_.lower(node, source.metric);
+        if (keeps_asked()) changes_.touch(node);
     }
 }
 
@@ -79,11 +87,7 @@ NodeGraph VertexValues::graph_of_edges() const {
     std::vector<std::pair<NodeIndex, NodeIndex>> edges;
     edges.reserve(12 * corners_.size());
     for (const Corners& corners : corners_) {
-        for (std::size_t i = 0; i < 8; ++i) {
-            for (const std::size_t bit : {1u, 2u, 4u}) {
-                if ((i & bit) == 0) edges.emplace_back(corners[i], corners[i | bit]);
-            }
-        }
+        for_each_edge(corners, [&](NodeIndex a, NodeIndex b) { edges.emplace_back(a, b); });
     }
     NodeGraph graph = graph_from_pairs(positions_.size(), edges);
     sort_rows_uniquely(graph);
@@ -92,10 +96,9 @@ NodeGraph VertexValues::graph_of_edges() const {
 }
 
 void VertexValues::describe(Footprint& footprint) const {
-    footprint.control_nodes = metrics_.size();
-    footprint.bytes_payload = metrics_.capacity() * sizeof(Metric);
+    metrics_.describe(footprint);
     footprint.bytes_topology += corners_.capacity() * sizeof(Corners);
-    footprint.bytes_auxiliary = positions_.capacity() * sizeof(Point) + places_.bytes();
+    footprint.bytes_auxiliary += positions_.capacity() * sizeof(Point) + places_.bytes();
 }
 
 void VertexValues::shrink_to_fit() {

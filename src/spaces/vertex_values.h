@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "metric/blend.h"
-#include "metric/intersection.h"
 #include "spaces/adjacency.h"
 #include "spaces/control_space.h"
+#include "spaces/node_metrics.h"
 #include "spaces/place_index.h"
 #include "spaces/space_options.h"
 #include "spaces/topology.h"
+#include "spaces/vertex_changes.h"
 
 namespace controlspace {
 
@@ -38,9 +39,11 @@ public:
 
     template <class Node>
     Metric value(const Topology<Node>& tree, const Point& place) const {
-        const Point x = place.cwiseMax(tree.domain().low).cwiseMin(tree.domain().high);
-        const LeafPlace here = tree.locate(x);
-        return interpolate(corners_[here.leaf], corner_weights(here.box, x));
+        return interpolate(tree, place, metrics_.field());
+    }
+    template <class Node>
+    Metric asked(const Topology<Node>& tree, const Point& place) const {
+        return interpolate(tree, place, metrics_.asked());
     }
 
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new);
@@ -48,30 +51,54 @@ public:
 
     template <class Node>
     ControlNodes control_nodes(const Topology<Node>&, Neighbourhood) const {
-        return {graph_of_edges(), metrics_};
+        return {graph_of_edges(), {metrics_.field().begin(), metrics_.field().end()}};
     }
     template <class Node>
     void assign(const Topology<Node>&, std::span<const Metric> metrics) {
-        metrics_.assign(metrics.begin(), metrics.end());
+        metrics_.forget_asked();
+        for (std::size_t i = 0; i < metrics.size(); ++i) metrics_.set(i, metrics[i]);
+    }
+
+    bool keeps_asked() const { return metrics_.keeps_asked(); }
+    std::vector<Metric> release_asked() { return metrics_.release_asked(); }
+    void keep_asked(std::vector<Metric> asked) {
+        metrics_.keep_asked(std::move(asked));
+        changes_.begin(corners_.size(), positions_.size());
+    }
+    bool is_regradable() {
+        return metrics_.asks_isotropic() && !are_many(changes_.count(), positions_.size());
+    }
+    template <class Node>
+    GradationReport regrade(const Topology<Node>& tree, const PastGradation& past) {
+        const GradationReport report = changes_.regrade(tree, corners_, positions_, metrics_, past);
+        changes_.begin(corners_.size(), positions_.size());
+        return report;
     }
 
     void describe(Footprint& footprint) const;
     void shrink_to_fit();
 
 private:
-    using Corners = std::array<NodeIndex, 8>;
-
-    Metric interpolate(const Corners& corners, const std::array<double, 8>& weights) const {
+    static Metric interpolate(const Corners& corners, const std::array<double, 8>& weights,
+                              std::span<const Metric> metrics) {
         return blend_lengths(weights,
-                             [&](std::size_t i) -> const Metric& { return metrics_[corners[i]]; });
+                             [&](std::size_t i) -> const Metric& { return metrics[corners[i]]; });
+    }
+    template <class Node>
+    Metric interpolate(const Topology<Node>& tree, const Point& place,
+                       std::span<const Metric> metrics) const {
+        const Point x = place.cwiseMax(tree.domain().low).cwiseMin(tree.domain().high);
+        const LeafPlace here = tree.locate(x);
+        return interpolate(corners_[here.leaf], corner_weights(here.box, x), metrics);
     }
     NodeIndex vertex_at(const Point& x, const Box& box, const Corners& corners);
     NodeGraph graph_of_edges() const;
 
     std::vector<Corners> corners_;  // of a leaf, in the order of controlspace::corner
-    std::vector<Metric> metrics_;
+    NodeMetrics metrics_;
     std::vector<Point> positions_;
     PlaceIndex places_;
+    VertexChanges changes_;
 };
 
 }  // namespace controlspace

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "gradation/regrade.h"
+#include "spaces/cut_leaves.h"
+#include "spaces/leaves_where.h"
+#include "spaces/node_metrics.h"
+#include "spaces/topology.h"
+
+namespace controlspace {
+
+/// What has happened to the leaves of a tree since it was graded, for metrics at leaf centres; and
+/// the gradation of that alone.
+class LeafChanges {
+public:
+    void begin(std::size_t leaves);
+    /// The leaf `box`, whose field is `held`, is going to be cut.
+    void cut(const Box& box, LeafIndex leaf, double held);
+    /// The leaf has been lowered.
+    void lower(const LeafPlace& place);
+    /// How many of so many leaves are concerned.
+    std::size_t count(std::size_t leaves) const { return lowered_.size() + cut_.made(leaves); }
+
+    /// See Regradation; `past` is the gradation before.
+    template <class Node>
+    GradationReport regrade(const Topology<Node>& tree, NodeMetrics& metrics,
+                            const PastGradation& past) const;
+
+private:
+    struct Leaf {
+        LeafIndex leaf;
+        Box box;
+    };
+    struct Cut {
+        Box box;
+        double held;
+    };
+    template <class Node>
+    class Nodes;
+
+    CutLeaves cut_;
+    std::vector<Cut> cuts_;  // the same, with what they were
+    std::vector<Leaf> lowered_;
+};
+
+/// Leaves as Regradation wants them.
+template <class TreeNode>
+class LeafChanges::Nodes {
+public:
+    using Node = Leaf;
+
+    Nodes(const Topology<TreeNode>& tree, NodeMetrics& metrics) : tree_(tree), metrics_(metrics) {}
+
+    double asked(const Leaf& node) const { return metrics_.asked()[node.leaf].xx; }
+    double field(const Leaf& node) const { return metrics_[node.leaf].xx; }
+    void set(const Leaf& node, double h) { metrics_.set(node.leaf, Metric::isotropic(h)); }
+
+    template <class Visit>
+    void for_each_link(const Leaf& node, Visit&& visit) const {
+        const Point centre = node.box.centre();
+        for_each_leaf_around(tree_, node.box, [&](LeafIndex leaf, const Box& box) {
+            if (leaf != node.leaf) visit(Leaf{leaf, box}, Vector(box.centre() - centre));
+        });
+    }
+
+private:
+    const Topology<TreeNode>& tree_;
+    NodeMetrics& metrics_;
+};
+
+template <class Node>
+GradationReport LeafChanges::regrade(const Topology<Node>& tree, NodeMetrics& metrics,
+                                     const PastGradation& past) const {
+    Nodes<Node> nodes(tree, metrics);
+    Regradation regradation(nodes, past.options.ratio);
+    std::vector<Leaf> doubtful;
+    for (const Cut& cut : cuts_) {
+        const Point centre = cut.box.centre();
+        for_each_leaf_around(tree, cut.box, [&](LeafIndex leaf, const Box& box) {
+            const Leaf node{leaf, box};
+            if (cut.box.contains(box.centre())) {
+                regradation.renew(node);
+            } else if (regradation.may_hang_on(node, cut.held, Vector(box.centre() - centre))) {
+                doubtful.push_back(node);
+            }
+        });
+    }
+    for (const Leaf& node : doubtful) regradation.release(node);
+    for (const Leaf& node : lowered_) {
+        if (cut_.is_old(node.leaf)) regradation.touch(node);
+    }
+    return regradation.run(past.largest_ratio_left);
+}
+
+}  // namespace controlspace

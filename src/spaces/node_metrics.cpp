@@ -1,0 +1,52 @@
+#include "spaces/node_metrics.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "metric/intersection.h"
+
+namespace controlspace {
+
+void NodeMetrics::repeat(std::size_t node, std::size_t times) {
+    const auto append_copies = [&](std::vector<Metric>& metrics) {
+        const Metric copied = metrics[node];
+        metrics.insert(metrics.end(), times, copied);
+    };
+    append_copies(field_);
+    if (keeps_asked()) append_copies(asked_);
+}
+
+void NodeMetrics::append(const Metric& asked, const Metric& field) {
+    field_.push_back(field);
+    if (keeps_asked()) asked_.push_back(asked);
+}
+
+void NodeMetrics::lower(std::size_t node, const Metric& m) {
+    field_[node] = intersection(field_[node], m);
+    if (!keeps_asked()) return;
+    asked_[node] = intersection(asked_[node], m);
+    asks_isotropic_ = asks_isotropic_ && is_isotropic(asked_[node]);
+}
+
+std::vector<Metric> NodeMetrics::release_asked() {
+    if (keeps_asked()) field_ = std::exchange(asked_, {});
+    return field_;
+}
+
+void NodeMetrics::keep_asked(std::vector<Metric> asked) {
+    asked_ = std::move(asked);
+    asks_isotropic_ = std::all_of(asked_.begin(), asked_.end(), is_isotropic);
+}
+
+void NodeMetrics::describe(Footprint& footprint) const {
+    footprint.control_nodes = field_.size();
+    footprint.bytes_payload = field_.capacity() * sizeof(Metric);
+    footprint.bytes_auxiliary += asked_.capacity() * sizeof(Metric);
+}
+
+void NodeMetrics::shrink_to_fit() {
+    field_.shrink_to_fit();
+    asked_.shrink_to_fit();
+}
+
+}  // namespace controlspace
