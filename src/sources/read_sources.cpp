@@ -48,6 +48,8 @@ std::vector<PointSource> read_sources(const std::filesystem::path& path) {
         throw InputError(
             fmt::format("{} is binary Medit: convert it to .mesh and .sol", path.string()));
     }
+    // A pipe, as of <(command), has a name that says nothing.
+    if (!std::filesystem::is_regular_file(path, ignored)) return read_csv_sources(path);
     throw InputError(fmt::format("{}: name a .csv, or a .mesh beside a .sol", path.string()));
 }
 

@@ -11,7 +11,7 @@
 
 namespace controlspace {
 
-std::string read_text_file(const std::filesystem::path& path) {
+std::string read_text_file(const std::filesystem::path& path, std::size_t largest) {
     const std::string name = path.string();
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) {
@@ -24,14 +24,22 @@ std::string read_text_file(const std::filesystem::path& path) {
     std::string text;
     constexpr std::size_t block = std::size_t{1} << 16;
     std::error_code no_size;  // of a pipe
-    const std::uintmax_t size_on_disk = std::filesystem::file_size(path, no_size);
-    if (!no_size) text.reserve(size_on_disk + block);
+    const std::uintmax_t known_size = std::filesystem::file_size(path, no_size);
+    const std::uintmax_t size_on_disk = no_size ? 0 : known_size;
+    text.reserve(size_on_disk + block);
     std::size_t got = block;
     while (got == block) {
         const std::size_t size = text.size();
         text.resize(size + block);
         got = std::fread(text.data() + size, 1, block, file.get());
         text.resize(size + got);
+        if (text.find('\0', size) != std::string::npos) {
+            throw InputError(fmt::format("{} holds a zero byte: give a text file", name));
+        }
+        if (text.size() > size_on_disk + largest) {
+            throw InputError(fmt::format("{} does not end after {} bytes: give a file", name,
+                                         size_on_disk + largest));
+        }
     }
     if (std::ferror(file.get()) != 0) {
         throw InputError(fmt::format("cannot read {}: {}", name, std::strerror(errno)));

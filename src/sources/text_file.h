@@ -8,9 +8,13 @@
 
 namespace controlspace {
 
+/// What is read of a pipe or a device, which may never end: some six million sources.
+constexpr std::size_t largest_stream = std::size_t{1} << 30;
+
 /// The whole file, without a leading UTF-8 byte order mark. Throws InputError, naming the file, if
-/// it is missing, a directory, unreadable, or empty.
-std::string read_text_file(const std::filesystem::path& path);
+/// it is missing, a directory, unreadable or empty, if it holds a zero byte, as no text does, or if
+/// it goes on for `largest` bytes beyond the size that it has on disk (a pipe has none).
+std::string read_text_file(const std::filesystem::path& path, std::size_t largest = largest_stream);
 
 /// "name:line", for messages.
 std::string place(const std::filesystem::path& path, std::size_t line);

@@ -1,0 +1,69 @@
+#include "sources/text_file.h"
+
+#include <sys/stat.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <thread>
+
+#include "sources/files.h"
+#include "sources/read_sources.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// A named pipe that another thread writes `text` into, as long as it is read.
+class Pipe {
+public:
+    Pipe(const std::filesystem::path& path, const std::string& text)
+        : made_(::mkfifo(path.c_str(), 0600)), writer_([=] { std::ofstream(path) << text; }) {}
+    ~Pipe() { writer_.join(); }
+    bool is_made() const { return made_ == 0; }
+
+private:
+    int made_;
+    std::thread writer_;
+};
+
+}  // namespace
+
+TEST_CASE("a pipe is read to its end") {
+    const ScratchDirectory scratch;
+    const std::string text(200'000, 'x');
+    const Pipe pipe(scratch.path() / "pipe", text);
+    REQUIRE(pipe.is_made());
+    CHECK(read_text_file(scratch.path() / "pipe") == text);
+}
+
+TEST_CASE("sources come through a pipe as CSV, whatever its name") {
+    const ScratchDirectory scratch;
+    const Pipe pipe(scratch.path() / "63", "x,y,z,h\n1,2,3,4\n5,6,7,8\n");
+    REQUIRE(pipe.is_made());
+    CHECK(read_sources(scratch.path() / "63").size() == 2);
+}
+
+TEST_CASE("what does not end is refused at the limit") {
+    const ScratchDirectory scratch;
+    const Pipe pipe(scratch.path() / "pipe", std::string(300'000, 'x'));
+    REQUIRE(pipe.is_made());
+    CHECK_THAT(error_of([&] { read_text_file(scratch.path() / "pipe", 200'000); }),
+               Contains("pipe does not end after 200000 bytes"));
+}
+
+TEST_CASE("a file on disk may be longer than the limit: its size is known") {
+    const ScratchDirectory scratch;
+    const std::string text(300'000, 'x');
+    CHECK(read_text_file(scratch.file("long", text), 1000) == text);
+}
+
+TEST_CASE("a zero byte is in no text, wherever it stands") {
+    const ScratchDirectory scratch;
+    CHECK_THAT(error_of([] { read_text_file("/dev/zero"); }), Contains("/dev/zero holds a zero"));
+    CHECK_THAT(error_of([] { read_sources("/dev/zero"); }), Contains("/dev/zero holds a zero"));
+    std::string text(100'000, 'x');
+    text.back() = '\0';
+    CHECK_THAT(error_of([&] { read_text_file(scratch.file("late", text)); }),
+               Contains("late holds a zero byte: give a text file"));
+}
