@@ -47,11 +47,24 @@ std::string list_text() {
         {name_of(ReferenceKind::exact), "intersection of the cones of all sources"},
         {name_of(ReferenceKind::published_sphere),
          "the analytic field behind the paper's Table 4"}};
+    const Entry samplings[] = {
+        {name_of(Sampling::regular), "in rows, as in the paper"},
+        {name_of(Sampling::random), "each anywhere on the surface"},
+        {name_of(Sampling::clustered), "around a few places on the surface, nearly normal"},
+        {name_of(Sampling::poisson), "anywhere, but no two nearer than h rho"}};
+    const Entry fields[] = {
+        {name_of(FieldKind::sphere), "lengths across and along a sphere, growing with distance"},
+        {name_of(FieldKind::planes), "the same for two planes that cross"},
+        {name_of(FieldKind::ugawg_linear), "UGAWG's benchmark: a layer at z = 0.5, 100:1"},
+        {name_of(FieldKind::ugawg_polar_1), "a layer at r = 0.5 around the z axis, 100:1"},
+        {name_of(FieldKind::ugawg_polar_2), "the same, shorter along the arc too"}};
     return section("Structures (--structures)", entries) +
            section("\nSplits of kd-trees (--splits)", splits) +
            section("\nLaws of gradation (--law)", laws) +
            section("\nSchedules of gradation (--schedule)", schedules) +
-           section("\nReferences (--reference)", references);
+           section("\nReferences (--reference)", references) +
+           section("\nSampling of surfaces (--sampling)", samplings) +
+           section("\nAnalytic fields (--field)", fields);
 }
 
 }  // namespace controlspace

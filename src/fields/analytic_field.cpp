@@ -32,7 +32,7 @@ AnalyticField function_field(std::function<Metric(const Point&)> formula, double
             finest_length};
 }
 
-void require_defined(const AnalyticField& field, const Box& domain, const char* name) {
+void require_defined(const AnalyticField& field, const Box& domain, const std::string& name) {
     if (field.definition.contains(domain.low) && field.definition.contains(domain.high)) return;
     throw InputError(
         fmt::format("the field {} is defined in {}, but the domain is {}: give one "

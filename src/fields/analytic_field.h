@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <string>
 
 #include "geometry/box.h"
 #include "metric/metric_field.h"
@@ -29,6 +30,6 @@ AnalyticField function_field(std::function<Metric(const Point&)> formula, double
                              const Box& definition = everywhere());
 
 /// Throws InputError where `domain` goes beyond the field's definition; `name` is for the message.
-void require_defined(const AnalyticField& field, const Box& domain, const char* name);
+void require_defined(const AnalyticField& field, const Box& domain, const std::string& name);
 
 }  // namespace controlspace

@@ -13,6 +13,8 @@ struct SurfaceLengths {
     double along = 0.03;
     double growth = 0.25;
     double largest = largest_magnitude;
+
+    bool operator==(const SurfaceLengths&) const = default;
 };
 
 /// Around a sphere: |p - centre| gives the distance, p - centre the direction across, and any

@@ -122,19 +122,19 @@ std::vector<SurfacePlace> draw_spaced(const Surface& surface, std::size_t count,
 }
 
 template <class Surface>
-std::vector<SurfacePlace> draw(const Surface& surface, Scatter scatter, std::size_t count,
+std::vector<SurfacePlace> draw(const Surface& surface, Sampling sampling, std::size_t count,
                                double spacing, std::uint64_t seed) {
     RandomFractions fraction(seed);
-    if (scatter == Scatter::clustered) return draw_clustered(surface, count, fraction);
-    if (scatter == Scatter::poisson) return draw_spaced(surface, count, spacing, fraction);
+    if (sampling == Sampling::clustered) return draw_clustered(surface, count, fraction);
+    if (sampling == Sampling::poisson) return draw_spaced(surface, count, spacing, fraction);
     std::vector<SurfacePlace> places;
     places.reserve(count);
     for (std::size_t i = 0; i < count; ++i) places.push_back(surface.draw(fraction));
     return places;
 }
 
-template <class Sampling>
-std::vector<PointSource> sources_at(const std::vector<SurfacePlace>& places, const Sampling& s,
+template <class Surface>
+std::vector<PointSource> sources_at(const std::vector<SurfacePlace>& places, const Surface& s,
                                     const Point& origin) {
     const double along = s.h * s.s_a;
     std::vector<PointSource> sources;
@@ -147,16 +147,20 @@ std::vector<PointSource> sources_at(const std::vector<SurfacePlace>& places, con
 
 }  // namespace
 
-std::vector<PointSource> scatter_sphere(const SphereSampling& s, Scatter scatter,
+std::vector<PointSource> scatter_sphere(const SphereSampling& s, Sampling sampling,
                                         std::uint64_t seed) {
-    const std::size_t count = sample_sphere(s).size();
-    return sources_at(draw(Sphere(s.radius), scatter, count, s.h * s.rho, seed), s, s.centre);
+    std::vector<PointSource> in_rows = sample_sphere(s);
+    if (sampling == Sampling::regular) return in_rows;
+    return sources_at(draw(Sphere(s.radius), sampling, in_rows.size(), s.h * s.rho, seed), s,
+                      s.centre);
 }
 
-std::vector<PointSource> scatter_planes(const PlanesSampling& s, Scatter scatter,
+std::vector<PointSource> scatter_planes(const PlanesSampling& s, Sampling sampling,
                                         std::uint64_t seed) {
-    const std::size_t count = sample_planes(s).size();
-    return sources_at(draw(Planes(s.slope), scatter, count, s.h * s.rho, seed), s, Point::Zero());
+    std::vector<PointSource> in_rows = sample_planes(s);
+    if (sampling == Sampling::regular) return in_rows;
+    return sources_at(draw(Planes(s.slope), sampling, in_rows.size(), s.h * s.rho, seed), s,
+                      Point::Zero());
 }
 
 }  // namespace controlspace

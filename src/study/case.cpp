@@ -11,6 +11,20 @@ bool is_as_published(const Case& c) {
            c.reference == ReferenceKind::published_sphere;
 }
 
+std::string sources_name(const SourcesChoice& s) {
+    switch (s.kind) {
+        case SourcesKind::sphere:
+            return "sphere";
+        case SourcesKind::planes:
+            return "planes";
+        case SourcesKind::none:
+            return "none";
+        case SourcesKind::file:
+            break;
+    }
+    return s.file.string();
+}
+
 std::string variant_label(const Case& c) {
     std::string label = c.structure;
     if (c.voxel) label += fmt::format(", voxel {:.4g}", *c.voxel);
@@ -26,10 +40,15 @@ std::string structure_label(const Case& c) {
 }
 
 std::string setting_label(const Case& c) {
-    const std::string sampling =
-        is_sampled(c.sources)
-            ? fmt::format("rho {}, s_a {}, s_n {}, ", c.sources.rho, c.sources.s_a, c.sources.s_n)
-            : std::string();
+    const SourcesChoice& s = c.sources;
+    std::string sampling;
+    if (has_field(s)) sampling = fmt::format("field {}, ", name_of(s.field.kind));
+    if (is_sampled(s)) {
+        if (s.sampling != Sampling::regular) {
+            sampling += fmt::format("{} sources, ", name_of(s.sampling));
+        }
+        sampling += fmt::format("rho {}, s_a {}, s_n {}, ", s.rho, s.s_a, s.s_n);
+    }
     return fmt::format("{}tau {}, epsilon {}, g_r {}; {} law, {}, {} reference", sampling, c.tau,
                        c.epsilon, c.g_r, name_of(c.law), name_of(c.schedule), name_of(c.reference));
 }

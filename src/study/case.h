@@ -6,29 +6,36 @@
 #include <string>
 
 #include "gradation/grade.h"
+#include "sources/scattered_surfaces.h"
 #include "spaces/catalogue.h"
+#include "study/field_choice.h"
 
 namespace controlspace {
 
 /// Where a study's sources come from.
-enum class SourcesKind { sphere, planes, file };
+enum class SourcesKind { sphere, planes, file, none };
 
 /// What δ_R is measured against.
 enum class ReferenceKind {
-    exact,             ///< intersection of all sources' cones (paper §5.2)
+    /// Intersection of all sources' cones (paper §5.2) and, taken as it stands, of the field.
+    exact,
     published_sphere,  ///< the analytic field behind the paper's Table 4; spheres only
 };
 
-/// The sources of one case: a sampled surface (paper §5.1) or a file.
+/// The sources of one case: a sampled surface (paper §5.1), a file, an analytic field, or such a
+/// field with sources on top.
 struct SourcesChoice {
     SourcesKind kind = SourcesKind::sphere;
     std::filesystem::path file;  ///< file only
-    double radius = 0.8;         ///< sphere only
-    double slope = 0;            ///< planes only: a of the second plane (u, -0.2 + a u, v)
-    double h = 0.015;            ///< length that the sampling starts from
-    double rho = 1;              ///< spacing of the samples in units of h
-    double s_a = 2;              ///< tangential length in units of h
-    double s_n = 1;              ///< normal length in units of the tangential one
+    Sampling sampling = Sampling::regular;
+    Point centre = Point::Zero();  ///< sphere only
+    double radius = 0.8;           ///< sphere only
+    double slope = 0;              ///< planes only: a of the second plane (u, -0.2 + a u, v)
+    double h = 0.015;              ///< length that the sampling starts from
+    double rho = 1;                ///< spacing of the samples in units of h
+    double s_a = 2;                ///< tangential length in units of h
+    double s_n = 1;                ///< normal length in units of the tangential one
+    FieldChoice field = {};
 
     bool operator==(const SourcesChoice&) const = default;
 };
@@ -53,7 +60,15 @@ struct Case {
 };
 
 /// Whether the sources are sampled, so that rho, s_a and s_n mean something.
-inline bool is_sampled(const SourcesChoice& s) { return s.kind != SourcesKind::file; }
+inline bool is_sampled(const SourcesChoice& s) {
+    return s.kind == SourcesKind::sphere || s.kind == SourcesKind::planes;
+}
+
+/// Whether there is an analytic field: structures follow it and the sources together.
+inline bool has_field(const SourcesChoice& s) { return s.field.kind != FieldKind::none; }
+
+/// As in options and study files: "sphere", "none", "folder/file.csv".
+std::string sources_name(const SourcesChoice& s);
 
 /// Whether the case was run as the paper's tables were: mean-length law, passes, and the published
 /// reference.
@@ -66,8 +81,8 @@ std::string variant_label(const Case& c);
 /// "K_L s_L", "K_oV"; otherwise as variant_label.
 std::string structure_label(const Case& c);
 
-/// What rows of one table share: "rho 1, tau 0.5, epsilon 0.2, g_r 1.25, s_a 2, s_n 1; cone law,
-/// queue, exact reference".
+/// What rows of one table share: "rho 1, s_a 2, s_n 1, tau 0.5, epsilon 0.2, g_r 1.25; cone law,
+/// queue, exact reference", with "field ugawg-linear, " or "poisson sources, " first.
 std::string setting_label(const Case& c);
 
 }  // namespace controlspace

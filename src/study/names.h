@@ -33,6 +33,24 @@ struct Names<ReferenceKind> {
     static constexpr std::array<std::pair<ReferenceKind, std::string_view>, 2> table{
         {{ReferenceKind::exact, "exact"}, {ReferenceKind::published_sphere, "published-sphere"}}};
 };
+template <>
+struct Names<Sampling> {
+    static constexpr std::array<std::pair<Sampling, std::string_view>, 4> table{
+        {{Sampling::regular, "regular"},
+         {Sampling::random, "random"},
+         {Sampling::clustered, "clustered"},
+         {Sampling::poisson, "poisson"}}};
+};
+template <>
+struct Names<FieldKind> {
+    static constexpr std::array<std::pair<FieldKind, std::string_view>, 6> table{
+        {{FieldKind::none, "none"},
+         {FieldKind::sphere, "sphere"},
+         {FieldKind::planes, "planes"},
+         {FieldKind::ugawg_linear, "ugawg-linear"},
+         {FieldKind::ugawg_polar_1, "ugawg-polar-1"},
+         {FieldKind::ugawg_polar_2, "ugawg-polar-2"}}};
+};
 
 template <class Enum>
 constexpr std::string_view name_of(Enum value) {

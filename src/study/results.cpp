@@ -125,10 +125,7 @@ std::string results_summary(const Provenance& p, const Study& study, std::span<c
         "# {}\n\ncontrolspace {}, {}, {} ({} cores, {} threads), {}.\n\nSources: {}. Seed {}.\n\n"
         "`{}`\n\n",
         study.name, version_text(p), p.compiler, p.cpu, p.cores, p.threads, p.date,
-        study.sources.kind == SourcesKind::sphere   ? "sphere"
-        : study.sources.kind == SourcesKind::planes ? "planes"
-                                                    : study.sources.file.string(),
-        study.seed, p.command_line);
+        sources_name(study.sources), study.seed, p.command_line);
     if (!complete) text += "Not complete: cases are missing.\n\n";
     return text + render_tables(study, rows, TableStyle::markdown);
 }

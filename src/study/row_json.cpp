@@ -31,6 +31,8 @@ void add_setting(Json& json, const Case& c) {
     json["g_r"] = c.g_r;
     json["s_a"] = if_sampled(c.sources.s_a);
     json["s_n"] = if_sampled(c.sources.s_n);
+    json["sampling"] = sampled ? Json(name_of(c.sources.sampling)) : Json(nullptr);
+    json["field"] = name_of(c.sources.field.kind);
     json["max_depth"] = or_null(c.max_depth);
     json["voxel"] = or_null(c.voxel);
     json["voxel_factor"] = or_null(c.voxel_factor);
@@ -114,6 +116,10 @@ Case setting_from(const Json& json, const SourcesChoice& sources) {
     c.structure = json.at("structure");
     if (!json.at("split").is_null()) c.split = named<SplitRule>(json, "split");
     c.sources = sources;
+    if (json.contains("field")) c.sources.field.kind = named<FieldKind>(json, "field");
+    if (json.contains("sampling") && !json.at("sampling").is_null()) {
+        c.sources.sampling = named<Sampling>(json, "sampling");
+    }
     c.sources.rho = optional_from<double>(json, "rho").value_or(sources.rho);
     c.sources.s_a = optional_from<double>(json, "s_a").value_or(sources.s_a);
     c.sources.s_n = optional_from<double>(json, "s_n").value_or(sources.s_n);

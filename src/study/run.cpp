@@ -67,15 +67,41 @@ const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> ca
                          [&](const CatalogueEntry& entry) { return entry.id == c.structure; });
 }
 
-}  // namespace
+/// Structures without voxels of their own have no nodes to follow a field at.
+void require_follows(const CatalogueEntry& entry) {
+    if (entry.has_voxels && !entry.has_levels) return;
+    throw InputError(
+        "this structure follows point sources only: an analytic field takes a grid, or a tree that "
+        "is adapted to it");
+}
 
-Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry,
-                  const Workload& workload, const ReferenceProbes& probes,
-                  const StudyObserver& observer) {
-    Measures m;
+void follow_at_nodes(ControlSpace& space, const MetricField& field) {
+    ControlNodes nodes = space.control_nodes(Neighbourhood::faces);
+    std::vector<Point> x(nodes.metrics.size());
+    for (NodeIndex i = 0; i < x.size(); ++i) {
+        x[i] = std::visit([&](const auto& graph) { return Point(graph.position(i)); }, nodes.graph);
+    }
+    field.evaluate(x, nodes.metrics);
+    space.assign(nodes.metrics);
+}
+
+/// A structure that has learnt what case `c` asks for.
+std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
+                                            const CatalogueEntry& entry, const Workload& workload,
+                                            Measures& m, const StudyObserver& observer) {
+    if (has_field(c.sources)) {
+        tell(observer.phase_started, "adaptation");
+        require_follows(entry);
+        const auto field = make_reference(c, workload);
+        const auto start = std::chrono::steady_clock::now();
+        auto space = entry.make(space_options(study, c, workload));
+        follow_at_nodes(*space, *field);
+        m.insert_s = seconds_since(start);
+        return space;
+    }
     tell(observer.phase_started, "insertion");
     auto start = std::chrono::steady_clock::now();
-    const auto space = entry.make(space_options(study, c, workload));
+    auto space = entry.make(space_options(study, c, workload));
     m.sources_inserted = space->insert(std::span<const PointSource>(workload.sources)).inserted;
     m.insert_s = seconds_since(start);
 
@@ -83,6 +109,16 @@ Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry
     start = std::chrono::steady_clock::now();
     m.gradation = space->grade({.law = c.law, .schedule = c.schedule, .ratio = c.g_r});
     m.gradation_s = seconds_since(start);
+    return space;
+}
+
+}  // namespace
+
+Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry,
+                  const Workload& workload, const ReferenceProbes& probes,
+                  const StudyObserver& observer) {
+    Measures m;
+    const auto space = make_and_fill(study, c, entry, workload, m, observer);
     m.footprint = space->footprint();
 
     tell(observer.phase_started, "access");

@@ -9,26 +9,12 @@
 
 #include "error.h"
 #include "gradation/law.h"
+#include "study/field_settings.h"
 #include "study/names.h"
+#include "study/setting_values.h"
 
 namespace controlspace {
 namespace {
-
-double number(const SettingValue& value) { return std::get<double>(value); }
-const std::string& text(const SettingValue& value) { return std::get<std::string>(value); }
-
-/// `value`, if it is from `least` to `most`.
-double within(double value, double least, double most) {
-    if (value < least || value > most) {
-        throw InputError(fmt::format("{} is out of range: give {} to {}", value, least, most));
-    }
-    return value;
-}
-
-double positive(double value) {
-    if (!(value > 0)) throw InputError(fmt::format("{} is not positive", value));
-    return value;
-}
 
 template <class Integer>
 Integer integer_within(const SettingValue& value, double least, double most) {
@@ -63,7 +49,6 @@ SettingValues names(const std::vector<Enum>& list) {
     for (const Enum e : list) values.emplace_back(std::string(name_of(e)));
     return values;
 }
-SettingValues one(double value) { return {value}; }
 SettingValues none(const Run&) { return {}; }
 
 template <std::vector<double> Run::*list>
@@ -106,23 +91,12 @@ void set_ratio_from(Run& run, const SettingValues& values) {
     });
 }
 
-SettingValues get_sources(const Study& study) {
-    switch (study.sources.kind) {
-        case SourcesKind::sphere:
-            return {std::string("sphere")};
-        case SourcesKind::planes:
-            return {std::string("planes")};
-        case SourcesKind::file:
-            break;
-    }
-    return {study.sources.file.string()};
-}
-
 void set_sources(Study& study, const SettingValues& values) {
     const std::string& what = text(values.front());
-    if (what.empty()) throw InputError("no name: give sphere, planes or the name of a file");
+    if (what.empty()) throw InputError("no name: give sphere, planes, none or the name of a file");
     study.sources.kind = what == "sphere"   ? SourcesKind::sphere
                          : what == "planes" ? SourcesKind::planes
+                         : what == "none"   ? SourcesKind::none
                                             : SourcesKind::file;
     study.sources.file = study.sources.kind == SourcesKind::file ? what : "";
 }
@@ -145,7 +119,7 @@ constexpr auto whole = ValueType::whole_number;
 constexpr auto text_type = ValueType::text;
 constexpr double exact_integers = 9007199254740992.0;  // 2^53: whole numbers pass through doubles
 
-const Setting<Study> study_table[] = {
+const Setting<Study> general_table[] = {
     {"name", text_type, 1, "", "Name of the study, and of its folder of results",
      [](Study& s, const SettingValues& v) {
          s.name = text(v.front());
@@ -157,8 +131,12 @@ const Setting<Study> study_table[] = {
      },
      [](const Study& s) { return SettingValues{s.name}; }},
     {"sources", text_type, 1, "",
-     "sphere, planes, or a file of sources: .csv, a pipe of such, or .mesh beside .sol",
-     set_sources, get_sources},
+     "sphere, planes, a file of sources: .csv, a pipe of such, or .mesh beside .sol; or none, for "
+     "a field alone",
+     set_sources, [](const Study& s) { return SettingValues{sources_name(s.sources)}; }},
+    {"centre", number_type, 3, "", "x y z: centre of the sphere [length]",
+     [](Study& s, const SettingValues& v) { s.sources.centre = point(v); },
+     [](const Study& s) { return coordinates(s.sources.centre); }},
     {"radius", number_type, 1, "", "Radius of the sphere [length]",
      [](Study& s, const SettingValues& v) { s.sources.radius = positive(number(v.front())); },
      [](const Study& s) { return one(s.sources.radius); }},
@@ -169,8 +147,8 @@ const Setting<Study> study_table[] = {
      [](Study& s, const SettingValues& v) { s.sources.h = positive(number(v.front())); },
      [](const Study& s) { return one(s.sources.h); }},
     {"domain", number_type, 6, "",
-     "x0 x1 y0 y1 z0 z1 [length]; left out: -1 1 along each axis for sampled surfaces, otherwise "
-     "the box of the sources and a margin",
+     "x0 x1 y0 y1 z0 z1 [length]; left out: where the field is defined; -1 1 along each axis for "
+     "other fields and sampled surfaces; otherwise the box of the sources and a margin",
      set_domain, get_domain},
     {"margin", number_type, 1, "",
      "Margin around sources from a file [longest extent of the sources]",
@@ -183,7 +161,7 @@ const Setting<Study> study_table[] = {
          s.max_memory_gib = within(positive(number(v.front())), 0, 1 << 20);
      },
      [](const Study& s) { return one(s.max_memory_gib); }},
-    {"seed", whole, 1, "", "Seed of the random places",
+    {"seed", whole, 1, "", "Seed of the random places, and of sources that are not regular",
      [](Study& s, const SettingValues& v) {
          s.seed = integer_within<std::uint64_t>(v.front(), 0, exact_integers);
      },
@@ -244,6 +222,12 @@ const Setting<Run> run_table[] = {
      set_ratio_from<gradation_ratio_from_mmg>, none},
     {"refine_beta", number_type, 0, "g_r", "Gradation as refine's beta: g_r = 1 + ln(beta)",
      set_ratio_from<gradation_ratio_from_refine>, none},
+    {"sampling", text_type, 0, "", "How sampled sources lie: regular, random, clustered, poisson",
+     set_names<&Run::sampling>, get_names<&Run::sampling>},
+    {"field", text_type, 0, "",
+     "Analytic field that is asked for besides the sources: none, sphere, planes, ugawg-linear, "
+     "ugawg-polar-1, ugawg-polar-2",
+     set_names<&Run::field>, get_names<&Run::field>},
     {"s_a", number_type, 0, "", "Tangential length of sampled sources [h]", set_positive<&Run::s_a>,
      get_numbers<&Run::s_a>},
     {"s_n", number_type, 0, "", "Normal length of sampled sources [tangential length]",
@@ -285,7 +269,15 @@ void require_type(ValueType type, const SettingValue& value) {
 
 }  // namespace
 
-std::span<const Setting<Study>> study_settings() { return study_table; }
+std::span<const Setting<Study>> study_settings() {
+    static const std::vector<Setting<Study>> all = [] {
+        std::vector<Setting<Study>> settings(std::begin(general_table), std::end(general_table));
+        const auto fields = field_settings();
+        settings.insert(settings.end(), fields.begin(), fields.end());
+        return settings;
+    }();
+    return all;
+}
 std::span<const Setting<Run>> run_settings() { return run_table; }
 
 std::string to_string(const SettingValues& values) {

@@ -47,30 +47,72 @@ void require_few(std::size_t cases) {
     }
 }
 
-void require_sensible(const Study& study, const Run& run) {
+template <class T>
+bool has(const std::vector<T>& values, const T& value) {
+    return std::find(values.begin(), values.end(), value) != values.end();
+}
+
+/// Parameters that change nothing are a slip: they were meant for other sources.
+void require_needed(const SourcesChoice& sources, const Run& run) {
     const Run defaults;
     const SourcesChoice plain;
-    if (study.sources.kind == SourcesKind::file &&
+    if (!is_sampled(sources) &&
         (run.rho != defaults.rho || run.s_a != defaults.s_a || run.s_n != defaults.s_n ||
-         study.sources.h != plain.h)) {
+         run.sampling != defaults.sampling || sources.h != plain.h)) {
         throw InputError(
-            "h, rho, s_a and s_n are for sampled surfaces: leave them out with sources from a "
-            "file");
+            "h, rho, s_a, s_n and sampling are for sampled surfaces: leave them out with other "
+            "sources");
     }
-    if (study.sources.kind != SourcesKind::sphere && study.sources.radius != plain.radius) {
-        throw InputError("radius is for the sphere: leave it out with other sources");
+    if (sources.kind != SourcesKind::sphere &&
+        (sources.radius != plain.radius || sources.centre != plain.centre)) {
+        throw InputError("radius and centre are for the sphere: leave them out with other sources");
     }
-    if (study.sources.kind != SourcesKind::planes && study.sources.slope != plain.slope) {
+    if (sources.kind != SourcesKind::planes && sources.slope != plain.slope) {
         throw InputError("slope is for the planes: leave it out with other sources");
     }
-    const bool published = std::find(run.reference.begin(), run.reference.end(),
-                                     ReferenceKind::published_sphere) != run.reference.end();
-    if (!published) return;
-    if (study.sources.kind != SourcesKind::sphere) {
-        throw InputError("reference published-sphere is for the sphere: use exact");
+}
+
+void require_reference(const SourcesChoice& sources, const Run& run) {
+    if (!has(run.reference, ReferenceKind::published_sphere)) return;
+    if (sources.kind != SourcesKind::sphere || run.field != Run{}.field) {
+        throw InputError("reference published-sphere is for the sphere alone: use exact");
+    }
+    if (sources.centre != Point::Zero()) {
+        throw InputError("reference published-sphere is around the origin: use exact");
     }
     if (std::any_of(run.s_n.begin(), run.s_n.end(), [](double s_n) { return s_n != 1; })) {
         throw InputError("reference published-sphere is isotropic: use exact, or s_n = 1");
+    }
+}
+
+void require_sensible(const Study& study, const Run& run) {
+    require_needed(study.sources, run);
+    require_reference(study.sources, run);
+    if (study.sources.kind == SourcesKind::none && has(run.field, FieldKind::none)) {
+        throw InputError("neither sources nor a field: give one of them");
+    }
+}
+
+/// The same of the field's parameters; runs may differ in their fields.
+void require_needed_fields(const Study& study) {
+    const FieldChoice& field = study.sources.field;
+    const FieldChoice plain;
+    const auto any_run_has = [&](FieldKind kind) {
+        return std::any_of(study.runs.begin(), study.runs.end(),
+                           [&](const Run& run) { return has(run.field, kind); });
+    };
+    const bool sphere = any_run_has(FieldKind::sphere);
+    const bool planes = any_run_has(FieldKind::planes);
+    if (!sphere && (field.radius != plain.radius || field.centre != plain.centre)) {
+        throw InputError("field_radius and field_centre are for field = \"sphere\": set that");
+    }
+    if (!planes && field.slope != plain.slope) {
+        throw InputError("field_slope is for field = \"planes\": set that");
+    }
+    if (!sphere && !planes && field.lengths != plain.lengths) {
+        throw InputError(
+            "field_lengths, field_growth and field_largest are for field = \"sphere\" or "
+            "\"planes\": set one of them");
     }
 }
 
@@ -89,6 +131,8 @@ void multiply(std::vector<Case>& cases, const std::vector<Value>& values, Assign
 std::vector<Case> settings_of(const Study& study, const Run& run) {
     std::vector<Case> cases(1);
     cases.front().sources = study.sources;
+    multiply(cases, run.field, [](Case& c, FieldKind kind) { c.sources.field.kind = kind; });
+    multiply(cases, run.sampling, [](Case& c, Sampling s) { c.sources.sampling = s; });
     multiply(cases, run.rho, [](Case& c, double rho) { c.sources.rho = rho; });
     multiply(cases, run.s_a, [](Case& c, double s_a) { c.sources.s_a = s_a; });
     multiply(cases, run.s_n, [](Case& c, double s_n) { c.sources.s_n = s_n; });
@@ -131,6 +175,7 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
 }  // namespace
 
 std::vector<Case> expand(const Study& study, std::span<const CatalogueEntry> catalogue) {
+    require_needed_fields(study);
     std::vector<Case> cases;
     for (const Run& run : study.runs) {
         require_sensible(study, run);

@@ -25,6 +25,8 @@ struct Run {
     std::vector<double> g_r{1.25};
     std::vector<double> s_a{2};
     std::vector<double> s_n{1};
+    std::vector<Sampling> sampling{Sampling::regular};
+    std::vector<FieldKind> field{FieldKind::none};
     std::vector<int> kd_depth{42};
     std::vector<int> octree_depth{14};
     std::vector<double> voxel{0};  ///< 0: by tau and the smallest length that is asked for
@@ -38,11 +40,13 @@ struct Run {
 /// A comparison: one kind of sources, one domain, one way to measure, and the runs.
 struct Study {
     std::string name = "study";
-    SourcesChoice sources;      ///< rho, s_a and s_n come from the runs
-    std::optional<Box> domain;  ///< none: [-1, 1]^3 for sampled surfaces, else from the sources
+    SourcesChoice sources;  ///< sampling, rho, s_a, s_n and the kind of field come from the runs
+    /// None: where the field is defined; where that is everywhere, and for sampled surfaces,
+    /// [-1, 1]^3; else from the sources.
+    std::optional<Box> domain;
     double margin = 0.05;       ///< around sources from a file, in units of their longest extent
     double max_memory_gib = 4;  ///< cap on a structure
-    std::uint64_t seed = 1;     ///< of the random places that access is timed at
+    std::uint64_t seed = 1;     ///< of the random places that access is timed at, and of sources
     int threads = 0;            ///< of the untimed work; 0: all
     std::size_t access_points = 100000;  ///< random places
     int access_repeats = 9;
@@ -53,9 +57,9 @@ struct Study {
 };
 
 /// All cases of a study, each once, in the order of the runs; within a run structures vary fastest,
-/// then splits, then tau; rho is outermost. Throws InputError for a structure that `catalogue` does
-/// not know, for sampling parameters that differ from their defaults with sources from a file, for
-/// a reference that does not fit the sources, and for a study without cases.
+/// then splits, then tau; the field is outermost. Throws InputError for a structure that
+/// `catalogue` does not know, for sampling parameters that differ from their defaults where nothing
+/// is sampled, for a reference that does not fit the sources, and for a study without cases.
 std::vector<Case> expand(const Study& study, std::span<const CatalogueEntry> catalogue);
 
 }  // namespace controlspace

@@ -1,12 +1,16 @@
 #include "study/time_estimate.h"
 
+#include <algorithm>
+
 namespace controlspace {
 
 TimeEstimate::TimeEstimate(std::span<const Case> cases,
                            std::span<const std::size_t> source_counts) {
     for (std::size_t i = 0; i < cases.size(); ++i) {
         structures_.push_back(structure_label(cases[i]));
-        work_.push_back(static_cast<double>(source_counts[i]) / cases[i].tau);
+        // A field without sources is work too.
+        const std::size_t sources = std::max<std::size_t>(1, source_counts[i]);
+        work_.push_back(static_cast<double>(sources) / cases[i].tau);
     }
 }
 

@@ -1,55 +1,68 @@
 #include "study/workload.h"
 
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "fields/mixture.h"
 #include "measure/reference.h"
 #include "sources/read_sources.h"
-#include "sources/sampled_surfaces.h"
 #include "spaces/control_space.h"
+#include "study/names.h"
 
 namespace controlspace {
 namespace {
 
-std::vector<PointSource> make_sources(const SourcesChoice& s) {
+std::vector<PointSource> make_sources(const SourcesChoice& s, std::uint64_t seed) {
     switch (s.kind) {
         case SourcesKind::sphere:
-            return sample_sphere(
-                {.radius = s.radius, .h = s.h, .s_a = s.s_a, .s_n = s.s_n, .rho = s.rho});
+            return scatter_sphere({.centre = s.centre,
+                                   .radius = s.radius,
+                                   .h = s.h,
+                                   .s_a = s.s_a,
+                                   .s_n = s.s_n,
+                                   .rho = s.rho},
+                                  s.sampling, seed);
         case SourcesKind::planes:
-            return sample_planes(
-                {.h = s.h, .s_a = s.s_a, .s_n = s.s_n, .rho = s.rho, .slope = s.slope});
+            return scatter_planes(
+                {.h = s.h, .s_a = s.s_a, .s_n = s.s_n, .rho = s.rho, .slope = s.slope}, s.sampling,
+                seed);
+        case SourcesKind::none:
+            return {};
         case SourcesKind::file:
             break;
     }
     return read_sources(s.file);
 }
 
-Box domain_of(const Study& study, const std::vector<PointSource>& sources) {
+Box domain_of(const Study& study, const SourcesChoice& choice, const Workload& workload) {
     if (study.domain) return *study.domain;
-    if (is_sampled(study.sources)) return {Point::Constant(-1), Point::Constant(1)};
+    if (workload.field.definition != everywhere()) return workload.field.definition;
+    if (choice.kind != SourcesKind::file) return {Point::Constant(-1), Point::Constant(1)};
     std::vector<Point> positions;
-    positions.reserve(sources.size());
-    for (const PointSource& source : sources) positions.push_back(source.position);
+    positions.reserve(workload.sources.size());
+    for (const PointSource& source : workload.sources) positions.push_back(source.position);
     return bounding_box(positions, study.margin);
 }
 
-std::shared_ptr<const MetricField> make_reference(const Case& c, const Workload& workload) {
-    const double largest = workload.domain.half_diagonal();
-    if (c.reference == ReferenceKind::published_sphere) {
-        const SourcesChoice& s = c.sources;
-        return published_sphere_reference(s.radius, s.h * s.s_a, c.g_r, largest);
-    }
-    return exact_reference(workload.sources, c.g_r, Metric::isotropic(largest));
+double finest_length_of(const Workload& workload) {
+    if (!workload.field.field) return finest_length(workload.sources);
+    if (workload.sources.empty()) return workload.field.finest_length;
+    return std::min(workload.field.finest_length, finest_length(workload.sources));
 }
 
 }  // namespace
 
 Workload make_workload(const Study& study, const SourcesChoice& choice) {
     Workload workload;
-    workload.sources = make_sources(choice);
-    workload.domain = domain_of(study, workload.sources);
+    workload.sources = make_sources(choice, study.seed);
+    if (has_field(choice)) workload.field = make_field(choice.field);
+    workload.domain = domain_of(study, choice, workload);
+    require_defined(workload.field, workload.domain, std::string(name_of(choice.field.kind)));
     for (std::size_t i = 0; i < workload.sources.size(); ++i) {
         require_valid(workload.sources[i], i, workload.domain);
     }
-    workload.finest_length = finest_length(workload.sources);
+    workload.finest_length = finest_length_of(workload);
     return workload;
 }
 
@@ -69,6 +82,18 @@ SpaceOptions space_options(const Study& study, const Case& c, const Workload& wo
     options.prune_delta = c.prune_delta.value_or(0);
     require_valid(options);
     return options;
+}
+
+std::shared_ptr<const MetricField> make_reference(const Case& c, const Workload& workload) {
+    const double largest = workload.domain.half_diagonal();
+    if (c.reference == ReferenceKind::published_sphere) {
+        const SourcesChoice& s = c.sources;
+        return published_sphere_reference(s.radius, s.h * s.s_a, c.g_r, largest);
+    }
+    std::shared_ptr<const MetricField> cones =
+        exact_reference(workload.sources, c.g_r, Metric::isotropic(largest));
+    if (!workload.field.field) return cones;
+    return mixture({std::move(cones), workload.field.field});
 }
 
 ReferenceProbes make_reference_probes(const Study& study, const Case& c, const Workload& workload) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "fields/analytic_field.h"
 #include "geometry/box.h"
 #include "measure/accuracy.h"
 #include "sources/point_source.h"
@@ -12,11 +14,13 @@ namespace controlspace {
 /// What all cases with the same sources share.
 struct Workload {
     std::vector<PointSource> sources;
+    AnalyticField field;  ///< `field.field` is null where there is none
     Box domain;
-    double finest_length = 0;  ///< smallest length that any source asks for
+    double finest_length = 0;  ///< smallest length that any source or the field asks for
 };
 
-/// Samples or reads the sources, and checks that each lies in the domain. Throws InputError.
+/// Samples or reads the sources, and checks that each lies in the domain, and the domain where the
+/// field is defined. Throws InputError.
 Workload make_workload(const Study& study, const SourcesChoice& choice);
 
 /// What the structure of case `c` is made with; throws InputError where it is out of range.
@@ -28,7 +32,11 @@ struct ReferenceProbes {
     Probes fine;    ///< fine_probe_grid^3 cell centres
 };
 
-/// Depends on the sources, the kind of reference and g_r of `c` only.
+/// What δ_R of `c` is measured against; a structure that follows a field follows this one. Depends
+/// on the sources, the kind of reference and g_r of `c` only.
+std::shared_ptr<const MetricField> make_reference(const Case& c, const Workload& workload);
+
+/// The same at the probes.
 ReferenceProbes make_reference_probes(const Study& study, const Case& c, const Workload& workload);
 
 }  // namespace controlspace

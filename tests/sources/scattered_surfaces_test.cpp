@@ -12,7 +12,7 @@ using namespace controlspace;
 
 namespace {
 
-constexpr Scatter all_scatters[] = {Scatter::random, Scatter::clustered, Scatter::poisson};
+constexpr Sampling irregular[] = {Sampling::random, Sampling::clustered, Sampling::poisson};
 
 std::size_t count_within(const std::vector<PointSource>& sources, const Point& p, double radius) {
     return static_cast<std::size_t>(
@@ -45,9 +45,9 @@ double smallest_distance(const std::vector<PointSource>& sources) {
 
 TEST_CASE("scattered sources lie on the sphere, with the metrics of those in rows") {
     const Point centre(0.5, -2, 7);
-    for (const Scatter scatter : all_scatters) {
+    for (const Sampling sampling : irregular) {
         const auto sources = scatter_sphere(
-            {.centre = centre, .radius = 0.5, .s_a = 4, .s_n = 0.25, .rho = 3}, scatter, 1);
+            {.centre = centre, .radius = 0.5, .s_a = 4, .s_n = 0.25, .rho = 3}, sampling, 1);
         REQUIRE(sources.size() > 500);
         for (const PointSource& s : sources) {
             const Vector v = s.position - centre;
@@ -61,9 +61,9 @@ TEST_CASE("scattered sources lie on the sphere, with the metrics of those in row
 }
 
 TEST_CASE("scattered sources lie on both planes by their areas") {
-    for (const Scatter scatter : all_scatters) {
+    for (const Sampling sampling : irregular) {
         const auto sources =
-            scatter_planes({.s_a = 4, .s_n = 0.25, .rho = 2, .slope = 0.75}, scatter, 1);
+            scatter_planes({.s_a = 4, .s_n = 0.25, .rho = 2, .slope = 0.75}, sampling, 1);
         std::size_t first = 0;
         for (const PointSource& s : sources) {
             REQUIRE(s.position.cwiseAbs().maxCoeff() <= 1);
@@ -75,7 +75,7 @@ TEST_CASE("scattered sources lie on both planes by their areas") {
             const Vector normal = Vector(0.75, -1, 0).normalized();
             REQUIRE((s.metric.matrix() * normal - 0.015 * normal).norm() < 1e-16);
         }
-        if (scatter == Scatter::clustered) continue;
+        if (sampling == Sampling::clustered) continue;
         // Areas 4 and 4 * 1.25.
         const auto n = static_cast<double>(sources.size());
         CHECK(std::abs(static_cast<double>(first) - n / 2.25) < 5 * std::sqrt(n) / 2);
@@ -83,14 +83,14 @@ TEST_CASE("scattered sources lie on both planes by their areas") {
 }
 
 TEST_CASE("random and clustered sources are as many as those in rows") {
-    for (const Scatter scatter : {Scatter::random, Scatter::clustered}) {
-        CHECK(scatter_sphere({.rho = 2}, scatter, 1).size() == sample_sphere({.rho = 2}).size());
-        CHECK(scatter_planes({.rho = 3}, scatter, 1).size() == sample_planes({.rho = 3}).size());
+    for (const Sampling sampling : {Sampling::random, Sampling::clustered}) {
+        CHECK(scatter_sphere({.rho = 2}, sampling, 1).size() == sample_sphere({.rho = 2}).size());
+        CHECK(scatter_planes({.rho = 3}, sampling, 1).size() == sample_planes({.rho = 3}).size());
     }
 }
 
 TEST_CASE("random sources fall into caps by their areas") {
-    const auto sources = scatter_sphere({}, Scatter::random, 1);
+    const auto sources = scatter_sphere({}, Sampling::random, 1);
     const auto n = static_cast<double>(sources.size());
     for (const double radius : {0.1, 0.4, 0.8}) {
         // Archimedes: the cap cut off by a ball of that radius has the area pi radius^2.
@@ -106,7 +106,7 @@ TEST_CASE("random sources fall into caps by their areas") {
 TEST_CASE("Poisson sources keep their distance, leave no room, and fall evenly") {
     const SphereSampling sphere{.rho = 2};
     const double spacing = 0.03;
-    const auto sources = scatter_sphere(sphere, Scatter::poisson, 1);
+    const auto sources = scatter_sphere(sphere, Sampling::poisson, 1);
     CHECK(smallest_distance(sources) >= spacing);
     const auto regular = static_cast<double>(sample_sphere(sphere).size());
     const auto n = static_cast<double>(sources.size());
@@ -121,14 +121,14 @@ TEST_CASE("Poisson sources keep their distance, leave no room, and fall evenly")
         const auto count = static_cast<double>(count_within(sources, 0.8 * d, 0.1));
         CHECK(std::abs(count - n * share) < 5 * 0.5 * std::sqrt(n * share));
     }
-    CHECK(smallest_distance(scatter_planes({.rho = 3, .slope = 0.8}, Scatter::poisson, 2)) >=
+    CHECK(smallest_distance(scatter_planes({.rho = 3, .slope = 0.8}, Sampling::poisson, 2)) >=
           0.045);
 }
 
 TEST_CASE("clustered sources are normal around places that are random") {
     // The clusters' centres are drawn first, as random sources are.
-    const auto random = scatter_sphere({.rho = 2}, Scatter::random, 4);
-    const auto sources = scatter_sphere({.rho = 2}, Scatter::clustered, 4);
+    const auto random = scatter_sphere({.rho = 2}, Sampling::random, 4);
+    const auto sources = scatter_sphere({.rho = 2}, Sampling::clustered, 4);
     const double spread = cluster_spread * std::sqrt(4 * std::numbers::pi) * 0.8;
     double far = 0;
     for (const PointSource& s : sources) {
@@ -158,22 +158,28 @@ TEST_CASE("clustered sources are normal around places that are random") {
 }
 
 TEST_CASE("scattered sources depend on the seed, and on nothing else") {
-    for (const Scatter scatter : all_scatters) {
-        const auto sources = scatter_sphere({.rho = 5}, scatter, 1);
-        CHECK(sources == scatter_sphere({.rho = 5}, scatter, 1));
-        CHECK_FALSE(sources == scatter_sphere({.rho = 5}, scatter, 2));
+    for (const Sampling sampling : irregular) {
+        const auto sources = scatter_sphere({.rho = 5}, sampling, 1);
+        CHECK(sources == scatter_sphere({.rho = 5}, sampling, 1));
+        CHECK_FALSE(sources == scatter_sphere({.rho = 5}, sampling, 2));
     }
+}
+
+TEST_CASE("regular sampling is that in rows") {
+    CHECK(scatter_sphere({.rho = 5}, Sampling::regular, 1) == sample_sphere({.rho = 5}));
+    CHECK(scatter_planes({.rho = 9, .slope = 0.5}, Sampling::regular, 1) ==
+          sample_planes({.rho = 9, .slope = 0.5}));
 }
 
 TEST_CASE("scattering refuses what sampling refuses") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const Scatter scatter : all_scatters) {
-        CHECK_THROWS_AS(scatter_sphere({.radius = 0}, scatter, 1), InputError);
-        CHECK_THROWS_AS(scatter_sphere({.s_n = nan}, scatter, 1), InputError);
-        CHECK_THROWS_AS(scatter_planes({.h = -1}, scatter, 1), InputError);
-        CHECK_THROWS_AS(scatter_planes({.slope = 2}, scatter, 1), InputError);
+    for (const Sampling sampling : irregular) {
+        CHECK_THROWS_AS(scatter_sphere({.radius = 0}, sampling, 1), InputError);
+        CHECK_THROWS_AS(scatter_sphere({.s_n = nan}, sampling, 1), InputError);
+        CHECK_THROWS_AS(scatter_planes({.h = -1}, sampling, 1), InputError);
+        CHECK_THROWS_AS(scatter_planes({.slope = 2}, sampling, 1), InputError);
         CHECK(error_of([&] {
-                  scatter_sphere({.centre = Point(0, nan, 0)}, scatter, 1);
+                  scatter_sphere({.centre = Point(0, nan, 0)}, sampling, 1);
               }).find("centre = (0, nan, 0)") != std::string::npos);
     }
 }

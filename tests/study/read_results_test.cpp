@@ -64,8 +64,12 @@ TEST_CASE("what was written is read back") {
     study.seed = 7;
     study.domain = Box{Point(-2, -1, -1), Point(1, 1.000000001, 3)};
     study.sources.radius = 0.7;
+    study.sources.field.lengths = {.across = 0.01, .along = 0.5, .growth = 0, .largest = 0.75};
     auto rows = some_rows();
-    for (Row& row : rows) row.setting.sources.radius = 0.7;
+    for (Row& row : rows) row.setting.sources = study.sources;
+    rows[0].setting.sources.sampling = Sampling::clustered;
+    rows[1].setting.sources.rho = 0.2;
+    rows[1].setting.sources.field.kind = FieldKind::ugawg_polar_1;
     Provenance provenance = current_provenance();
     provenance.command_line = "controlspace compare";
     ResultsFolder(folder.path).write(provenance, study, rows, false);
@@ -86,11 +90,12 @@ TEST_CASE("what was written is read back") {
           results_json(provenance, study, rows, false));
 }
 
-TEST_CASE("results of before grids had settings of their own are read") {
+TEST_CASE("results of before grids, samplings and fields had settings are read") {
     const Folder folder("older");
     Json json = valid_json();
     for (Json& row : json["rows"]) {
-        for (const char* field : {"voxel", "voxel_factor", "prune_delta"}) row.erase(field);
+        for (const char* field : {"voxel", "voxel_factor", "prune_delta", "sampling", "field"})
+            row.erase(field);
     }
     folder.write(json.dump());
     const StoredResults read = read_results(folder.path);

@@ -129,3 +129,36 @@ TEST_CASE("a study that cannot be run is refused before anything runs") {
     study.sources = {.kind = SourcesKind::file, .file = "no/such/file.csv"};
     CHECK_THROWS_WITH(PreparedStudy(study, tree_catalogue()), Contains("no/such/file.csv"));
 }
+
+TEST_CASE("with a field, grids follow it and the sources; what cannot is a row that says so") {
+    // An octree that was never cut passes for a grid of one voxel.
+    const auto trees = tree_catalogue();
+    std::vector<CatalogueEntry> catalogue(trees.begin(), trees.end());
+    CatalogueEntry& grid = catalogue[3];
+    REQUIRE(grid.id == "K_oL");
+    grid.has_voxels = true;
+    Study study = small_study({"K_oL", "K_L"});
+    study.sources.field.lengths = {.across = 0.01, .along = 0.5};
+    study.runs[0].field = {FieldKind::sphere, FieldKind::planes};
+    study.probe_grid = 1;
+    const auto rows = run(study, catalogue);
+    REQUIRE(rows.size() == 4);
+    for (const Row& row : rows) {
+        CHECK(row.sources > 100);
+        if (row.setting.structure == "K_L") {
+            CHECK_THAT(row.error, Contains("field"));
+            continue;
+        }
+        REQUIRE(row.measures);
+        CHECK(row.measures->footprint.control_nodes == 1);
+        CHECK(row.measures->accuracy.max == 0);  // the probe is the voxel's centre
+        CHECK(row.measures->accuracy_fine.max > 1);
+    }
+    study.sources.kind = SourcesKind::none;
+    study.sources.h = SourcesChoice{}.h;
+    const auto alone = run(study, catalogue);
+    REQUIRE(alone[0].measures);
+    CHECK(alone[0].sources == 0);
+    CHECK(alone[0].measures->accuracy.max == 0);
+    CHECK(alone[0].measures->source_accuracy == 0);
+}

@@ -38,6 +38,7 @@ TEST_CASE("every key of a study file is read") {
     const Study study = parse(R"(
         name = "n"
         sources = "planes"
+        centre = [0.5, -1, 2]
         radius = 0.5
         slope = 2
         h = 0.25
@@ -51,6 +52,12 @@ TEST_CASE("every key of a study file is read") {
         probe_grid = 12
         fine_probe_grid = 13
         output = "out"
+        field_centre = [1, 2, 3]
+        field_radius = 0.75
+        field_slope = 0.5
+        field_lengths = [0.01, 0.04]
+        field_growth = 0.125
+        field_largest = 0.5
         [[runs]]
         structures = ["K_L", "K_V"]
         splits = ["s_G", "s_M"]
@@ -60,6 +67,8 @@ TEST_CASE("every key of a study file is read") {
         g_r = [1.5, 2]
         s_a = 4
         s_n = 0.25
+        sampling = ["regular", "poisson"]
+        field = ["none", "ugawg-polar-2"]
         kd_depth = [10, 20]
         octree_depth = 9
         voxel = [0, 0.01]
@@ -74,6 +83,7 @@ TEST_CASE("every key of a study file is read") {
         refine_beta = [1.5])");
     CHECK(study.name == "n");
     CHECK(study.sources.kind == SourcesKind::planes);
+    CHECK(study.sources.centre == Point(0.5, -1, 2));
     CHECK(study.sources.radius == 0.5);
     CHECK(study.sources.slope == 2);
     CHECK(study.sources.h == 0.25);
@@ -87,6 +97,11 @@ TEST_CASE("every key of a study file is read") {
     CHECK(study.probe_grid == 12);
     CHECK(study.fine_probe_grid == 13);
     CHECK(study.output == "out");
+    const FieldChoice& field = study.sources.field;
+    CHECK(field.centre == Point(1, 2, 3));
+    CHECK(field.radius == 0.75);
+    CHECK(field.slope == 0.5);
+    CHECK(field.lengths == SurfaceLengths{0.01, 0.04, 0.125, 0.5});
     REQUIRE(study.runs.size() == 3);
     const Run& run = study.runs[0];
     CHECK(run.structures == std::vector<std::string>{"K_L", "K_V"});
@@ -97,6 +112,8 @@ TEST_CASE("every key of a study file is read") {
     CHECK(run.g_r == std::vector{1.5, 2.0});
     CHECK(run.s_a == std::vector{4.0});
     CHECK(run.s_n == std::vector{0.25});
+    CHECK(run.sampling == std::vector{Sampling::regular, Sampling::poisson});
+    CHECK(run.field == std::vector{FieldKind::none, FieldKind::ugawg_polar_2});
     CHECK(run.kd_depth == std::vector{10, 20});
     CHECK(run.octree_depth == std::vector{9});
     CHECK(run.voxel == std::vector{0, 0.01});
@@ -115,6 +132,16 @@ TEST_CASE("keys of a run at the top are for all runs that do not set them") {
     CHECK(study.runs[0].tau == std::vector{1, 0.5});
     CHECK(study.runs[1].tau == std::vector{0.1});
     CHECK(study.runs[1].rho == std::vector{0.2});
+}
+
+TEST_CASE("one length of a field is that in all directions") {
+    const SurfaceLengths lengths = parse("field_lengths = 0.02").sources.field.lengths;
+    CHECK(lengths == SurfaceLengths{.across = 0.02, .along = 0.02});
+}
+
+TEST_CASE("a study may have no sources, or those of a file called so") {
+    CHECK(parse("sources = 'none'").sources.kind == SourcesKind::none);
+    CHECK(parse("sources = './none'").sources.kind == SourcesKind::file);
 }
 
 TEST_CASE("a file of sources is looked for beside the study file") {
@@ -156,6 +183,15 @@ TEST_CASE("what is wrong in a study file is named with its line") {
         {"fine_probe_grid = 100000", "out of range"},
         {"name = 'a/b'", "cannot name a folder"},
         {"sources = ''", "sources: no name"},
+        {"centre = [0, 1]", "centre: give three numbers: x y z"},
+        {"sampling = 'even'", "give regular, random, clustered, poisson"},
+        {"field = 'cube'", "field: unknown value 'cube': give none, sphere, planes, ugawg-linear"},
+        {"field_lengths = [0.1, nan]", "field_lengths: nan is not a finite number"},
+        {"field_lengths = [0.1, -1]", "field_lengths: -1 is not positive"},
+        {"field_lengths = [1, 2, 3]", "field_lengths: 3 values: give 2 at most"},
+        {"field_radius = 0", "field_radius: 0 is not positive"},
+        {"field_growth = -0.1", "field_growth: -0.1 is out of range"},
+        {"field_largest = 0", "field_largest: 0 is not positive"},
         {"runs = 1", "give tables [[runs]]"},
         {"runs = []", "give tables [[runs]]"},
     }));

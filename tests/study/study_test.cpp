@@ -120,10 +120,10 @@ TEST_CASE("studies that make no sense are refused") {
     study.sources.kind = SourcesKind::file;
     CHECK_NOTHROW(expand(study));
     study.runs[0].rho = {0.5};
-    CHECK_THROWS_WITH(expand(study), Contains("rho, s_a and s_n"));
+    CHECK_THROWS_WITH(expand(study), Contains("rho, s_a, s_n and sampling"));
     study.runs[0].rho = {1};
     study.sources.radius = 0.5;
-    CHECK_THROWS_WITH(expand(study), Contains("radius is for the sphere"));
+    CHECK_THROWS_WITH(expand(study), Contains("radius and centre are for the sphere"));
     study.sources.radius = SourcesChoice{}.radius;
     study.sources.slope = 0.5;
     CHECK_THROWS_WITH(expand(study), Contains("slope is for the planes"));
@@ -139,4 +139,75 @@ TEST_CASE("studies that make no sense are refused") {
     huge.runs[0].rho.assign(1000, 1);
     huge.runs[0].tau.assign(1000, 1);
     CHECK_THROWS_WITH(expand(huge), Contains("more than 5000 cases"));
+}
+
+TEST_CASE("samplings and fields multiply all structures") {
+    Study study = study_of({"K_oL", "grid"});
+    study.runs[0].field = {FieldKind::none, FieldKind::ugawg_linear};
+    study.runs[0].sampling = {Sampling::regular, Sampling::random, Sampling::clustered};
+    const auto cases = expand(study);
+    REQUIRE(cases.size() == 2 * 3 * 2);
+    std::set<std::string> tables;
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        CHECK(cases[i].sources.field.kind == study.runs[0].field[i / 6]);
+        CHECK(cases[i].sources.sampling == study.runs[0].sampling[i / 2 % 3]);
+        tables.insert(setting_label(cases[i]));
+    }
+    CHECK(tables.size() == 6);
+    CHECK(tables.count("field ugawg-linear, random sources, rho 1, s_a 2, s_n 1, tau 1, epsilon "
+                       "0.2, g_r 1.25; cone law, queue, exact reference") == 1);
+}
+
+TEST_CASE("fields and sources that do not fit together are refused") {
+    const auto complaint = [](auto&& change) -> std::string {
+        Study study = study_of({"grid"});
+        change(study.sources, study.runs[0]);
+        try {
+            expand(study);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    CHECK(complaint([](SourcesChoice&, Run&) {}).empty());
+    CHECK(complaint([](SourcesChoice& s, Run& run) {
+              s.kind = SourcesKind::none;
+              run.field = {FieldKind::ugawg_linear};
+          }).empty());
+    CHECK_THAT(complaint([](SourcesChoice& s, Run&) { s.kind = SourcesKind::none; }),
+               Contains("neither sources nor a field"));
+    CHECK_THAT(complaint([](SourcesChoice& s, Run& run) {
+                   s.kind = SourcesKind::none;
+                   run.field = {FieldKind::sphere};
+                   run.sampling = {Sampling::random};
+               }),
+               Contains("sampling are for sampled surfaces"));
+    CHECK_THAT(complaint([](SourcesChoice& s, Run&) { s.field.radius = 0.5; }),
+               Contains("field_radius"));
+    CHECK_THAT(complaint([](SourcesChoice& s, Run& run) {
+                   s.field.slope = 0.5;
+                   run.field = {FieldKind::sphere};
+               }),
+               Contains("field_slope"));
+    CHECK_THAT(complaint([](SourcesChoice& s, Run& run) {
+                   s.field.lengths.growth = 0.5;
+                   run.field = {FieldKind::ugawg_linear};
+               }),
+               Contains("field_growth"));
+    CHECK_THAT(complaint([](SourcesChoice& s, Run& run) {
+                   s.kind = SourcesKind::planes;
+                   s.centre = Point(1, 0, 0);
+                   run.field = {FieldKind::sphere};
+               }),
+               Contains("centre"));
+    CHECK_THAT(complaint([](SourcesChoice&, Run& run) {
+                   run.field = {FieldKind::sphere};
+                   run.reference = {ReferenceKind::published_sphere};
+               }),
+               Contains("for the sphere alone"));
+    CHECK_THAT(complaint([](SourcesChoice& s, Run& run) {
+                   s.centre = Point(0.1, 0, 0);
+                   run.reference = {ReferenceKind::published_sphere};
+               }),
+               Contains("around the origin"));
 }

@@ -20,3 +20,10 @@ TEST_CASE("time left follows sources / tau, at each structure's own pace once it
     estimate.case_finished(9);
     CHECK(*estimate.seconds_left() == 0);
 }
+
+TEST_CASE("a case without sources counts as one of one") {
+    const std::vector<Case> cases{{.structure = "a", .tau = 1}, {.structure = "a", .tau = 0.5}};
+    TimeEstimate estimate(cases, std::vector<std::size_t>{0, 0});
+    estimate.case_finished(3);
+    CHECK(*estimate.seconds_left() == Approx(6));
+}

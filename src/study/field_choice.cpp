@@ -1,0 +1,28 @@
+#include "study/field_choice.h"
+
+#include <stdexcept>
+
+#include "fields/ugawg_fields.h"
+
+namespace controlspace {
+
+AnalyticField make_field(const FieldChoice& choice) {
+    switch (choice.kind) {
+        case FieldKind::sphere:
+            return sphere_field(
+                {.centre = choice.centre, .radius = choice.radius, .lengths = choice.lengths});
+        case FieldKind::planes:
+            return planes_field({.slope = choice.slope, .lengths = choice.lengths});
+        case FieldKind::ugawg_linear:
+            return ugawg_linear();
+        case FieldKind::ugawg_polar_1:
+            return ugawg_polar_1();
+        case FieldKind::ugawg_polar_2:
+            return ugawg_polar_2();
+        case FieldKind::none:
+            break;
+    }
+    throw std::logic_error("no field is no field to make");
+}
+
+}  // namespace controlspace

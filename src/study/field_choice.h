@@ -1,0 +1,25 @@
+#pragma once
+
+#include "fields/analytic_field.h"
+#include "fields/surface_fields.h"
+
+namespace controlspace {
+
+/// Which analytic field a case has besides its point sources.
+enum class FieldKind { none, sphere, planes, ugawg_linear, ugawg_polar_1, ugawg_polar_2 };
+
+/// An analytic field and its parameters (see fields/).
+struct FieldChoice {
+    FieldKind kind = FieldKind::none;
+    Point centre = Point::Zero();  ///< sphere only
+    double radius = 0.8;           ///< sphere only
+    double slope = 0;              ///< planes only
+    SurfaceLengths lengths = {};   ///< sphere and planes only
+
+    bool operator==(const FieldChoice&) const = default;
+};
+
+/// Throws InputError for parameters out of range. `choice.kind` must not be `none`.
+AnalyticField make_field(const FieldChoice& choice);
+
+}  // namespace controlspace
