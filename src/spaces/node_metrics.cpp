@@ -35,6 +35,7 @@ std::vector<Metric> NodeMetrics::release_asked() {
 
 void NodeMetrics::keep_asked(std::vector<Metric> asked) {
     asked_ = std::move(asked);
+    asked_.reserve(field_.capacity());  // both grow together
     asks_isotropic_ = std::all_of(asked_.begin(), asked_.end(), is_isotropic);
 }
 

@@ -23,7 +23,7 @@ struct SpaceOptions {
     double ratio = 1.25;       ///< g_r of the gradation to come, for structures that keep sources
     /// Sources may come after gradation: what they ask for is then kept beside the graded field, so
     /// that insertion goes by it and grading again gives the field of all sources at once, to the
-    /// bit. Otherwise later sources are held against the graded field, and change it where that
+    /// bit; and trees keep room to grow. Otherwise later sources are held against the graded field, and change it where that
     /// does not meet them.
     bool takes_later_sources = false;
     /// Cap on memory, gradation included: grids get coarser, trees that outgrow it throw

@@ -46,8 +46,8 @@ public:
             require_valid(source, report.sources++, domain());
             if (insert_valid(source) == Insertion::inserted) ++report.inserted;
         }
-        // After gradation, a copy of everything would be out of proportion.
-        if (!past_) {
+        // Copying everything would be out of proportion to a few sources more.
+        if (!options_.takes_later_sources) {
             topology_.shrink_to_fit();
             storage_.shrink_to_fit();
         }

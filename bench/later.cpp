@@ -1,0 +1,124 @@
+// Sources that come later: inserting and grading 1 % more of them, against all at once. In CPU time
+// of all threads together.
+//
+// Of the sphere's sources every hundredth is left out ("scattered"), or the 1 % nearest to the
+// point (1, 0, 0) ("cap"); the others are inserted and graded before. A third set ("inside") is as
+// many sources at random places, each half as large as the exact field there.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "baselines/catalogue.h"
+#include "measure/access_time.h"
+#include "measure/reference.h"
+#include "sources/sampled_surfaces.h"
+
+using namespace controlspace;
+
+namespace {
+
+const Box domain{Point::Constant(-1), Point::Constant(1)};
+
+/// Sources before, and after, gradation.
+struct Work {
+    std::vector<PointSource> early, late;
+};
+
+Work scattered(double rho) {
+    Work work;
+    const std::vector<PointSource> all = sample_sphere({.rho = rho});
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        (i % 100 == 50 ? work.late : work.early).push_back(all[i]);
+    }
+    return work;
+}
+
+Work cap(double rho) {
+    Work work{sample_sphere({.rho = rho}), {}};
+    std::stable_sort(work.early.begin(), work.early.end(),
+                     [](const auto& a, const auto& b) { return a.position.x() < b.position.x(); });
+    const auto first = work.early.end() - static_cast<std::ptrdiff_t>(work.early.size() / 100);
+    work.late.assign(first, work.early.end());
+    work.early.erase(first, work.early.end());
+    return work;
+}
+
+Work inside(double rho) {
+    Work work{sample_sphere({.rho = rho}), {}};
+    const std::vector<Point> places = random_points(domain, work.early.size() / 100, 1);
+    std::vector<Metric> sizes(places.size());
+    exact_reference(work.early, 1.25, Metric::isotropic(domain.half_diagonal()))
+        ->evaluate(places, sizes);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        work.late.push_back({places[i], Metric::isotropic(0.5 * sizes[i].xx)});
+    }
+    return work;
+}
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+std::unique_ptr<ControlSpace> make(const CatalogueEntry& entry, const Work& work) {
+    return entry.make({.domain = domain,
+                       .finest_length = finest_length(work.early),
+                       .takes_later_sources = true});
+}
+
+void later(benchmark::State& state, const CatalogueEntry& entry, const Work& work) {
+    double all_at_once = 0;
+    double late = 0;
+    GradationReport report;
+    for (auto _ : state) {
+        double start = cpu_seconds();
+        auto space = make(entry, work);
+        space->insert(work.early);
+        space->insert(work.late);
+        space->grade({});
+        all_at_once += cpu_seconds() - start;
+
+        space = make(entry, work);
+        space->insert(work.early);
+        space->grade({});
+        start = cpu_seconds();
+        space->insert(work.late);
+        report = space->grade({});
+        const double seconds = cpu_seconds() - start;
+        late += seconds;
+        state.SetIterationTime(seconds);
+        state.counters["nodes"] = static_cast<double>(space->footprint().control_nodes);
+    }
+    if (report.visits) state.counters["visits"] = static_cast<double>(*report.visits);
+    state.counters["sources"] = static_cast<double>(work.late.size());
+    state.counters["all_at_once_ms"] = 1e3 * all_at_once / static_cast<double>(state.iterations());
+    state.counters["all_at_once_over_later"] = all_at_once / late;
+}
+
+struct Job {
+    const char* name;
+    Work (*make_work)(double rho);
+    double rho;
+    int repetitions;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    for (const Job& job :
+         {Job{"scattered/rho_1/", scattered, 1, 3}, Job{"cap/rho_1/", cap, 1, 3},
+          Job{"inside/rho_1/", inside, 1, 3}, Job{"scattered/rho_0.2/", scattered, 0.2, 1},
+          Job{"cap/rho_0.2/", cap, 0.2, 1}, Job{"inside/rho_0.2/", inside, 0.2, 1}}) {
+        for (const CatalogueEntry& entry : structures()) {
+            const auto run = [&entry, job](benchmark::State& state) {
+                later(state, entry, job.make_work(job.rho));
+            };
+            benchmark::RegisterBenchmark((job.name + entry.id).c_str(), run)
+                ->UseManualTime()
+                ->Iterations(job.repetitions)
+                ->Unit(benchmark::kMillisecond);
+        }
+    }
+    benchmark::Initialize(&argc, argv);
+    benchmark::RunSpecifiedBenchmarks();
+}
