@@ -7,6 +7,7 @@
 #include <map>
 
 #include "error.h"
+#include "export/metric_grids.h"
 #include "study/provenance.h"
 #include "study/settings.h"
 
@@ -14,7 +15,7 @@ namespace controlspace {
 namespace {
 
 /// Words given for each setting, by key.
-using GivenSettings = std::map<std::string_view, std::vector<std::string>>;
+using WordsByKey = std::map<std::string_view, std::vector<std::string>>;
 
 std::string option_name(std::string_view key) {
     std::string name = "--" + std::string(key);
@@ -34,8 +35,13 @@ std::string type_name(ValueType type, std::size_t at_most) {
 /// One option for each setting; `defaults` shows in the help.
 template <class Target>
 void add_options(CLI::App& command, std::span<const Setting<Target>> settings,
-                 const Target& defaults, const std::string& group, GivenSettings& given) {
+                 const Target& defaults, const std::string& group, WordsByKey& given,
+                 std::span<const std::string_view> without = {}) {
+    const auto is_left_out = [&](const Setting<Target>& setting) {
+        return std::find(without.begin(), without.end(), setting.key) != without.end();
+    };
     for (const Setting<Target>& setting : settings) {
+        if (is_left_out(setting)) continue;
         std::string help(setting.help);
         const SettingValues values = setting.get(defaults);
         if (!values.empty()) help += fmt::format(" (default: {})", to_string(values));
@@ -60,6 +66,72 @@ void add_options(CLI::App& command, std::span<const Setting<Target>> settings,
         }
     }
 }
+
+GivenSettings given_settings(const WordsByKey& given) {
+    GivenSettings settings;
+    for (const auto& [key, words] : given) {
+        if (!words.empty()) settings.emplace_back(key, words);
+    }
+    return settings;
+}
+
+#ifdef CONTROLSPACE_OPENVDB
+CLI::App* add_export(CLI::App& app, ExportOptions& options, WordsByKey& given) {
+    CLI::App* command = app.add_subcommand(
+        "export", "Write the field of one structure to a .vdb file, for Blender and Houdini");
+    command
+        ->add_option("INPUT", options.input,
+                     "Study file (.toml) or file of sources; left out: the paper's sphere")
+        ->option_text("FILE");
+    const std::string file = "File";
+    command->add_option("-o,--output", options.output, "File to write")
+        ->option_text("FILE.vdb")
+        ->required()
+        ->group(file);
+    command
+        ->add_option("--voxel", options.vdb.voxel,
+                     "Edge of a voxel [length]; left out: 1/128 of the longest edge of the domain")
+        ->option_text("NUMBER")
+        ->group(file);
+    command
+        ->add_option("--tolerance", options.vdb.tolerance,
+                     "Non-conformity within which voxels share a metric; 0: only where it is the "
+                     "same (default: 0.02)")
+        ->option_text("NUMBER")
+        ->group(file);
+    std::string names;
+    for (const MetricGrid& grid : metric_grids()) names += fmt::format("{}, ", grid.name);
+    command
+        ->add_option("--grids", options.vdb.grids,
+                     fmt::format("Some of {}and {}, the points (left out: all but these)", names,
+                                 sources_grid))
+        ->option_text("TEXT,...")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->group(file);
+    command
+        ->add_option("--compression", options.vdb.compression,
+                     "blosc, zip or none (default: blosc)")
+        ->option_text("TEXT")
+        ->transform(
+            CLI::Transformer(std::map<std::string, VdbCompression>{{"blosc", VdbCompression::blosc},
+                                                                   {"zip", VdbCompression::zip},
+                                                                   {"none", VdbCompression::none}}))
+        ->group(file);
+    command->add_flag("--half", options.vdb.half, "Numbers of 16 bits")->group(file);
+    // Settings of measuring.
+    constexpr std::string_view without[] = {"name",           "seed",       "access_points",
+                                            "access_repeats", "probe_grid", "fine_probe_grid",
+                                            "output",         "reference"};
+    Run defaults;
+    defaults.structures = {"K_oL"};
+    defaults.splits = {SplitRule::middle};
+    add_options(*command, run_settings(), defaults, "Settings of the structure (a value each)",
+                given, without);
+    add_options(*command, study_settings(), Study{}, "Settings of the study", given, without);
+    return command;
+}
+#endif
 
 /// The command line as a shell would take it again.
 std::string command_line_text(int argc, const char* const* argv) {
@@ -92,7 +164,7 @@ Command parse_command_line(int argc, const char* const* argv) {
     app.footer(statuses);
 
     CompareOptions options;
-    GivenSettings given;
+    WordsByKey given;
     CLI::App* compare = app.add_subcommand(
         "compare", "Run a study: make, grade and measure structures on the same sources");
     compare
@@ -130,6 +202,12 @@ Command parse_command_line(int argc, const char* const* argv) {
         ->option_text("TEXT");
     paper->add_flag("--quiet", paper_options.quiet, "No progress on standard error");
 
+#ifdef CONTROLSPACE_OPENVDB
+    ExportOptions export_options;
+    WordsByKey given_to_export;
+    const CLI::App* export_command = add_export(app, export_options, given_to_export);
+#endif
+
     CLI::App* list =
         app.add_subcommand("list", "Name the structures, splits, laws, schedules and references");
 
@@ -147,9 +225,19 @@ Command parse_command_line(int argc, const char* const* argv) {
         paper_options.command_line = command_line_text(argc, argv);
         return paper_options;
     }
-    for (const auto& [key, words] : given) {
-        if (!words.empty()) options.settings.emplace_back(key, words);
+#ifdef CONTROLSPACE_OPENVDB
+    if (export_command->parsed()) {
+        std::erase_if(export_options.vdb.grids, [&](const std::string& name) {
+            const bool points = name == sources_grid;
+            export_options.with_sources |= points;
+            return points;
+        });
+        export_options.settings = given_settings(given_to_export);
+        export_options.command_line = command_line_text(argc, argv);
+        return export_options;
     }
+#endif
+    options.settings = given_settings(given);
     options.command_line = command_line_text(argc, argv);
     return options;
 }

@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "app/compare.h"
+#include "app/export.h"
 #include "app/paper.h"
 
 namespace controlspace {
@@ -14,7 +15,7 @@ struct TextCommand {
 };
 struct ListCommand {};
 
-using Command = std::variant<TextCommand, ListCommand, CompareOptions, PaperOptions>;
+using Command = std::variant<TextCommand, ListCommand, CompareOptions, ExportOptions, PaperOptions>;
 
 /// Throws InputError for what is no valid command line.
 Command parse_command_line(int argc, const char* const* argv);

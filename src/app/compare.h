@@ -2,9 +2,8 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
-#include <vector>
 
+#include "app/given_settings.h"
 #include "study/study.h"
 
 namespace controlspace {
@@ -12,8 +11,7 @@ namespace controlspace {
 /// What the command line of `compare` asks for.
 struct CompareOptions {
     std::filesystem::path study_file;  ///< empty: the built-in study
-    /// Settings by key, as they were written; they override the study file in all of its runs.
-    std::vector<std::pair<std::string, std::vector<std::string>>> settings;
+    GivenSettings settings;            ///< they override the study file in all of its runs
     bool as_published = false;
     bool quiet = false;
     std::string command_line;

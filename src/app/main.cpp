@@ -9,6 +9,7 @@
 
 #include "app/command_line.h"
 #include "app/compare.h"
+#include "app/export.h"
 #include "app/list.h"
 #include "app/standard_output.h"
 #include "error.h"
@@ -35,6 +36,10 @@ int main(int argc, char** argv) {
             print(list_text());
         } else if (const auto* paper_options = std::get_if<PaperOptions>(&command)) {
             paper(*paper_options);
+#ifdef CONTROLSPACE_OPENVDB
+        } else if (const auto* export_options = std::get_if<ExportOptions>(&command)) {
+            export_vdb(*export_options);
+#endif
         } else {
             return compare(std::get<CompareOptions>(command)) ? 0 : 3;
         }

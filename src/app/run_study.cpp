@@ -2,26 +2,19 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <tbb/global_control.h>
 
-#include <memory>
 #include <string_view>
 #include <utility>
 
 #include "app/progress.h"
 #include "app/standard_output.h"
+#include "app/threads.h"
 #include "baselines/catalogue.h"
 #include "study/results.h"
 #include "study/run.h"
 
 namespace controlspace {
 namespace {
-
-std::unique_ptr<tbb::global_control> limit_threads(int threads) {
-    if (threads == 0) return nullptr;
-    return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                 static_cast<std::size_t>(threads));
-}
 
 /// Runs `prepared` and keeps what lies in `folder` up to date.
 std::vector<Row> run_and_record(PreparedStudy prepared, const ResultsFolder& folder,
@@ -69,8 +62,7 @@ FinishedStudy run_study(const Study& study, const std::string& command_line, boo
         [&] {
             progress.finish();
             print_error(fmt::format("controlspace: interrupted: {} of {} cases are in {}\n",
-                                    progress.finished(), progress.count(),
-                                    folder.path().string()));
+                                    progress.finished(), progress.count(), folder.path().string()));
         });
     std::vector<Row> rows =
         run_and_record(std::move(prepared), folder, provenance, progress, interruption);

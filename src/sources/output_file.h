@@ -17,6 +17,8 @@ public:
     OutputFile& operator=(const OutputFile&) = delete;
 
     void write(std::string_view text);
+    /// Where the text goes until `commit`, for writers that open the file themselves.
+    const std::filesystem::path& written() const { return written_; }
     /// To be called once, last.
     void commit();
 

@@ -1,0 +1,119 @@
+#include "app/export.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include "app/standard_output.h"
+#include "app/threads.h"
+#include "baselines/catalogue.h"
+#include "error.h"
+#include "study/names.h"
+#include "study/provenance.h"
+#include "study/study_file.h"
+#include "study/workload.h"
+
+namespace controlspace {
+namespace {
+
+Study study_of(const ExportOptions& options) {
+    Study study;
+    if (options.input.extension() == ".toml") {
+        study = read_study(options.input);
+    } else {
+        study.runs.front().structures = {"K_oL"};
+        study.runs.front().splits = {SplitRule::middle};
+        if (!options.input.empty()) {
+            study.sources.kind = SourcesKind::file;
+            study.sources.file = options.input;
+        }
+    }
+    apply(options.settings, study);
+    return study;
+}
+
+Case only_case(const Study& study) {
+    const std::vector<Case> cases = expand(study, structures());
+    if (cases.size() > 1) {
+        throw InputError(
+            fmt::format("{} cases, the first two {} ({}) and {} ({}): a file takes one, choose by "
+                        "--structures, --splits, --tau and so on",
+                        cases.size(), structure_label(cases[0]), setting_label(cases[0]),
+                        structure_label(cases[1]), setting_label(cases[1])));
+    }
+    return cases.front();
+}
+
+std::unique_ptr<ControlSpace> make_space(const Study& study, const Case& c,
+                                         const Workload& workload) {
+    const auto all = structures();
+    const auto entry = std::find_if(all.begin(), all.end(), [&](const CatalogueEntry& candidate) {
+        return candidate.id == c.structure;
+    });
+    auto space = entry->make(space_options(study, c, workload));
+    space->insert(std::span<const PointSource>(workload.sources));
+    space->grade({.law = c.law, .schedule = c.schedule, .ratio = c.g_r});
+    return space;
+}
+
+std::string sources_label(const Study& study) {
+    switch (study.sources.kind) {
+        case SourcesKind::sphere:
+            return "sphere";
+        case SourcesKind::planes:
+            return "planes";
+        case SourcesKind::file:
+            break;
+    }
+    return study.sources.file.string();
+}
+
+std::vector<VdbNote> notes_of(const Study& study, const Case& c, const std::string& command_line) {
+    return {{"structure", structure_label(c)},
+            {"law", std::string(name_of(c.law))},
+            {"g_r", c.g_r},
+            {"settings", setting_label(c)},
+            {"sources", sources_label(study)},
+            {"version", version_text(current_provenance())},
+            {"command_line", command_line}};
+}
+
+std::string summary(const std::filesystem::path& path, const VdbReport& report, double seconds) {
+    constexpr double mb = 1e6;
+    return fmt::format(
+        "{}: {} x {} x {} voxels of {:.4g}, {:.0f} % of them kept, the others in tiles of 8^3; "
+        "smallest lengths {:.4g} to {:.4g}\n{:.1f} MB in the file, {:.0f} MB in memory, {:.1f} s\n",
+        path.string(), report.counts[0], report.counts[1], report.counts[2], report.voxel,
+        100 * report.kept, report.finest, report.coarsest, static_cast<double>(report.file) / mb,
+        static_cast<double>(report.memory) / mb, seconds);
+}
+
+}  // namespace
+
+void export_vdb(const ExportOptions& options) {
+    const Study study = study_of(options);
+    const auto threads = limit_threads(study.threads);
+    const Case c = only_case(study);
+    const Workload workload = make_workload(study, c.sources);
+    const auto space = make_space(study, c, workload);
+
+    VdbOptions vdb = options.vdb;
+    vdb.notes = notes_of(study, c, options.command_line);
+    vdb.max_bytes = space_options(study, c, workload).max_bytes;
+    if (options.with_sources) vdb.sources = workload.sources;
+    const auto start = std::chrono::steady_clock::now();
+    const VdbReport report = write_vdb(options.output, *space, vdb);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    if (report.voxel > workload.finest_length) {
+        spdlog::warn(
+            "voxels of {:.4g} are larger than the smallest length asked for, {:.4g}: give --voxel "
+            "to see all of it",
+            report.voxel, workload.finest_length);
+    }
+    print(summary(options.output, report, seconds.count()));
+}
+
+}  // namespace controlspace

@@ -1,0 +1,89 @@
+#include "export/sampled_block.h"
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "export/fixtures.h"
+#include "metric/nonconformity.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+SampledBlock sampled(const MetricField& field, const VoxelLattice& lattice,
+                     const std::array<std::int32_t, 3>& first, double tolerance) {
+    SampledBlock block;
+    sample_block(field, lattice, first, tolerance, block);
+    return block;
+}
+
+std::size_t distinct(const SampledBlock& block) {
+    return std::set<std::uint16_t>(block.same_as.begin(), block.same_as.end()).size();
+}
+
+}  // namespace
+
+TEST_CASE("a block keeps within the tolerance of the field, voxel by voxel") {
+    const VoxelLattice lattice = voxel_lattice(two_cube, 1.0 / 32);
+    REQUIRE(lattice.counts == std::array{64, 64, 64});
+    const FieldOf field(around_sphere);
+    const double tolerance = GENERATE(0.0, 0.001, 0.02, 0.5);
+    const std::array<std::int32_t, 3> first{40, 24, 32};
+    const SampledBlock block = sampled(field, lattice, first, tolerance);
+    double largest = 0;
+    for (std::int32_t i = 0; i < 8; ++i) {
+        for (std::int32_t j = 0; j < 8; ++j) {
+            for (std::int32_t k = 0; k < 8; ++k) {
+                const std::size_t v = SampledBlock::index(i, j, k);
+                const Point x =
+                    Point::Constant(-1) +
+                    Vector(first[0] + i + 0.5, first[1] + j + 0.5, first[2] + k + 0.5) / 32;
+                largest = std::max(largest, nonconformity(block.metrics[v], around_sphere(x)));
+                CHECK(block.metrics[v] == block.metrics[block.same_as[v]]);
+                CHECK(block.same_as[v] <= v);
+            }
+        }
+    }
+    CHECK(largest <= tolerance + 1e-12);
+    if (tolerance == 0) CHECK(distinct(block) == 512);
+    if (tolerance == 0.02) CHECK(distinct(block) < 512);
+}
+
+TEST_CASE("a field that is the same everywhere is one metric, to the bit") {
+    const FieldOf field([](const Point&) { return Metric{0.1, 0.2, 0.3, 0.01, 0.02, 0.03}; });
+    const SampledBlock block = sampled(field, voxel_lattice(two_cube, 0.1), {0, 0, 0}, 0.02);
+    CHECK(block.is_uniform());
+    CHECK(block.metrics[511] == Metric{0.1, 0.2, 0.3, 0.01, 0.02, 0.03});
+}
+
+TEST_CASE("voxels beyond the lattice ask for nothing beyond the domain") {
+    const FieldOf field([](const Point& x) {
+        CHECK(two_cube.contains(x));
+        return around_sphere(x);
+    });
+    const VoxelLattice lattice = voxel_lattice(two_cube, 0.3);
+    CHECK(lattice.counts == std::array{7, 7, 7});
+    const SampledBlock block = sampled(field, lattice, {0, 0, 0}, 0);
+    CHECK(block.metrics[SampledBlock::index(7, 7, 7)] ==
+          block.metrics[SampledBlock::index(6, 6, 6)]);
+}
+
+TEST_CASE("lattices: the default, whole quotients, and what is out of range") {
+    CHECK(voxel_lattice({{0, 0, 0}, {4, 2, 1}}, 0).counts == std::array{128, 64, 32});
+    CHECK(voxel_lattice({{0, 0, 0}, {1, 0.3, 0.7}}, 0.1).counts == std::array{10, 3, 7});
+    for (const double bad : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+        CHECK_THAT(error_of([&] { voxel_lattice(two_cube, bad); }), Contains("positive"));
+    }
+    CHECK_THAT(error_of([] { voxel_lattice(two_cube, 1e-4); }), Contains("--voxel"));
+    CHECK_THAT(error_of([] { voxel_lattice(two_cube, 1e-300); }), Contains("--voxel"));
+}
+
+TEST_CASE("what is no metric is refused, with its place") {
+    const FieldOf field([](const Point& x) { return Metric::isotropic(x.x()); });
+    const auto error = error_of([&] {
+        sampled(field, voxel_lattice(two_cube, 0.25), {0, 0, 0}, 0.02);
+    });
+    CHECK_THAT(error, Contains("(-0.875, -0.875, -0.875)") && Contains("not positive definite"));
+}
