@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -15,6 +12,7 @@
 #include "export/metric_grids.h"
 #include "export/vdb_file.h"
 #include "metric/blend.h"
+#include "metric/evaluate.h"
 #include "sources/point_source.h"
 
 namespace controlspace {
@@ -65,15 +63,10 @@ public:
           elsewhere_(Metric::isotropic(elsewhere)) {}
 
     void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
-        assert(x.size() == out.size());
-        constexpr std::size_t points_per_task = 1024;
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, x.size(), points_per_task),
-                          [&](const tbb::blocked_range<std::size_t>& range) {
-                              auto read = grids_.reader();
-                              for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                                  out[i] = at(x[i], read);
-                              }
-                          });
+        evaluate_blocks(x, out, [this](auto points, auto metrics) {
+            auto read = grids_.reader();
+            for (std::size_t i = 0; i < points.size(); ++i) metrics[i] = at(points[i], read);
+        });
     }
 
 private:
@@ -141,12 +134,12 @@ std::string name_of(const Coord& voxel) {
 }
 
 template <class Grids>
-VdbField field_of(Grids grids, double elsewhere, double finest) {
+AnalyticField field_of(Grids grids, double elsewhere, double finest) {
     const Box domain = active_box(grids.base());
-    return {std::make_unique<VoxelField<Grids>>(std::move(grids), elsewhere), domain, finest};
+    return {std::make_shared<VoxelField<Grids>>(std::move(grids), elsewhere), domain, finest};
 }
 
-VdbField tensor_field(const VdbFile& file) {
+AnalyticField tensor_field(const VdbFile& file) {
     for (const std::string_view name : {diagonal_grid, off_diagonal_grid}) {
         if (file.has(name)) continue;
         file.fail(fmt::format("has no grid '{}'; it holds {}: name a grid of lengths or densities",
@@ -193,7 +186,7 @@ VdbField tensor_field(const VdbFile& file) {
     return field_of(TensorGrids{diagonal, off_diagonal}, coarsest, finest);
 }
 
-VdbField length_field(const VdbFile& file, const VdbFieldOptions& options) {
+AnalyticField length_field(const VdbFile& file, const VdbFieldOptions& options) {
     const auto grid = file.read_as<openvdb::FloatGrid>(options.grid);
     double finest = largest_magnitude;
     double coarsest = 0;
@@ -220,7 +213,7 @@ VdbField length_field(const VdbFile& file, const VdbFieldOptions& options) {
 
 }  // namespace
 
-VdbField read_vdb_field(const std::filesystem::path& path, const VdbFieldOptions& options) {
+AnalyticField read_vdb_field(const std::filesystem::path& path, const VdbFieldOptions& options) {
     if (options.density &&
         !(is_length(options.density->finest) && is_length(options.density->coarsest))) {
         throw InputError(fmt::format("lengths {} and {} for densities 1 and 0: give positive ones",

@@ -1,12 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 
-#include "geometry/box.h"
-#include "metric/metric_field.h"
+#include "fields/analytic_field.h"
 
 namespace controlspace {
 
@@ -23,21 +21,16 @@ struct VdbFieldOptions {
     std::optional<DensitySizes> density = {};
 };
 
-/// A metric field out of a .vdb file.
-struct VdbField {
-    std::unique_ptr<MetricField> field;
-    Box domain;                ///< box of the active voxels
-    double finest_length = 0;  ///< smallest length of all voxels
-};
-
 /// Reads the metrics that write_vdb wrote, or lengths or densities of anybody's. Between the
 /// voxels' centres the eight around a point are blended, linear in M; those that are not active do
 /// not count. Where none of them is active the length is the coarsest of the file (of `density`).
-/// Points outside the box are answered as its nearest point.
+/// The field is defined in the box of the active voxels; points outside are answered as its nearest
+/// point.
 ///
 /// Throws InputError that names the file for what cannot be read, grids that are missing (with a
 /// list of what is there), of another type, empty, or under a transform that is not linear; and for
 /// voxels that are not a number, not positive (lengths), or not positive definite.
-VdbField read_vdb_field(const std::filesystem::path& path, const VdbFieldOptions& options = {});
+AnalyticField read_vdb_field(const std::filesystem::path& path,
+                             const VdbFieldOptions& options = {});
 
 }  // namespace controlspace

@@ -8,24 +8,11 @@
 #include <filesystem>
 #include <string>
 
+#include "fields/formula_field.h"
 #include "geometry/box.h"
-#include "metric/metric_field.h"
 #include "sources/files.h"
 
 namespace controlspace {
-
-/// A field from a function of the place.
-template <class At>
-class FieldOf final : public MetricField {
-public:
-    explicit FieldOf(At at) : at_(at) {}
-    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
-        std::transform(x.begin(), x.end(), out.begin(), at_);
-    }
-
-private:
-    At at_;
-};
 
 /// Six numbers that all differ and vary.
 inline Metric wavy(const Point& x) {

@@ -57,11 +57,11 @@ TEST_CASE("what was written comes back at all voxels' centres, to the precision 
     const fs::path path = folder.path() / "field.vdb";
     const auto compression =
         GENERATE(VdbCompression::blosc, VdbCompression::zip, VdbCompression::none);
-    write_vdb(path, FieldOf(wavy), two_cube,
+    write_vdb(path, FormulaField(wavy), two_cube,
               {.voxel = 0.1, .tolerance = 0, .compression = compression});
-    const VdbField read = read_vdb_field(path);
-    CHECK((read.domain.low - two_cube.low).norm() < 1e-12);
-    CHECK((read.domain.high - two_cube.high).norm() < 1e-12);
+    const AnalyticField read = read_vdb_field(path);
+    CHECK((read.definition.low - two_cube.low).norm() < 1e-12);
+    CHECK((read.definition.high - two_cube.high).norm() < 1e-12);
     const std::vector<Point> points = centres(20);
     std::vector<Metric> metrics(points.size());
     read.field->evaluate(points, metrics);
@@ -112,7 +112,7 @@ TEST_CASE("between centres fields are linear, and beyond the box as at its neare
     const auto linear = [](const Point& x) {
         return Metric::isotropic(0.5 + 0.1 * x.x() - 0.05 * x.z());
     };
-    write_vdb(path, FieldOf(linear), two_cube, {.voxel = 0.1, .tolerance = 0});
+    write_vdb(path, FormulaField(linear), two_cube, {.voxel = 0.1, .tolerance = 0});
     const auto field = read_vdb_field(path).field;
     for (const Point& x : {Point(0.123, 0.456, -0.789), Point(0, 0, 0), Point(-0.5, 0.9, 0.31)}) {
         CHECK(at(*field, x).xx == Approx(linear(x).xx).epsilon(1e-6));
@@ -128,7 +128,7 @@ TEST_CASE("a grid of lengths of somebody else's, under any linear transform") {
     grid->tree().setValueOn({3, 3, 3}, 0.75F);
     grid->transform().preRotate(0.5, openvdb::math::Z_AXIS);
     grid->transform().postTranslate({10, 20, 30});
-    const VdbField read = read_vdb_field(write_grids(folder, {grid}), {.grid = "size"});
+    const AnalyticField read = read_vdb_field(write_grids(folder, {grid}), {.grid = "size"});
     CHECK(read.finest_length == 0.25);
     const auto world = [&](double i, double j, double k) {
         const openvdb::Vec3d x = grid->indexToWorld(openvdb::Vec3d(i, j, k));
@@ -138,7 +138,7 @@ TEST_CASE("a grid of lengths of somebody else's, under any linear transform") {
     CHECK(at(*read.field, world(3, 3, 3)).xx == Approx(0.75));
     CHECK(at(*read.field, world(2.5, 3, 3)).xx == Approx(0.5));
     CHECK(at(*read.field, world(9, 9, 9)).xx == Approx(0.75));
-    CHECK(read.domain.contains(world(3.4, 3.4, 3.4)));
+    CHECK(read.definition.contains(world(3.4, 3.4, 3.4)));
 }
 
 TEST_CASE("voxels that are not active do not count") {
@@ -160,7 +160,7 @@ TEST_CASE("a painted density drives lengths") {
     grid->tree().setValueOn({3, 3, 3}, 0.0F);
     grid->tree().setValueOn({40, 40, 40}, 5.0F);
     const VdbFieldOptions options{.grid = "paint", .density = DensitySizes{0.01, 1}};
-    const VdbField read = read_vdb_field(write_grids(folder, {grid}), options);
+    const AnalyticField read = read_vdb_field(write_grids(folder, {grid}), options);
     CHECK(at(*read.field, {0, 0, 0}).xx == Approx(0.01));
     CHECK(at(*read.field, {0.5, 0.5, 0.5}).xx == Approx(0.1));
     CHECK(at(*read.field, {1.5, 1.5, 1.5}).xx == Approx(1));
@@ -173,8 +173,8 @@ TEST_CASE("our own density leads back to the smallest length") {
     const ScratchDirectory folder;
     const fs::path path = folder.path() / "field.vdb";
     const VdbReport report =
-        write_vdb(path, FieldOf(wavy), two_cube, {.voxel = 0.1, .tolerance = 0});
-    const VdbField read = read_vdb_field(
+        write_vdb(path, FormulaField(wavy), two_cube, {.voxel = 0.1, .tolerance = 0});
+    const AnalyticField read = read_vdb_field(
         path, {.grid = "density", .density = DensitySizes{report.finest, report.coarsest}});
     for (const Point& x : centres(20)) {
         REQUIRE(at(*read.field, x).xx == Approx(eigen_frame(wavy(x)).lengths[0]).epsilon(1e-5));

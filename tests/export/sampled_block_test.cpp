@@ -28,7 +28,7 @@ std::size_t distinct(const SampledBlock& block) {
 TEST_CASE("a block keeps within the tolerance of the field, voxel by voxel") {
     const VoxelLattice lattice = voxel_lattice(two_cube, 1.0 / 32);
     REQUIRE(lattice.counts == std::array{64, 64, 64});
-    const FieldOf field(around_sphere);
+    const FormulaField field(around_sphere);
     const double tolerance = GENERATE(0.0, 0.001, 0.02, 0.5);
     const std::array<std::int32_t, 3> first{40, 24, 32};
     const SampledBlock block = sampled(field, lattice, first, tolerance);
@@ -52,14 +52,14 @@ TEST_CASE("a block keeps within the tolerance of the field, voxel by voxel") {
 }
 
 TEST_CASE("a field that is the same everywhere is one metric, to the bit") {
-    const FieldOf field([](const Point&) { return Metric{0.1, 0.2, 0.3, 0.01, 0.02, 0.03}; });
+    const FormulaField field([](const Point&) { return Metric{0.1, 0.2, 0.3, 0.01, 0.02, 0.03}; });
     const SampledBlock block = sampled(field, voxel_lattice(two_cube, 0.1), {0, 0, 0}, 0.02);
     CHECK(block.is_uniform());
     CHECK(block.metrics[511] == Metric{0.1, 0.2, 0.3, 0.01, 0.02, 0.03});
 }
 
 TEST_CASE("voxels beyond the lattice ask for nothing beyond the domain") {
-    const FieldOf field([](const Point& x) {
+    const FormulaField field([](const Point& x) {
         CHECK(two_cube.contains(x));
         return around_sphere(x);
     });
@@ -81,7 +81,7 @@ TEST_CASE("lattices: the default, whole quotients, and what is out of range") {
 }
 
 TEST_CASE("what is no metric is refused, with its place") {
-    const FieldOf field([](const Point& x) { return Metric::isotropic(x.x()); });
+    const FormulaField field([](const Point& x) { return Metric::isotropic(x.x()); });
     const auto error = error_of([&] {
         sampled(field, voxel_lattice(two_cube, 0.25), {0, 0, 0}, 0.02);
     });

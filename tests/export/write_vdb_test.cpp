@@ -23,7 +23,7 @@ namespace {
 const Box oblong{{-1, 0, 2}, {1, 0.5, 3}};
 
 VdbReport write(const fs::path& path, const VdbOptions& options) {
-    return write_vdb(path, FieldOf(wavy), oblong, options);
+    return write_vdb(path, FormulaField(wavy), oblong, options);
 }
 
 bool holds_no_file(const fs::path& folder) { return fs::is_empty(folder); }
@@ -133,8 +133,8 @@ TEST_CASE("tiles stand where the field hardly varies, voxels keep to the toleran
         return Metric::isotropic(0.02 + std::min(d, 0.03 + 0.03 * d));
     };
     const VdbOptions every_voxel{.voxel = 1.0 / 32, .tolerance = 0};
-    const VdbReport all = write_vdb(path, FieldOf(at), two_cube, every_voxel);
-    const VdbReport adaptive = write_vdb(path, FieldOf(at), two_cube, {.voxel = 1.0 / 32});
+    const VdbReport all = write_vdb(path, FormulaField(at), two_cube, every_voxel);
+    const VdbReport adaptive = write_vdb(path, FormulaField(at), two_cube, {.voxel = 1.0 / 32});
     CHECK(all.kept == 1);
     CHECK(adaptive.kept < 0.9);
     CHECK(adaptive.file < all.file / 2);
@@ -184,7 +184,7 @@ TEST_CASE("the number of threads does not matter") {
     const auto values = [&](std::size_t threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         const fs::path path = folder.path() / "field.vdb";
-        write_vdb(path, FieldOf(around_sphere), two_cube, {.voxel = 0.05});
+        write_vdb(path, FormulaField(around_sphere), two_cube, {.voxel = 0.05});
         std::vector<float> all;
         const auto grid = read_grid<openvdb::FloatGrid>(path, "density");
         for (auto value = grid->cbeginValueOn(); value; ++value) all.push_back(*value);
@@ -250,7 +250,7 @@ TEST_CASE("options out of range are refused, and nothing is written") {
     CHECK_THAT(error({.voxel = 0.01, .tolerance = 0, .max_bytes = 100000}),
                Contains("--max-memory"));
     const auto scaled = [&](double factor, bool halves) {
-        const FieldOf field([&](const Point& x) { return factor * wavy(x); });
+        const FormulaField field([&](const Point& x) { return factor * wavy(x); });
         return error_of([&] { write_vdb(path, field, oblong, {.voxel = 0.1, .half = halves}); });
     };
     CHECK_THAT(scaled(1e-5, true), Contains("--half"));
