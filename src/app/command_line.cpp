@@ -120,9 +120,9 @@ CLI::App* add_export(CLI::App& app, ExportOptions& options, WordsByKey& given) {
         ->group(file);
     command->add_flag("--half", options.vdb.half, "Numbers of 16 bits")->group(file);
     // Settings of measuring, and the voxels of a grid that is exported, which are not the file's.
-    constexpr std::string_view without[] = {"name",           "seed",       "access_points",
-                                            "access_repeats", "probe_grid", "fine_probe_grid",
-                                            "output",         "reference",  "voxel"};
+    constexpr std::string_view without[] = {
+        "name",   "access_points", "access_repeats", "probe_grid", "fine_probe_grid",
+        "output", "reference",     "voxel"};
     Run defaults;
     defaults.structures = {"K_oL"};
     defaults.splits = {SplitRule::middle};

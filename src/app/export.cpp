@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <chrono>
-#include <memory>
 
 #include "app/standard_output.h"
 #include "app/threads.h"
@@ -13,8 +11,8 @@
 #include "error.h"
 #include "study/names.h"
 #include "study/provenance.h"
+#include "study/run.h"
 #include "study/study_file.h"
-#include "study/workload.h"
 
 namespace controlspace {
 namespace {
@@ -47,36 +45,12 @@ Case only_case(const Study& study) {
     return cases.front();
 }
 
-std::unique_ptr<ControlSpace> make_space(const Study& study, const Case& c,
-                                         const Workload& workload) {
-    const auto all = structures();
-    const auto entry = std::find_if(all.begin(), all.end(), [&](const CatalogueEntry& candidate) {
-        return candidate.id == c.structure;
-    });
-    auto space = entry->make(space_options(study, c, workload));
-    space->insert(std::span<const PointSource>(workload.sources));
-    space->grade({.law = c.law, .schedule = c.schedule, .ratio = c.g_r});
-    return space;
-}
-
-std::string sources_label(const Study& study) {
-    switch (study.sources.kind) {
-        case SourcesKind::sphere:
-            return "sphere";
-        case SourcesKind::planes:
-            return "planes";
-        case SourcesKind::file:
-            break;
-    }
-    return study.sources.file.string();
-}
-
-std::vector<VdbNote> notes_of(const Study& study, const Case& c, const std::string& command_line) {
+std::vector<VdbNote> notes_of(const Case& c, const std::string& command_line) {
     return {{"structure", structure_label(c)},
             {"law", std::string(name_of(c.law))},
             {"g_r", c.g_r},
             {"settings", setting_label(c)},
-            {"sources", sources_label(study)},
+            {"sources", sources_name(c.sources)},
             {"version", version_text(current_provenance())},
             {"command_line", command_line}};
 }
@@ -98,10 +72,11 @@ void export_vdb(const ExportOptions& options) {
     const auto threads = limit_threads(study.threads);
     const Case c = only_case(study);
     const Workload workload = make_workload(study, c.sources);
-    const auto space = make_space(study, c, workload);
+    Measures unused;
+    const auto space = make_and_fill(study, c, entry_of(c, structures()), workload, unused, {});
 
     VdbOptions vdb = options.vdb;
-    vdb.notes = notes_of(study, c, options.command_line);
+    vdb.notes = notes_of(c, options.command_line);
     vdb.max_bytes = space_options(study, c, workload).max_bytes;
     if (options.with_sources) vdb.sources = workload.sources;
     const auto start = std::chrono::steady_clock::now();

@@ -62,11 +62,6 @@ private:
     std::vector<Entry> entries_;
 };
 
-const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> catalogue) {
-    return *std::find_if(catalogue.begin(), catalogue.end(),
-                         [&](const CatalogueEntry& entry) { return entry.id == c.structure; });
-}
-
 /// Structures without voxels of their own have no nodes to follow a field at.
 void require_follows(const CatalogueEntry& entry) {
     if (entry.has_voxels && !entry.has_levels) return;
@@ -85,7 +80,13 @@ void follow_at_nodes(ControlSpace& space, const MetricField& field) {
     space.assign(nodes.metrics);
 }
 
-/// A structure that has learnt what case `c` asks for.
+}  // namespace
+
+const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> catalogue) {
+    return *std::find_if(catalogue.begin(), catalogue.end(),
+                         [&](const CatalogueEntry& entry) { return entry.id == c.structure; });
+}
+
 std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
                                             const CatalogueEntry& entry, const Workload& workload,
                                             Measures& m, const StudyObserver& observer) {
@@ -111,8 +112,6 @@ std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
     m.gradation_s = seconds_since(start);
     return space;
 }
-
-}  // namespace
 
 Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry,
                   const Workload& workload, const ReferenceProbes& probes,

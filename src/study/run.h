@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -51,6 +52,15 @@ private:
     std::vector<SharedSources> sources_;
     std::vector<std::size_t> source_counts_;
 };
+
+/// The entry of the structure of `c`, which `expand` has found in `catalogue`.
+const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> catalogue);
+
+/// A structure that has learnt what case `c` asks for, and is graded; what that took goes into `m`.
+/// Exceptions pass through.
+std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
+                                            const CatalogueEntry& entry, const Workload& workload,
+                                            Measures& m, const StudyObserver& observer);
 
 /// Makes, grades and measures one structure. Exceptions pass through.
 Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry,
