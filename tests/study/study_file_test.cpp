@@ -234,4 +234,10 @@ TEST_CASE("the study files of the project can be read") {
     const Study built_in = parse_study(quick_study_text(), "built-in");
     CHECK(quick.name == built_in.name);
     CHECK(quick.runs.size() == built_in.runs.size());
+    CHECK(read_study(folder / "sources.toml").runs.size() == 3);
+    for (const char* name : {"fields.toml", "mixtures.toml"}) {
+        const Study study = read_study(folder / name);
+        CHECK(study.runs[0].field.size() == 4);
+        CHECK(study.domain == Box{Point::Zero(), Point::Ones()});
+    }
 }

@@ -211,3 +211,10 @@ TEST_CASE("fields and sources that do not fit together are refused") {
                }),
                Contains("around the origin"));
 }
+
+TEST_CASE("the studies of irregular sources and of fields make sense") {
+    const std::string folder = CONTROLSPACE_DATA_DIR "/studies/";
+    CHECK(expand(read_study(folder + "sources.toml")).size() == 3 * 4 * 7);
+    CHECK(expand(read_study(folder + "fields.toml")).size() == 4 * 7);
+    CHECK(expand(read_study(folder + "mixtures.toml")).size() == 4 * 2 * 7);
+}
