@@ -9,7 +9,7 @@ import sys
 
 import bpy
 
-WIDTH, HEIGHT, SAMPLES = 960, 370, 8
+WIDTH, HEIGHT, SAMPLES = 960, 350, 8
 SPACING = 2.45  # between volumes of edge 2
 OPACITY = 150.0  # per unit of length: a hundredth of the edge hides what is behind
 
@@ -85,10 +85,10 @@ def add(file, x, cut, ink):
     volume = bpy.context.object
     volume.location = (x, 0, 0)
     volume.data.materials.append(cut)
-    bpy.ops.object.text_add(location=(x, 0, -1.32), rotation=(math.pi / 2, 0, 0))
+    bpy.ops.object.text_add(location=(x, 0, -1.25), rotation=(math.pi / 2, 0, 0))
     text = bpy.context.object
     text.data.body = os.path.splitext(os.path.basename(file))[0]
-    text.data.size = 0.3
+    text.data.size = 0.2
     text.data.align_x = "CENTER"
     text.data.materials.append(ink)
 
@@ -112,7 +112,7 @@ def main(out, files):
     scene.render.engine = "CYCLES"
     scene.cycles.samples = SAMPLES
     scene.cycles.use_denoising = False
-    scene.cycles.volume_step_rate = 0.5
+    scene.cycles.volume_step_rate = 1
     scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
     scene.render.image_settings.color_mode = "RGB"
     scene.render.image_settings.compression = 100
