@@ -1,7 +1,7 @@
 """Renders volumes side by side, each cut open: blender -b --factory-startup --python THIS -- OUT FILE...
 
-The density of each .vdb (1 where the field is finest, logarithmic) colours its cut, h_min says where
-there is a field; the name of a file stands below it.
+h_min of each .vdb colours its cut, on one logarithmic scale for all; anisotropy, 0 outside the
+domain, says where there is a field; the name of a file stands below it.
 """
 import math
 import os
@@ -12,8 +12,9 @@ import bpy
 WIDTH, HEIGHT, SAMPLES = 960, 350, 8
 SPACING = 2.45  # between volumes of edge 2
 OPACITY = 150.0  # per unit of length: a hundredth of the edge hides what is behind
+COARSEST, FINEST = 0.4, 0.03  # lengths at the ends of the scale
 
-# Dark violet to yellow, evenly spaced in lightness.
+# From coarsest to finest: dark violet to yellow, evenly spaced in lightness.
 RAMP = [(0.0, (0.05, 0.01, 0.16)), (0.3, (0.25, 0.02, 0.27)), (0.55, (0.65, 0.10, 0.17)),
         (0.8, (0.95, 0.36, 0.03)), (1.0, (0.97, 0.90, 0.30))]
 
@@ -25,7 +26,13 @@ def volume_material():
     nodes.clear()
     out = nodes.new("ShaderNodeOutputMaterial")
     attribute = nodes.new("ShaderNodeAttribute")
-    attribute.attribute_name = "density"
+    attribute.attribute_name = "h_min"
+    logarithm = nodes.new("ShaderNodeMath")
+    logarithm.operation = "LOGARITHM"
+    logarithm.inputs[1].default_value = math.e
+    scale = nodes.new("ShaderNodeMapRange")
+    scale.inputs["From Min"].default_value = math.log(COARSEST)
+    scale.inputs["From Max"].default_value = math.log(FINEST)
     ramp = nodes.new("ShaderNodeValToRGB")
     elements = ramp.color_ramp.elements
     while len(elements) < len(RAMP):
@@ -38,11 +45,11 @@ def volume_material():
     behind = nodes.new("ShaderNodeMath")
     behind.operation = "GREATER_THAN"
     behind.inputs[1].default_value = 0
-    size = nodes.new("ShaderNodeAttribute")
-    size.attribute_name = "h_min"
-    inside = nodes.new("ShaderNodeMath")  # h_min is 0 outside the domain
+    ratio = nodes.new("ShaderNodeAttribute")
+    ratio.attribute_name = "anisotropy"
+    inside = nodes.new("ShaderNodeMath")
     inside.operation = "GREATER_THAN"
-    inside.inputs[1].default_value = 0
+    inside.inputs[1].default_value = 0.99
     shown = nodes.new("ShaderNodeMath")
     shown.operation = "MULTIPLY"
     opacity = nodes.new("ShaderNodeMath")
@@ -52,10 +59,12 @@ def volume_material():
     absorption = nodes.new("ShaderNodeVolumeAbsorption")
     absorption.inputs["Color"].default_value = (0, 0, 0, 1)
     both = nodes.new("ShaderNodeAddShader")
-    link(attribute.outputs["Fac"], ramp.inputs["Fac"])
+    link(attribute.outputs["Fac"], logarithm.inputs[0])
+    link(logarithm.outputs[0], scale.inputs["Value"])
+    link(scale.outputs[0], ramp.inputs["Fac"])
     link(place.outputs["Object"], split.inputs["Vector"])
     link(split.outputs["Y"], behind.inputs[0])
-    link(size.outputs["Fac"], inside.inputs[0])
+    link(ratio.outputs["Fac"], inside.inputs[0])
     link(behind.outputs[0], shown.inputs[0])
     link(inside.outputs[0], shown.inputs[1])
     link(shown.outputs[0], opacity.inputs[0])

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 
 #include <chrono>
 
@@ -55,14 +56,21 @@ std::vector<VdbNote> notes_of(const Case& c, const std::string& command_line) {
             {"command_line", command_line}};
 }
 
+double peak_megabytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;
+}
+
 std::string summary(const std::filesystem::path& path, const VdbReport& report, double seconds) {
     constexpr double mb = 1e6;
     return fmt::format(
         "{}: {} x {} x {} voxels of {:.4g}, {:.0f} % of them kept, the others in tiles of 8^3; "
-        "smallest lengths {:.4g} to {:.4g}\n{:.1f} MB in the file, {:.0f} MB in memory, {:.1f} s\n",
+        "smallest lengths {:.4g} to {:.4g}\n{:.1f} MB in the file; {:.1f} s, {:.0f} MB of memory "
+        "at most\n",
         path.string(), report.counts[0], report.counts[1], report.counts[2], report.voxel,
         100 * report.kept, report.finest, report.coarsest, static_cast<double>(report.file) / mb,
-        static_cast<double>(report.memory) / mb, seconds);
+        seconds, peak_megabytes());
 }
 
 }  // namespace
