@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include <chrono>
+#include <ctime>
 
 #include "app/standard_output.h"
 #include "app/threads.h"
@@ -62,15 +63,20 @@ double peak_megabytes() {
     return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;
 }
 
-std::string summary(const std::filesystem::path& path, const VdbReport& report, double seconds) {
-    constexpr double mb = 1e6;
+/// What writing took.
+struct Cost {
+    double seconds;
+    double processor_seconds;
+};
+
+std::string summary(const std::filesystem::path& path, const VdbReport& report, const Cost& cost) {
     return fmt::format(
         "{}: {} x {} x {} voxels of {:.4g}, {:.0f} % of them kept, the others in tiles of 8^3; "
-        "smallest lengths {:.4g} to {:.4g}\n{:.1f} MB in the file; {:.1f} s, {:.0f} MB of memory "
-        "at most\n",
+        "smallest lengths {:.4g} to {:.4g}\n"
+        "{:.1f} MB in the file; {:.1f} s, {:.1f} s of processors, {:.0f} MB of memory at most\n",
         path.string(), report.counts[0], report.counts[1], report.counts[2], report.voxel,
-        100 * report.kept, report.finest, report.coarsest, static_cast<double>(report.file) / mb,
-        seconds, peak_megabytes());
+        100 * report.kept, report.finest, report.coarsest, static_cast<double>(report.file) / 1e6,
+        cost.seconds, cost.processor_seconds, peak_megabytes());
 }
 
 }  // namespace
@@ -88,15 +94,17 @@ void export_vdb(const ExportOptions& options) {
     vdb.max_bytes = space_options(study, c, workload).max_bytes;
     if (options.with_sources) vdb.sources = workload.sources;
     const auto start = std::chrono::steady_clock::now();
+    const std::clock_t processor_start = std::clock();
     const VdbReport report = write_vdb(options.output, *space, vdb);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    const auto ticks = static_cast<double>(std::clock() - processor_start);
     if (report.voxel > workload.finest_length) {
         spdlog::warn(
             "voxels of {:.4g} are larger than the smallest length asked for, {:.4g}: give --voxel "
             "to see all of it",
             report.voxel, workload.finest_length);
     }
-    print(summary(options.output, report, seconds.count()));
+    print(summary(options.output, report, {seconds.count(), ticks / CLOCKS_PER_SEC}));
 }
 
 }  // namespace controlspace
