@@ -21,10 +21,16 @@ struct SpaceOptions {
     double voxel_factor = 1;   ///< grids in levels: longest edge of a voxel, in the metric it holds
     double prune_delta = 0;    ///< δ up to which gradation may end in joined voxels; 0: none are
     double ratio = 1.25;       ///< g_r of the gradation to come, for structures that keep sources
-    /// Sources may come after gradation: what they ask for is then kept beside the graded field, so
-    /// that insertion goes by it and grading again gives the field of all sources at once, to the
-    /// bit; and trees keep room to grow. Otherwise later sources are held against the graded field, and change it where that
-    /// does not meet them.
+    /// Sources may come after gradation. What they ask for is then kept beside the graded field:
+    /// insertion goes by it, and grading again gives the field of all sources at once, to the bit.
+    /// Of isotropic sources, under the cone law and by the queue, that costs in proportion to what
+    /// they change, as long as that is little; otherwise all is graded anew. Between the two, the
+    /// field is the old one, lowered at the new sources. Costs a second set of metrics and room to
+    /// grow.
+    ///
+    /// Without it, later sources are held against the graded field, and gradation starts from that.
+    /// Structures that keep sources do so in any case: trees hand on sources from all leaves again,
+    /// which gives a field close to that of all at once; `direct` builds its search anew.
     bool takes_later_sources = false;
     /// Cap on memory, gradation included: grids get coarser, trees that outgrow it throw
     /// InputError.
