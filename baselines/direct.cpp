@@ -13,6 +13,7 @@
 
 #include "cones/cone_field.h"
 #include "error.h"
+#include "metric/intersection.h"
 
 namespace controlspace {
 
@@ -33,14 +34,18 @@ public:
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         const ConeField& cones = field();
+        std::vector<Point> moved;
         const auto is_inside = [this](const Point& p) { return domain_.contains(p); };
-        if (std::all_of(x.begin(), x.end(), is_inside)) {
-            cones.evaluate(x, out);
-            return;
+        if (!std::all_of(x.begin(), x.end(), is_inside)) {
+            moved.assign(x.begin(), x.end());
+            for (Point& p : moved) p = p.cwiseMax(domain_.low).cwiseMin(domain_.high);
+            x = moved;
         }
-        std::vector<Point> inside(x.begin(), x.end());
-        for (Point& p : inside) p = p.cwiseMax(domain_.low).cwiseMin(domain_.high);
-        cones.evaluate(inside, out);
+        cones.evaluate(x, out);
+        if (!continuous_) return;
+        std::vector<Metric> own(x.size());
+        continuous_->evaluate(x, own);
+        for (std::size_t i = 0; i < x.size(); ++i) out[i] = intersection(out[i], own[i]);
     }
 
     Insertion insert(const PointSource& source) override {
@@ -82,6 +87,18 @@ public:
         if (ratio_ != before) built_ = false;
         field();
         return {};
+    }
+
+    AdaptationReport adapt(const AdaptationGoal& goal) override {
+        const GoalField wanted(goal, domain_);
+        ratio_ = goal.ratio;
+        sources_.assign(goal.sources.begin(), goal.sources.end());
+        continuous_ = goal.continuous;
+        built_ = false;
+        AdaptationReport report;
+        report.reached = wanted.largest_departure(*this);
+        report.met = report.reached <= goal.target;
+        return report;
     }
 
     const Box& domain() const override { return domain_; }
@@ -131,6 +148,7 @@ private:
     Box domain_;
     double ratio_;
     std::vector<PointSource> sources_;  ///< as inserted
+    std::shared_ptr<const MetricField> continuous_;
     mutable std::mutex building_;
     mutable std::atomic<bool> built_ = false;
     mutable std::unique_ptr<ConeField> field_;  ///< of all sources, once built

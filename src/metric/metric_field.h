@@ -17,4 +17,11 @@ public:
     virtual void evaluate(std::span<const Point> x, std::span<Metric> out) const = 0;
 };
 
+/// Metric at one point.
+inline Metric metric_at(const MetricField& field, const Point& x) {
+    Metric m;
+    field.evaluate({&x, 1}, {&m, 1});
+    return m;
+}
+
 }  // namespace controlspace

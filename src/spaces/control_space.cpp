@@ -21,6 +21,24 @@ GradationReport ControlSpace::grade(const GradationOptions& options) {
     return report;
 }
 
+AdaptationReport ControlSpace::adapt(const AdaptationGoal& goal) {
+    const GoalField field(goal, domain());
+    ControlNodes nodes = control_nodes(Neighbourhood::faces);
+    std::vector<Point> x(nodes.metrics.size());
+    std::visit(
+        [&](const auto& graph) {
+            for (NodeIndex i = 0; i < x.size(); ++i) x[i] = graph.position(i);
+        },
+        nodes.graph);
+    field.evaluate(x, nodes.metrics);
+    assign(nodes.metrics);
+    AdaptationReport report;
+    report.reached = field.largest_departure(*this);
+    report.met = report.reached <= goal.target;
+    if (!report.met) report.shortfall = "a grid keeps its voxels: make them smaller";
+    return report;
+}
+
 void require_valid(const PointSource& source, std::size_t index, const Box& domain) {
     if (!domain.contains(source.position)) {
         throw InputError(fmt::format(

@@ -13,6 +13,7 @@
 #include "gradation/node_graph.h"
 #include "metric/metric.h"
 #include "sources/point_source.h"
+#include "spaces/adaptation.h"
 #include "spaces/insertion.h"
 
 namespace controlspace {
@@ -70,6 +71,12 @@ public:
     /// `nearest_per_face` for the passes of the paper's tables. Throws InputError for a ratio below
     /// 1 or not finite.
     virtual GradationReport grade(const GradationOptions& options);
+
+    /// Replaces all that was held by the field of `goal`, with few elements that keep within its
+    /// target. A tree is built anew from its root, without regard to l_min; a grid keeps its
+    /// voxels. What could not be reached is said in the report. Throws InputError as GoalField
+    /// does, and where the structure would outgrow its cap on memory; the field is undefined then.
+    virtual AdaptationReport adapt(const AdaptationGoal& goal);
 
     virtual const Box& domain() const = 0;
 

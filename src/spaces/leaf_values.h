@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "spaces/adapt_tree.h"
 #include "spaces/adjacency.h"
 #include "spaces/control_space.h"
 #include "spaces/leaf_changes.h"
@@ -19,6 +20,9 @@ namespace controlspace {
 //   asked(tree, x)                       the same before gradation (see NodeMetrics)
 //   split(subdivision, leaf, first_new)  a leaf was cut; the field stays as it was
 //   lower(place, source)                 intersects what governs the leaf with the source
+//   fit(tree, leaves, field)             sets the control nodes of these leaves to the field
+//   is_fitted(leaf)                      is known to follow the field at the leaf's own places
+//   learn(leaf, x, field)                follows the field better at x, or returns false
 //   control_nodes(tree, neighbourhood), assign(tree, metrics), describe(footprint), shrink_to_fit()
 // and, if it holds metrics, for sources that come after gradation:
 //   release_asked(), keep_asked(metrics) see NodeMetrics; from the latter on, changes are recorded
@@ -29,6 +33,7 @@ class LeafValues {
 public:
     static constexpr bool exact_at_nodes = true;
     static constexpr int order = 0;
+    static constexpr CutBy cut_by = CutBy::corners;
 
     explicit LeafValues(const SpaceOptions& options)
         : metrics_(1, largest_metric(options.domain)) {}
@@ -61,6 +66,19 @@ public:
         auto next = metrics.begin();
         tree.for_each_leaf([&](LeafIndex leaf, const Box&) { metrics_.set(leaf, *next++); });
     }
+
+    /// Sets the leaves to the field.
+    template <class Node>
+    void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field) {
+        in_parallel(leaves.size(), [&](std::size_t i) {
+            const Point x = leaves[i].box.centre();
+            Metric m;
+            field.evaluate_here({&x, 1}, {&m, 1});
+            metrics_.set(leaves[i].leaf, m);
+        });
+    }
+    static constexpr bool is_fitted(LeafIndex) { return false; }
+    static constexpr bool learn(LeafIndex, const Point&, const GoalField&) { return false; }
 
     bool keeps_asked() const { return metrics_.keeps_asked(); }
     std::vector<Metric> release_asked() { return metrics_.release_asked(); }

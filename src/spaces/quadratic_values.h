@@ -23,6 +23,7 @@ Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, cons
 class QuadraticValues : public LeafValues {
 public:
     static constexpr int order = 2;
+    static constexpr CutBy cut_by = CutBy::faces;
 
     using LeafValues::LeafValues;
 

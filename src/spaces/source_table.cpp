@@ -3,11 +3,21 @@
 namespace controlspace {
 
 SourceIndex SourceTable::add(const PointSource& source) {
-    if (metrics_.empty() || metrics_.back() != source.metric) metrics_.push_back(source.metric);
+    if (metrics_.empty() || metrics_.back() != source.metric) {
+        metrics_.push_back(source.metric);
+        smallest_.push_back(eigen_frame(source.metric).lengths[0]);
+    }
     all_isotropic_ = all_isotropic_ && is_isotropic(source.metric);
     positions_.push_back(source.position);
     metric_of_.push_back(static_cast<std::uint32_t>(metrics_.size() - 1));
     return static_cast<SourceIndex>(positions_.size() - 1);
+}
+
+std::vector<PointSource> SourceTable::all() const {
+    std::vector<PointSource> sources;
+    sources.reserve(size());
+    for (SourceIndex i = 0; i < size(); ++i) sources.push_back(source(i));
+    return sources;
 }
 
 std::vector<SourceIndex> SourceTable::keep(const std::vector<std::uint8_t>& kept) {
@@ -25,6 +35,7 @@ void SourceTable::shrink_to_fit() {
     positions_.shrink_to_fit();
     metric_of_.shrink_to_fit();
     metrics_.shrink_to_fit();
+    smallest_.shrink_to_fit();
 }
 
 }  // namespace controlspace

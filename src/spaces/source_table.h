@@ -20,15 +20,14 @@ public:
     const Point& position(SourceIndex i) const { return positions_[i]; }
     bool all_isotropic() const { return all_isotropic_; }
     const Metric& metric(SourceIndex i) const { return metrics_[metric_of_[i]]; }
+    std::vector<PointSource> all() const;
     PointSource source(SourceIndex i) const { return {position(i), metric(i)}; }
 
-    /// The cone of source `i` at `x`: M (1 + (g-1) |M^-1 (x - Q)|).
-    Metric cone(SourceIndex i, double g, const Point& x) const {
-        const Metric& m = metric(i);
-        const Vector v = x - positions_[i];
-        if (is_isotropic(m)) return Metric::isotropic(m.xx + (g - 1) * v.norm());
-        return (1 + (g - 1) * metric_length(m, v)) * m;
+    /// The cone of source `i` at `x` is its metric times this: 1 + (g-1) |M^-1 (x - Q)|.
+    double factor(SourceIndex i, double g, const Point& x) const {
+        return 1 + (g - 1) * metric_length(metric(i), x - positions_[i]);
     }
+    double smallest_length(SourceIndex i) const { return smallest_[metric_of_[i]]; }
 
     /// Keeps only the sources for which `kept` is not 0, in their order; returns the new index of
     /// each old one.
@@ -36,6 +35,7 @@ public:
 
     std::size_t bytes() const {
         return positions_.capacity() * sizeof(Point) + metrics_.capacity() * sizeof(Metric) +
+               smallest_.capacity() * sizeof(double) +
                metric_of_.capacity() * sizeof(std::uint32_t);
     }
     void shrink_to_fit();
@@ -44,6 +44,7 @@ private:
     std::vector<Point> positions_;
     std::vector<std::uint32_t> metric_of_;
     std::vector<Metric> metrics_;
+    std::vector<double> smallest_;  // length of each metric
     bool all_isotropic_ = true;
 };
 

@@ -63,4 +63,21 @@ inline Subdivision longest_edge_halves(const Box& box) {
     return halves(box, axis, 0.5 * (box.low[axis] + box.high[axis]));
 }
 
+/// Across the middle of the axis with the largest of `along`, as long as no edge gets shorter than
+/// an eighth of the longest; the longest edge where `along` says nothing.
+inline Subdivision halves_across(const Box& box, const std::array<double, 3>& along) {
+    const Vector e = box.edges();
+    const double shortest = e.maxCoeff() / 4;
+    Axis axis = -1;
+    double most = 0;
+    for (Axis a = 0; a < 3; ++a) {
+        const double variation = along[static_cast<std::size_t>(a)];
+        if (e[a] < shortest || !(variation > most)) continue;
+        most = variation;
+        axis = a;
+    }
+    if (axis < 0) return longest_edge_halves(box);
+    return halves(box, axis, 0.5 * (box.low[axis] + box.high[axis]));
+}
+
 }  // namespace controlspace

@@ -63,6 +63,10 @@ struct KdNode {
     }
     Subdivision subdivision(const Box& box) const { return halves(box, axis(), at); }
     static Subdivision even_subdivision(const Box& box) { return longest_edge_halves(box); }
+    /// The cut through the middle that serves a box where something varies by `along` the axes.
+    static Subdivision subdivision_across(const Box& box, const std::array<double, 3>& along) {
+        return halves_across(box, along);
+    }
 
     /// Number of the child that holds `x`.
     int child_with(const Point& x) const { return x[axis()] > at ? 1 : 0; }
@@ -84,6 +88,9 @@ struct OctreeNode {
     void set_child(int c, Ref ref) { children[static_cast<std::size_t>(c)] = ref; }
     Subdivision subdivision(const Box& box) const { return octants(box); }
     static Subdivision even_subdivision(const Box& box) { return octants(box); }
+    static Subdivision subdivision_across(const Box& box, const std::array<double, 3>&) {
+        return octants(box);
+    }
 
     int descend(const Point& x, Box& box) const {
         int c = 0;

@@ -47,10 +47,7 @@ public:
             if (insert_valid(source) == Insertion::inserted) ++report.inserted;
         }
         // Copying everything would be out of proportion to a few sources more.
-        if (!options_.takes_later_sources) {
-            topology_.shrink_to_fit();
-            storage_.shrink_to_fit();
-        }
+        if (!options_.takes_later_sources) settle();
         return report;
     }
 
@@ -68,11 +65,44 @@ public:
 
     GradationReport grade(const GradationOptions& options) override {
         if constexpr (keeps_sources) {
-            return storage_.grade(topology_, options, max_depth());
+            return grade_sources(options);
         } else {
             return options_.takes_later_sources ? grade_beside_asked(options)
                                                 : ControlSpace::grade(options);
         }
+    }
+
+    AdaptationReport adapt(const AdaptationGoal& goal) override {
+        const GoalField field(goal, domain());
+        topology_ = Topology<Node>(domain());
+        storage_ = Storage(options_);
+        past_.reset();
+        if constexpr (keeps_sources) storage_.take_over(goal);
+        AdaptationReport report;
+        constexpr int proofs = 3;
+        bool too_deep = false;
+        bool too_short = false;
+        TreeAdaptation adaptation(topology_, storage_, field, goal);
+        report.reached = adaptation.run(proofs, [&](const Box& box, const auto& along, auto& cut) {
+            if (is_negligible(box)) {
+                too_short = true;
+                return false;
+            }
+            const bool done = split_across(box, along, cut);
+            too_deep = too_deep || !done;
+            return done;
+        });
+        report.met = report.reached <= goal.target;
+        if (too_deep) {
+            report.shortfall = fmt::format(
+                "leaves of level {} are not cut: raise target_delta or the depth", max_depth());
+        } else if (too_short) {
+            report.shortfall =
+                "the field jumps: leaves far shorter than an element are not cut: raise "
+                "target_delta";
+        }
+        settle();
+        return report;
     }
 
     const Box& domain() const override { return topology_.domain(); }
@@ -130,6 +160,49 @@ private:
         return report;
     }
 
+    // Looks up which sources govern the leaves. On the way leaves where three and more do are cut,
+    // down to l_min in their own metric.
+    GradationReport grade_sources(const GradationOptions& options) {
+        controlspace::require_valid(options);
+        constexpr double close = 0.02;  // non-conformity to the exact field
+        const std::vector<PointSource> sources = storage_.sources().all();
+        const AdaptationGoal goal{sources, storage_.continuous(), options.ratio, close};
+        const GoalField field(goal, domain());
+        storage_.take_over(goal);
+        GradationReport report;
+        TreeAdaptation adaptation(topology_, storage_, field, goal);
+        adaptation.run(0, [&](const Box& box, const auto& along, auto& cut) {
+            ++report.operations;
+            return is_too_long(storage_.value(topology_, box.centre()), box) &&
+                   split_across(box, along, cut);
+        });
+        settle();
+        const ControlNodes nodes = control_nodes(Neighbourhood::faces);
+        report.largest_ratio_left =
+            largest_gradation(nodes.graph, nodes.metrics, GradationLaw::cone);
+        return report;
+    }
+
+    // Cuts the leaf with this box where something varies by `along` the axes, unless it is among
+    // the smallest allowed.
+    bool split_across(const Box& box, const std::array<double, 3>& along,
+                      std::vector<LeafIndex>& cut) {
+        const LeafPlace place = topology_.locate(box.centre());
+        const Subdivision subdivision = Node::subdivision_across(place.box, along);
+        if (place.level >= max_depth() || !subdivision.is_proper()) return false;
+        split(place, subdivision, &cut);
+        return true;
+    }
+
+    // Whether no mesh could tell one end of the box from the other. Fields may jump: what tensors
+    // make of each other depends on which is the smallest.
+    bool is_negligible(const Box& box) const {
+        constexpr double share_of_element = 1.0 / 16;
+        const Metric m = storage_.value(topology_, box.centre());
+        const auto lengths = metric_edge_lengths(m, box.edges());
+        return std::max({lengths[0], lengths[1], lengths[2]}) < share_of_element;
+    }
+
     // Whether any edge of `box` is longer than l_min in the metric.
     bool is_too_long(const Metric& metric, const Box& box) const {
         const auto lengths = metric_edge_lengths(metric, box.edges());
@@ -144,17 +217,27 @@ private:
         }
     }
 
-    void split(const LeafPlace& place, const Subdivision& subdivision) {
+    // Appends to `cut`, if given, the leaf and all neighbours that had to be split before it.
+    void split(const LeafPlace& place, const Subdivision& subdivision,
+               std::vector<LeafIndex>* cut = nullptr) {
         if (topology_.is_full()) {
             throw InputError("a tree holds 2^30 leaves at most: raise l_min or lower the depth");
         }
         if (topology_.leaves() >= next_look_) require_memory();
         if constexpr (is_octree) {
-            if (balanced_) refine_coarser_neighbours(place);
+            if (balanced_) refine_coarser_neighbours(place, cut);
         }
         const auto first_new = static_cast<LeafIndex>(topology_.leaves());
         topology_.split(place, subdivision);
         storage_.split(subdivision, place.leaf, first_new);
+        if (cut != nullptr) cut->push_back(place.leaf);
+    }
+
+    // Gives back what only growing needs.
+    void settle() {
+        if constexpr (keeps_sources) storage_.drop_idle_sources();
+        topology_.shrink_to_fit();
+        storage_.shrink_to_fit();
     }
 
     // Stops a tree that outgrows the cap, long before the system stops the program.
@@ -165,20 +248,21 @@ private:
             footprint().bytes_total() + topology_.leaves() * gradation_bytes_per_leaf;
         if (bytes > options_.max_bytes) {
             constexpr double gib = 1024.0 * 1024 * 1024;
-            throw InputError(fmt::format(
-                "the tree would take more than {:.3g} GiB, gradation included: raise tau (l_min) "
-                "or max_memory",
-                static_cast<double>(options_.max_bytes) / gib));
+            throw InputError(
+                fmt::format("the tree would take more than {:.3g} GiB, gradation included: raise "
+                            "tau (l_min) or target_delta, "
+                            "or max_memory",
+                            static_cast<double>(options_.max_bytes) / gib));
         }
         next_look_ = topology_.leaves() + topology_.leaves() / 16;
     }
 
     // Brings all face neighbours to the leaf's own level at least, so that it may be split.
-    void refine_coarser_neighbours(const LeafPlace& place) {
+    void refine_coarser_neighbours(const LeafPlace& place, std::vector<LeafIndex>* cut) {
         for (int face = 0; face < 6; ++face) {
             LeafPlace neighbour;
             if (!locate_across(topology_, place.box, face, place.box.centre(), neighbour)) continue;
-            if (neighbour.level < place.level) split(neighbour, octants(neighbour.box));
+            if (neighbour.level < place.level) split(neighbour, octants(neighbour.box), cut);
         }
     }
 

@@ -1,5 +1,6 @@
 #include "spaces/vertex_values.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace controlspace {
@@ -81,6 +82,21 @@ void VertexValues::lower(const LeafPlace& place, const PointSource& source) {
         metrics_.lower(node, source.metric);
         if (keeps_asked()) changes_.touch(node);
     }
+}
+
+void VertexValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& field) {
+    std::vector<NodeIndex> nodes;
+    nodes.reserve(8 * leaves.size());
+    for (const AdaptedLeaf& l : leaves) {
+        nodes.insert(nodes.end(), corners_[l.leaf].begin(), corners_[l.leaf].end());
+    }
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    in_parallel(nodes.size(), [&](std::size_t i) {
+        Metric m;
+        field.evaluate_here({&positions_[nodes[i]], 1}, {&m, 1});
+        metrics_.set(nodes[i], m);
+    });
 }
 
 NodeGraph VertexValues::graph_of_edges() const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "metric/blend.h"
+#include "spaces/adapt_tree.h"
 #include "spaces/adjacency.h"
 #include "spaces/control_space.h"
 #include "spaces/node_metrics.h"
@@ -34,6 +35,7 @@ class VertexValues {
 public:
     static constexpr bool exact_at_nodes = true;
     static constexpr int order = 1;
+    static constexpr CutBy cut_by = CutBy::edges;
 
     explicit VertexValues(const SpaceOptions& options);
 
@@ -75,6 +77,14 @@ public:
         return report;
     }
 
+    template <class Node>
+    void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field) {
+        fit(leaves, field);
+    }
+
+    static constexpr bool is_fitted(LeafIndex) { return false; }
+    static constexpr bool learn(LeafIndex, const Point&, const GoalField&) { return false; }
+
     void describe(Footprint& footprint) const;
     void shrink_to_fit();
 
@@ -91,6 +101,7 @@ private:
         const LeafPlace here = tree.locate(x);
         return interpolate(corners_[here.leaf], corner_weights(here.box, x), metrics);
     }
+    void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field);
     NodeIndex vertex_at(const Point& x, const Box& box, const Corners& corners);
     NodeGraph graph_of_edges() const;
 

@@ -1,0 +1,193 @@
+#include "spaces/adaptation.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "baselines/catalogue.h"
+#include "error.h"
+#include "measure/access_time.h"
+#include "measure/accuracy.h"
+#include "metric/nonconformity.h"
+#include "sources/sampled_surfaces.h"
+
+using namespace controlspace;
+
+namespace {
+
+const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
+constexpr double g = 1.25;
+
+// h grows from 0.1 by 0.2 per unit length towards +x.
+class Ramp final : public MetricField {
+public:
+    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            out[i] = Metric::isotropic(0.3 + 0.2 * x[i].x());
+        }
+    }
+};
+
+// Discs of random size and direction.
+std::vector<PointSource> tensors(std::size_t n) {
+    const std::vector<Point> places = random_points(domain, n, 3);
+    const std::vector<Point> normals = random_points(domain, n, 4);
+    std::vector<PointSource> sources;
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vector u = normals[i].normalized();
+        const double h = 0.3 + 0.3 * std::abs(normals[i].x());
+        sources.push_back({0.7 * places[i], Metric::from_matrix(h * (Eigen::Matrix3d::Identity() -
+                                                                     0.6 * u * u.transpose()))});
+    }
+    return sources;
+}
+
+// Share of random places where δ to the field is beyond `target`.
+double share_beyond(double target, const ControlSpace& space, const MetricField& field) {
+    const std::vector<Point> x = random_points(domain, 20000, 11);
+    std::vector<Metric> own(x.size());
+    std::vector<Metric> exact(x.size());
+    space.sample(x, own);
+    field.evaluate(x, exact);
+    std::size_t beyond = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (nonconformity(own[i], exact[i]) > target) ++beyond;
+    }
+    return double(beyond) / double(x.size());
+}
+
+std::vector<CatalogueEntry> trees() {
+    std::vector<CatalogueEntry> all(tree_catalogue().begin(), tree_catalogue().end());
+    all.insert(all.end(), anchored_catalogue().begin(), anchored_catalogue().end());
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("trees keep the target at places they have not seen; a closer one takes more leaves") {
+    const std::vector<PointSource> isotropic = sample_sphere({.h = 0.08});
+    const std::vector<PointSource> discs = tensors(3);
+    for (const std::vector<PointSource>& sources : {isotropic, discs}) {
+        const auto field = exact_reference(sources, g, largest_metric(domain));
+        for (const CatalogueEntry& entry : trees()) {
+            CAPTURE(entry.id, sources.size());
+            std::size_t leaves = 0;
+            for (const double target : {1.0, 0.3}) {
+                const auto space = entry.make({.domain = domain});
+                const AdaptationReport report = space->adapt({sources, nullptr, g, target});
+                CHECK(report.met);
+                CHECK(report.reached <= target);
+                CHECK(report.shortfall.empty());
+                CHECK(share_beyond(target, *space, *field) <= 2e-4);
+                CHECK(space->footprint().leaves >= leaves);
+                leaves = space->footprint().leaves;
+            }
+        }
+    }
+}
+
+TEST_CASE("sphere at a tenth: the paper's trees and the anchored ones, on 101^3 places") {
+    const std::vector<PointSource> sources = sample_sphere({.rho = 1});
+    const auto field = exact_reference(sources, g, largest_metric(domain));
+    const Probes probes = make_probes(*field, cell_centres(domain, 101));
+    const auto adapted = [&](const CatalogueEntry& entry, double most_megabytes) {
+        CAPTURE(entry.id);
+        const auto space = entry.make({.domain = domain});
+        const AdaptationReport report = space->adapt({sources, nullptr, g, 0.1});
+        CHECK(report.met);
+        CHECK(space->footprint().bytes_total() <= static_cast<std::size_t>(most_megabytes * 1e6));
+        return accuracy(*space, probes).max;
+    };
+    CHECK(adapted(tree_catalogue()[0], 4) <= 0.1);      // K_L
+    CHECK(adapted(tree_catalogue()[3], 4) <= 0.1);      // K_oL
+    CHECK(adapted(tree_catalogue()[2], 1) <= 0.1);      // K_V
+    CHECK(adapted(anchored_catalogue()[1], 2) <= 0.1);  // K_oLA
+    // Peaks between the places that were looked at: here one of a million places.
+    CHECK(adapted(anchored_catalogue()[0], 2) <= 0.15);  // K_LA
+}
+
+TEST_CASE("a source too small to be seen from a leaf's own places is found") {
+    const PointSource source{Point(0.31, 0.17, -0.43), Metric::isotropic(1e-4)};
+    for (const CatalogueEntry& entry : trees()) {
+        CAPTURE(entry.id);
+        const auto space = entry.make({.domain = domain});
+        CHECK(space->adapt({{&source, 1}, nullptr, g, 0.1}).met);
+        CHECK(nonconformity(sample_at(*space, source.position), source.metric) <= 0.1);
+    }
+}
+
+TEST_CASE("without sources the root is enough") {
+    for (const CatalogueEntry& entry : trees()) {
+        CAPTURE(entry.id);
+        const auto space = entry.make({.domain = domain});
+        CHECK(space->adapt({{}, nullptr, g, 0.1}).reached < 1e-12);
+        CHECK(space->footprint().leaves == 1);
+    }
+}
+
+TEST_CASE("a continuous source: vertices carry a linear field, anchored trees the field itself") {
+    const auto ramp = std::make_shared<Ramp>();
+    for (const CatalogueEntry& entry : structures()) {
+        CAPTURE(entry.id);
+        const auto space = entry.make({.domain = domain, .finest_length = 0.05});
+        const AdaptationReport report = space->adapt({{}, ramp, g, 0.05});
+        CHECK(report.met);
+        CHECK(share_beyond(0.05, *space, *ramp) == 0);
+        if (entry.id == "K_V" || entry.id == "K_oV" || entry.group == "anchored") {
+            CHECK(space->footprint().leaves == 1);
+            CHECK(report.reached < 1e-12);
+        }
+    }
+}
+
+TEST_CASE("mixture: sources and a continuous one, each where it is smaller; insertion goes on") {
+    const auto ramp = std::make_shared<Ramp>();
+    const PointSource source{Point(0.5, 0.2, 0.1), Metric::isotropic(0.02)};
+    const PointSource later{Point(-0.4, -0.3, 0.6), Metric::isotropic(0.03)};
+    for (const CatalogueEntry& entry : trees()) {
+        CAPTURE(entry.id);
+        const auto space = entry.make({.domain = domain});
+        CHECK(space->adapt({{&source, 1}, ramp, g, 0.1}).met);
+        for (const Point& x : random_points(domain, 500, 5)) {
+            const double cone = 0.02 + (g - 1) * (x - source.position).norm();
+            const Metric exact = Metric::isotropic(std::min(cone, 0.3 + 0.2 * x.x()));
+            CHECK(nonconformity(sample_at(*space, x), exact) <= 0.1);
+        }
+        space->insert(later);
+        if (entry.order == 2) continue;  // at a border between leaves K_Li follows the neighbour
+        CHECK(nonconformity(sample_at(*space, later.position), later.metric) <= 0.2);
+    }
+}
+
+TEST_CASE("a target out of reach is told, with what was reached") {
+    const std::vector<PointSource> sources = sample_sphere({.h = 0.06});
+    for (const CatalogueEntry& entry : {tree_catalogue()[0], tree_catalogue()[3]}) {
+        CAPTURE(entry.id);
+        const auto space = entry.make({.domain = domain, .kd_depth = 6, .octree_depth = 2});
+        const AdaptationReport report = space->adapt({sources, nullptr, g, 0.1});
+        CHECK_FALSE(report.met);
+        CHECK(report.reached > 0.1);
+        CHECK(report.shortfall.find("raise target_delta or the depth") != std::string::npos);
+        CHECK(space->footprint().leaves == 64);
+    }
+    for (const CatalogueEntry& entry : structures()) {
+        if (entry.id != "uniform-nearest") continue;
+        const auto space = entry.make({.domain = domain, .finest_length = 0.5});
+        const AdaptationReport report = space->adapt({sources, nullptr, g, 0.1});
+        CHECK_FALSE(report.met);
+        CHECK(report.shortfall.find("voxels") != std::string::npos);
+    }
+    const auto small = tree_catalogue()[3].make({.domain = domain, .max_bytes = 1000000});
+    CHECK_THROWS_AS(small->adapt({sources, nullptr, g, 0.01}), InputError);
+}
+
+TEST_CASE("bad goals are refused") {
+    const auto space = tree_catalogue()[0].make({.domain = domain});
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double target : {0.0, -1.0, nan}) {
+        CHECK_THROWS_AS(space->adapt({{}, nullptr, g, target}), InputError);
+    }
+    CHECK_THROWS_AS(space->adapt({{}, nullptr, 0.5, 0.1}), InputError);
+    const PointSource outside{Point(2, 0, 0), Metric::isotropic(0.1)};
+    CHECK_THROWS_AS(space->adapt({{&outside, 1}, nullptr, g, 0.1}), InputError);
+}
