@@ -179,10 +179,11 @@ public:
         std::vector<std::uint8_t> fresh(tree_.leaves(), 1), unproved(tree_.leaves(), 1);
         std::vector<std::uint8_t> stays(tree_.leaves(), 0);
         std::vector<Departure> departures(tree_.leaves());
+        const bool is_proved = proofs > 0;
         std::uint64_t places_used = 0;
         for (;;) {
             const std::vector<AdaptedLeaf> leaves = all_leaves();
-            fit_and_look(chosen(leaves, fresh), fresh, departures);
+            fit_and_look(chosen(leaves, fresh), fresh, is_proved, departures);
             fresh.assign(fresh.size(), 0);
             const auto is_bad = [&](const AdaptedLeaf& l) {
                 return departures[l.leaf].worst > field_.target() && stays[l.leaf] == 0;
@@ -247,8 +248,8 @@ private:
     // For the `young` leaves, which are those marked `fresh`. Departures are by the leaves'
     // numbers.
     void fit_and_look(std::span<const AdaptedLeaf> young, std::span<const std::uint8_t> fresh,
-                      std::span<Departure> departures) {
-        storage_.fit(tree_, young, field_);
+                      bool proved, std::span<Departure> departures) {
+        storage_.fit(tree_, young, field_, proved);
         const LeafJudge judge(tree_, storage_, field_);
         in_parallel(young.size(), [&](std::size_t i) {
             if (storage_.is_fitted(young[i].leaf)) return;

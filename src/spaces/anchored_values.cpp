@@ -67,7 +67,8 @@ void AnchoredValues::take_over(const AdaptationGoal& goal) {
     for (const PointSource& source : goal.sources) sources_.add(source);
 }
 
-void AnchoredValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& field) {
+void AnchoredValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& field,
+                         std::size_t places) {
     const double negligible = negligible_shortening(field.target());
     std::vector<SourceIndex> chosen(leaves.size() * most);
     std::vector<std::size_t> count(leaves.size(), 0);
@@ -75,7 +76,7 @@ void AnchoredValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& f
                                 memory = ConeField::Memory()](std::size_t i) mutable {
         const std::span<SourceIndex> list(chosen.data() + i * most, most);
         std::size_t& n = count[i];
-        for (std::size_t k = 0; k < LeafPlaces::all; ++k) {
+        for (std::size_t k = 0; k < places; ++k) {
             const std::size_t p = (LeafPlaces::centre + k) % LeafPlaces::all;  // the centre first
             const Point x = leaf_places().in(leaves[i].box, p);
             Metric m;

@@ -63,10 +63,16 @@ public:
     void take_over(const AdaptationGoal& goal);
     /// Anchors for these leaves, out of the sources of `field`'s goal.
     template <class Node>
-    void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field) {
-        fit(leaves, field);
+    void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field,
+             bool proved) {
+        // Of tensors hundreds may each cut a little: what governs the centre has to do.
+        fits_tensors_loosely_ = !proved;
+        fit(leaves, field, sources_.all_isotropic() || proved ? LeafPlaces::all : 1);
     }
-    bool is_fitted(LeafIndex leaf) const { return anchors_.of(leaf).size() < most; }
+    bool is_fitted(LeafIndex leaf) const {
+        return (fits_tensors_loosely_ && !sources_.all_isotropic()) ||
+               anchors_.of(leaf).size() < most;
+    }
     /// Enters the sources that govern the field at `x`, unless the leaf has enough anchors.
     bool learn(LeafIndex leaf, const Point& x, const GoalField& field);
     /// Forgets sources that are no leaf's anchor.
@@ -79,7 +85,8 @@ private:
     // Anchors of a leaf. Longer lists would make queries slow where one more cut makes them short.
     static constexpr std::size_t most = 16;
 
-    void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field);
+    // At so many places, the centre first.
+    void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field, std::size_t places);
     Metric cones_at(const Point& x, std::span<const SourceIndex> anchors) const;
 
     AnchorLists anchors_;
@@ -87,6 +94,7 @@ private:
     std::shared_ptr<const MetricField> continuous_;
     Metric largest_;
     double ratio_;
+    bool fits_tensors_loosely_ = false;
 };
 
 }  // namespace controlspace

@@ -20,7 +20,8 @@ namespace controlspace {
 //   asked(tree, x)                       the same before gradation (see NodeMetrics)
 //   split(subdivision, leaf, first_new)  a leaf was cut; the field stays as it was
 //   lower(place, source)                 intersects what governs the leaf with the source
-//   fit(tree, leaves, field)             sets the control nodes of these leaves to the field
+//   fit(tree, leaves, field, proved)     sets the control nodes of these leaves to the field; if
+//                                        that will not be proved elsewhere, less closely
 //   is_fitted(leaf)                      is known to follow the field at the leaf's own places
 //   learn(leaf, x, field)                follows the field better at x, or returns false
 //   control_nodes(tree, neighbourhood), assign(tree, metrics), describe(footprint), shrink_to_fit()
@@ -69,7 +70,8 @@ public:
 
     /// Sets the leaves to the field.
     template <class Node>
-    void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field) {
+    void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field,
+             bool) {
         in_parallel(leaves.size(), [&](std::size_t i) {
             const Point x = leaves[i].box.centre();
             Metric m;

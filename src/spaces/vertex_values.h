@@ -78,7 +78,8 @@ public:
     }
 
     template <class Node>
-    void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field) {
+    void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field,
+             bool) {
         fit(leaves, field);
     }
 
