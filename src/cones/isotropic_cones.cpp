@@ -163,11 +163,7 @@ void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const PointS
         }
     });
 
-    // The root takes up what three levels of the binary tree a node leave over.
-    std::vector<int> levels;
-    for (int level = shape_.depth; level > 0; level -= arity_bits) {
-        levels.insert(levels.begin(), std::max(0, level - arity_bits));
-    }
+    const std::vector<int> levels = levels_of_eight_children(shape_.depth);
     first_of_level_.assign(1, 0);
     for (const int level : levels) {
         first_of_level_.push_back(first_of_level_.back() + (std::size_t{1} << level));

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cones/cone_tree.h"
+#include "cones/tensor_lanes.h"
+#include "sources/point_source.h"
+
+namespace controlspace {
+
+/// Bounding-volume hierarchy over anisotropic sources, eight children a node and eight sources a
+/// group, for `AnisotropicCones` (which says what follows from the bounds).
+class TensorTree {
+public:
+    /// A source and what is known of it.
+    struct Item {
+        PointSource source;
+        double length;        ///< smallest
+        std::uint32_t index;  ///< among all sources
+    };
+
+    /// Bounds of all sources below each child.
+    struct Node {
+        VectorLanes centre;
+        Lanes radius;               ///< largest |inverse (Q_i - centre)|
+        TensorLanes inverse;        ///< no displacement v is shorter in M_i than |inverse v|
+        TensorLanes square;         ///< L^2, where L is within all M_i
+        Lanes length;               ///< smallest of all M_i; infinite where there is no child
+        std::uint32_t first_child;  ///< of eight that follow one another; leaves come after nodes
+    };
+
+    /// A leaf: sources side by side.
+    struct Leaf {
+        VectorLanes position;
+        TensorLanes metric;
+        Lanes length;         ///< smallest of the metric; infinite where there is no source
+        std::uint32_t first;  ///< place of the first among the indices
+    };
+
+    TensorTree() = default;
+    /// `weight` is what makes lengths coordinates (see ConeTreeItem). Runs on all of TBB's threads.
+    TensorTree(std::span<const Item> items, double weight);
+
+    /// The root is 0; without nodes it is the only leaf, if there is one.
+    bool empty() const { return leaves_.empty(); }
+    bool is_leaf(std::uint32_t n) const { return n >= nodes_.size(); }
+    const Node& node(std::uint32_t n) const { return nodes_[n]; }
+    const Leaf& leaf(std::uint32_t n) const { return leaves_[n - nodes_.size()]; }
+    std::uint32_t index(const Leaf& leaf, Eigen::Index lane) const {
+        return indices_[leaf.first + static_cast<std::size_t>(lane)];
+    }
+
+    /// Bytes allocated: of the metrics, and of what finds them.
+    std::size_t bytes_payload() const { return leaves_.capacity() * sizeof(TensorLanes); }
+    std::size_t bytes_topology() const {
+        return leaves_.capacity() * (sizeof(Leaf) - sizeof(TensorLanes)) +
+               nodes_.capacity() * sizeof(Node) + indices_.capacity() * sizeof(std::uint32_t);
+    }
+
+private:
+    std::vector<Node> nodes_;  ///< level by level
+    std::vector<Leaf> leaves_;
+    std::vector<std::uint32_t> indices_;  ///< in tree order
+};
+
+}  // namespace controlspace
