@@ -7,6 +7,7 @@
 #include <bit>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "cones/cone.h"
 #include "metric/decompose.h"
@@ -77,10 +78,10 @@ AnisotropicCones::AnisotropicCones(std::span<const PointSource> sources, double 
         items[i] = {sources[i], lengths[0], static_cast<std::uint32_t>(i)};
         anisotropies[i] = lengths[2] / lengths[0];
     });
-    least_length_ = cap_;
+    double anisotropy = 1;
+    for (const double a : anisotropies) anisotropy = std::max(anisotropy, a);
+    uncertainty_ = std::min(4096 * epsilon * anisotropy, 1.0);
     for (const Item& item : items) least_length_ = std::min(least_length_, item.length);
-    for (const double a : anisotropies) uncertainty_ = std::max(uncertainty_, 4096 * epsilon * a);
-    uncertainty_ = std::min(uncertainty_, 1.0);
 
     const auto key = [](const Item& i) {
         const auto& [q, m] = i.source;
@@ -102,25 +103,23 @@ AnisotropicCones::AnisotropicCones(std::span<const PointSource> sources, double 
         if (dominated[i] == 0) kept.push_back(items[i]);
     }
     dropped_ = sources.size() - kept.size();
-    if (kept.size() < items.size()) tree_ = TensorTree(kept, weight);
+    if (kept.size() < items.size()) tree_ = TensorTree(std::move(kept), weight);
 }
 
 bool AnisotropicCones::is_dominated(const Item& item) const {
     const double certain = 1 - uncertainty_;
     const double reach = std::max(0.0, cap_ / item.length - 1);
     const Point& q = item.source.position;
-    TensorLanes squares;
-    for (int lane = 0; lane < lane_count; ++lane) squares.set(lane, square(item.source.metric));
+    const Metric squared = square(item.source.metric);
     const auto by = [&](const PointSource& other) {
         const double k = cone_factor(other, g_, q);
-        const auto is_below = [&](double factor) {
+        const auto is_within = [&](double factor) {
             const double safe = factor / certain;
-            return room_below(safe * safe * square(other.metric), Lanes::Ones(), squares)
-                .are_positive(0);
+            return is_below(safe * safe * square(other.metric), 1, squared);
         };
-        if (!is_below(k)) return false;
+        if (!is_within(k)) return false;
         const double r = growth(item.source.metric, other.metric);
-        return is_below(std::max(k, (k + r * reach) / (1 + reach)));
+        return is_within(std::max(k, (k + r * reach) / (1 + reach)));
     };
     std::vector<std::uint32_t> stack{0};
     while (!stack.empty()) {
@@ -155,19 +154,21 @@ Lanes AnisotropicCones::factors(const TensorTree::Leaf& leaf, const Point& p) co
 
 Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double tolerance,
                                    Search& search, std::vector<std::uint32_t>* governing) const {
+    if (tree_.empty()) return largest;
     const double certain = 1 - uncertainty_;
     const double enough = certain * (1 + tolerance);
     RunningIntersection found(largest);
     auto& [queue, cones, batch] = search;
-    cones.clear();
+
     // Lanes where what has been found may be longer than `factors` times the metrics.
     const auto may_matter = [&](const Lanes& factors, const TensorLanes& squares,
                                 const Lanes& shortest) {
         const Pivots room = room_below(found.square(), (enough * factors).square(), squares);
         unsigned lanes = 0;
         for (int lane = 0; lane < lane_count; ++lane) {
-            if (enough * shortest[lane] < found.longest() && !room.are_positive(lane))
-                lanes |= 1u << lane;
+            const bool matters =
+                enough * shortest[lane] < found.longest() && !room.are_positive(lane);
+            lanes |= (matters ? 1u : 0u) << lane;
         }
         return lanes;
     };
@@ -176,11 +177,12 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double
         const Lanes shortest = certain * factor * node.length;
         for (unsigned lanes = may_matter(factor, node.square, shortest); lanes != 0;
              lanes &= lanes - 1) {
-            const int lane = std::countr_zero(lanes);
-            queue.push(shortest[lane], 0, node.first_child + static_cast<std::uint32_t>(lane));
+            const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
+            queue.push(shortest[lane], 0, node.first_child + lane);
         }
     };
-    const auto open_leaf = [&](const TensorTree::Leaf& leaf) {
+    const auto open_leaf = [&](std::uint32_t n) {
+        const TensorTree::Leaf& leaf = tree_.leaf(n);
         const Lanes factor = factors(leaf, p);
         for (unsigned lanes = may_matter(factor, square(leaf.metric), factor * leaf.length);
              lanes != 0; lanes &= lanes - 1) {
@@ -190,40 +192,39 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double
             const double exactly = is_axis_aligned(metric)
                                        ? cone_factor({leaf.position[lane], metric}, g_, p)
                                        : factor[lane];
-            queue.push(exactly * leaf.length[lane], tree_.index(leaf, lane) + 1,
+            queue.push(exactly * leaf.length[lane], 1 + tree_.index(n, lane),
                        static_cast<std::uint32_t>(cones.size()));
             cones.push_back(exactly * metric);
         }
     };
-
-    const auto is_left_as_it_is = [&](const Waiting& w) {
-        return is_below(found.square(), enough * enough, square(cones[w.place]));
+    const auto changes_nothing = [&](const LengthQueue::Waiting& cone) {
+        return enough * cone.length >= found.longest() ||
+               is_below(found.square(), enough * enough, square(cones[cone.place]));
     };
 
-    if (tree_.empty()) return largest;
-    queue.reset(certain * least_length_, found.longest());
-    queue.push(certain * least_length_, 0, 0);
+    cones.clear();
+    const double least = certain * std::min(least_length_, found.longest());
+    queue.reset(least, found.longest());
+    queue.push(least, 0, 0);
     while (queue.advance()) {
-        // A node's cones are in its bucket or a later one: opened first, then all of the bucket are
-        // at hand.
+        // The cones of a node are in its bucket or a later one: with all nodes of the bucket
+        // opened, all cones of the bucket are at hand.
         batch.clear();
         while (queue.has_more()) {
-            const Waiting next = queue.take();
-            if (enough * next.length >= found.longest()) continue;
+            const LengthQueue::Waiting next = queue.take();
             if (next.rank > 0) {
-                if (!is_left_as_it_is(next)) batch.push_back(next);
+                if (!changes_nothing(next)) batch.push_back(next);
+            } else if (enough * next.length >= found.longest()) {
+                continue;
             } else if (tree_.is_leaf(next.place)) {
-                open_leaf(tree_.leaf(next.place));
+                open_leaf(next.place);
             } else {
                 open_node(tree_.node(next.place));
             }
         }
-        std::sort(batch.begin(), batch.end(), [](const Waiting& a, const Waiting& b) {
-            return a.length != b.length ? a.length < b.length : a.rank < b.rank;
-        });
-        for (const Waiting& next : batch) {
-            if (enough * next.length >= found.longest()) break;
-            if (is_left_as_it_is(next)) continue;
+        std::sort(batch.begin(), batch.end());
+        for (const LengthQueue::Waiting& next : batch) {
+            if (changes_nothing(next)) continue;
             if (found.shorten_to(cones[next.place]) && governing != nullptr) {
                 governing->push_back(next.rank - 1);
             }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,14 +20,13 @@ public:
     /// g >= 1. Lengths of `cap` or more do not matter.
     AnisotropicCones(std::span<const PointSource> sources, double g, double cap);
 
-    using Waiting = LengthQueue::Waiting;
     /// Memory of `intersect`, to be kept from one call to the next.
     struct Search {
         /// Cones, by their smallest length, and nodes, by what is below that of all their cones.
         /// The rank of a cone is 1 + the index of its source; that of a node is 0.
         LengthQueue queue;
-        std::vector<Metric> cones;   ///< met so far
-        std::vector<Waiting> batch;  ///< cones of one bucket
+        std::vector<Metric> cones;                ///< met so far
+        std::vector<LengthQueue::Waiting> batch;  ///< cones of one bucket
     };
 
     /// `largest`, no longer than the cap, intersected with the cones at `p`, one after the other.
@@ -51,7 +51,7 @@ private:
 
     double g_;
     double cap_;
-    double least_length_ = 0;  ///< of all sources
+    double least_length_ = std::numeric_limits<double>::infinity();  ///< of all sources
     std::size_t dropped_ = 0;
     double uncertainty_ = 0;  ///< relative, of lengths computed from the metrics given
     TensorTree tree_;

@@ -9,7 +9,8 @@ namespace controlspace {
 
 ConeTreeShape ConeTreeShape::with_leaves_of(std::uint64_t size, std::uint64_t leaf_size) {
     const std::uint64_t leaves = (size + leaf_size - 1) / leaf_size;
-    return {size, leaf_size, leaves, leaves > 1 ? std::bit_width(leaves - 1) : 0};
+    const int depth = leaves > 1 ? static_cast<int>(std::bit_width(leaves - 1)) : 0;
+    return {size, leaf_size, leaves, depth};
 }
 
 std::vector<int> levels_of_eight_children(int depth) {

@@ -13,8 +13,8 @@ namespace controlspace {
 
 /// Shape of a balanced binary tree over `size` items in tree order. Nodes are numbered from the
 /// root, 1; the children of i are 2i and 2i+1; the last 2^depth nodes hold a leaf or, the number of
-/// leaves being no power of two, nothing. All leaves but the last are full. Nothing is stored: which
-/// items a node holds follows from its number.
+/// leaves being no power of two, nothing. All leaves but the last are full. Nothing is stored:
+/// which items a node holds follows from its number.
 struct ConeTreeShape {
     std::uint64_t size = 0;
     std::uint64_t leaf_size = 1;
@@ -34,8 +34,7 @@ struct ConeTreeShape {
 private:
     std::size_t cut(std::uint32_t node, std::uint64_t side) const {
         const int level = std::bit_width(node) - 1;
-        const std::uint64_t leaf =
-            leaves * (node - (std::uint64_t{1} << level) + side) >> level;
+        const std::uint64_t leaf = leaves * (node - (std::uint64_t{1} << level) + side) >> level;
         return std::min(size, leaf_size * leaf);
     }
 };

@@ -7,56 +7,60 @@
 
 namespace controlspace {
 
-/// Things that wait in the order of a length, put in buckets whose lengths differ by 1.6 % at most:
-/// what goes in later than something shorter... Costs less than a heap, where most of what
-/// waits is thrown away in the end.
+/// Things that wait in the order of a length, in buckets whose lengths differ by 1.6 % at most. For
+/// searches that throw away most of what waits: only what is left of a bucket has to be sorted.
 class LengthQueue {
 public:
     struct Waiting {
-        double length;        ///< positive
-        std::uint32_t rank;   ///< the lower first where lengths are equal
-        std::uint32_t place;  ///< of the thing
+        double length;
+        std::uint32_t rank;   ///< the lower comes first where lengths are equal
+        std::uint32_t place;  ///< of the thing, wherever it is kept
         std::uint32_t next;   ///< in the same bucket
+
+        bool operator<(const Waiting& other) const {
+            return length != other.length ? length < other.length : rank < other.rank;
+        }
     };
 
-    /// Empties the queue, for lengths from `least` to `most`.
+    /// Empties the queue. Positive lengths are told apart from `least` to `most`.
     void reset(double least, double most) {
-        first_ = key(least);
-        current_ = 0;
+        first_key_ = key(least);
+        present_ = 0;
         waiting_.clear();
-        heads_.assign(key(most) - first_ + 1, none);
+        buckets_.assign(key(most) - first_key_ + 1, none);
     }
 
+    /// What is shorter than the present bucket goes there; what is too long, to the last.
     void push(double length, std::uint32_t rank, std::uint32_t place) {
-        const std::uint64_t k = std::max(key(length), first_) - first_;
-        std::uint32_t& head = heads_[std::clamp<std::uint64_t>(k, current_, heads_.size() - 1)];
-        waiting_.push_back({length, rank, place, head});
-        head = static_cast<std::uint32_t>(waiting_.size() - 1);
+        const std::uint64_t number = std::max(key(length), first_key_ + present_) - first_key_;
+        std::uint32_t& bucket = buckets_[std::min(number, buckets_.size() - 1)];
+        waiting_.push_back({length, rank, place, bucket});
+        bucket = static_cast<std::uint32_t>(waiting_.size() - 1);
     }
 
-    /// Goes to the shortest bucket that is not empty; false if all are.
+    /// Goes on to the next bucket that holds something; false if none does.
     bool advance() {
-        while (current_ < heads_.size() && heads_[current_] == none) ++current_;
-        return current_ < heads_.size();
+        while (present_ < buckets_.size() && !has_more()) ++present_;
+        return present_ < buckets_.size();
     }
-    /// Whether something is in the present bucket.
-    bool has_more() const { return heads_[current_] != none; }
-    /// Takes something, in no order, out of the present bucket.
+    /// Whether the present bucket holds something.
+    bool has_more() const { return buckets_[present_] != none; }
+    /// Takes something, whatever its length, out of the present bucket.
     Waiting take() {
-        const Waiting taken = waiting_[heads_[current_]];
-        heads_[current_] = taken.next;
+        const Waiting taken = waiting_[buckets_[present_]];
+        buckets_[present_] = taken.next;
         return taken;
     }
 
 private:
     static constexpr std::uint32_t none = ~std::uint32_t{0};
-    // Of positive numbers the bits are in the order of the numbers: the exponent and six bits more.
+    // The exponent and six bits of the mantissa: in the order of the numbers.
     static std::uint64_t key(double length) { return std::bit_cast<std::uint64_t>(length) >> 46; }
 
-    std::uint64_t first_ = 0;
-    std::uint64_t current_ = 0;
-    std::vector<std::uint32_t> heads_;
-    std::vector<Waiting> waiting_;
+    std::uint64_t first_key_ = 0;
+    std::uint64_t present_ = 0;
+    std::vector<std::uint32_t> buckets_;  ///< the last that came in
+    std::vector<Waiting> waiting_;        ///< and what came before it in the same bucket
 };
 
 }  // namespace controlspace

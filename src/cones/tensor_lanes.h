@@ -17,6 +17,12 @@ using Lanes = Eigen::Array<double, lane_count, 1, Eigen::DontAlign>;
 struct TensorLanes {
     Lanes xx, yy, zz, xy, xz, yz;
 
+    static TensorLanes identity() {
+        const Lanes one = Lanes::Ones();
+        const Lanes zero = Lanes::Zero();
+        return {one, one, one, zero, zero, zero};
+    }
+
     Metric operator[](Eigen::Index lane) const {
         return {xx[lane], yy[lane], zz[lane], xy[lane], xz[lane], yz[lane]};
     }
@@ -33,6 +39,8 @@ struct TensorLanes {
 /// Eight vectors.
 struct VectorLanes {
     Lanes x, y, z;
+
+    static VectorLanes zero() { return {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()}; }
 
     Vector operator[](Eigen::Index lane) const { return {x[lane], y[lane], z[lane]}; }
     void set(Eigen::Index lane, const Vector& v) {
