@@ -34,10 +34,10 @@ void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out) const 
             out[i] = h < longest_ ? intersection(largest_, Metric::isotropic(h)) : largest_;
         }
     } else {
-        AnisotropicCones::Queue queue;
+        AnisotropicCones::Search search;
         for (std::size_t i = 0; i < x.size(); ++i) {
-            out[i] = std::get<AnisotropicCones>(cones_).intersect(x[i], largest_, tolerance_, queue,
-                                                                  nullptr);
+            out[i] = std::get<AnisotropicCones>(cones_).intersect(x[i], largest_, tolerance_,
+                                                                  search, nullptr);
         }
     }
 }
@@ -47,7 +47,7 @@ void ConeField::governing(const Point& x, double tolerance, std::vector<std::uin
     sources.clear();
     const auto* isotropic = std::get_if<IsotropicCones>(&cones_);
     if (isotropic == nullptr) {
-        m = std::get<AnisotropicCones>(cones_).intersect(x, largest_, tolerance, memory.queue,
+        m = std::get<AnisotropicCones>(cones_).intersect(x, largest_, tolerance, memory.search,
                                                          &sources);
         return;
     }

@@ -38,7 +38,7 @@ public:
     /// by one thread for one field.
     struct Memory {
         IsotropicCones::Hint hint = 0;
-        AnisotropicCones::Queue queue;
+        AnisotropicCones::Search search;
     };
 
     /// The metric `m` at `x`, and the `sources` that make it so: their indices, in the order of the

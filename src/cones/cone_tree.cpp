@@ -8,9 +8,17 @@
 namespace controlspace {
 
 ConeTreeShape ConeTreeShape::with_leaves_of(std::uint64_t size, std::uint64_t leaf_size) {
-    ConeTreeShape shape{size, 0};
-    while (leaf_size << shape.depth < size) ++shape.depth;
-    return shape;
+    const std::uint64_t leaves = (size + leaf_size - 1) / leaf_size;
+    const int depth = leaves > 1 ? static_cast<int>(std::bit_width(leaves - 1)) : 0;
+    return {size, leaf_size, leaves, depth};
+}
+
+std::vector<int> levels_of_eight_children(int depth) {
+    std::vector<int> levels;
+    for (int level = depth; level > 0; level -= 3) {
+        levels.insert(levels.begin(), std::max(0, level - 3));
+    }
+    return levels;
 }
 
 namespace {
@@ -33,7 +41,7 @@ std::size_t longest_extent(std::span<const ConeTreeItem> items) {
 }
 
 void sort_below(const ConeTreeShape& shape, std::uint32_t node, std::span<ConeTreeItem> items) {
-    if (shape.is_leaf(node)) return;
+    if (shape.is_slot(node)) return;
     const std::size_t begin = shape.begin(node);
     const std::size_t middle = shape.end(2 * node);
     const std::size_t end = shape.end(node);

@@ -146,7 +146,7 @@ void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const PointS
     std::transform(items.begin(), items.end(), indices_.begin(),
                    [](const ConeTreeItem& item) { return item.index; });
 
-    leaves_ = std::vector<Leaf>(items.empty() ? 0 : shape_.first_leaf());
+    leaves_ = std::vector<Leaf>(shape_.leaves);
     tbb::parallel_for(std::size_t{0}, leaves_.size(), [&](std::size_t l) {
         Leaf& leaf = leaves_[l];
         leaf.x.setZero();
@@ -154,8 +154,9 @@ void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const PointS
         leaf.z.setZero();
         leaf.length.setConstant(infinity);
         Eigen::Index lane = 0;
-        for (const ConeTreeItem& item :
-             items_of(shape_.first_leaf() + static_cast<std::uint32_t>(l))) {
+        const std::size_t begin = l * leaf_size;
+        const std::size_t end = std::min<std::size_t>(begin + leaf_size, items.size());
+        for (const ConeTreeItem& item : items.subspan(begin, end - begin)) {
             leaf.x[lane] = item.coordinates[0];
             leaf.y[lane] = item.coordinates[1];
             leaf.z[lane] = item.coordinates[2];
@@ -163,11 +164,7 @@ void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const PointS
         }
     });
 
-    // The root takes up what three levels of the binary tree a node leave over.
-    std::vector<int> levels;
-    for (int level = shape_.depth; level > 0; level -= arity_bits) {
-        levels.insert(levels.begin(), std::max(0, level - arity_bits));
-    }
+    const std::vector<int> levels = levels_of_eight_children(shape_.depth);
     first_of_level_.assign(1, 0);
     for (const int level : levels) {
         first_of_level_.push_back(first_of_level_.back() + (std::size_t{1} << level));
@@ -181,9 +178,11 @@ void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const PointS
         tbb::parallel_for(std::uint32_t{0}, nodes, [&](std::uint32_t n) {
             Node& node = nodes_[first_of_level_[l] + n];
             for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(arity); ++c) {
-                const bool exists = c < children;
-                const std::uint32_t child = n * children + (exists ? c : 0);
-                const Cylinder cylinder(items_of((std::uint32_t{1} << below) + child));
+                const std::uint32_t child = n * children + c;
+                const auto items_of_child =
+                    items_of((std::uint32_t{1} << below) + (c < children ? child : 0));
+                const bool exists = c < children && !items_of_child.empty();
+                const Cylinder cylinder(exists ? items_of_child : items.first(1));
                 node.x[c] = cylinder.centre.x();
                 node.y[c] = cylinder.centre.y();
                 node.z[c] = cylinder.centre.z();
@@ -195,7 +194,7 @@ void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const PointS
                 node.length[c] = !exists ? infinity
                                  : l + 1 < levels.size()
                                      ? nodes_[first_of_level_[l + 1] + child].length.minCoeff()
-                                     : leaves_[child].length.minCoeff();
+                                     : leaves_[shape_.leaf_in(child)].length.minCoeff();
             }
         });
     }
@@ -256,13 +255,13 @@ double IsotropicCones::smallest_length(const Point& p, Hint& hint) const {
 std::uint32_t IsotropicCones::source_of(const Point& p, double smallest, Hint hint) const {
     Eigen::Index lane = 0;
     while (length_at(leaves_[hint], lane, p) != smallest) ++lane;
-    return indices_[shape_.begin(shape_.first_leaf() + hint) + static_cast<std::size_t>(lane)];
+    return indices_[hint * leaf_size + static_cast<std::size_t>(lane)];
 }
 
 double IsotropicCones::search(const Point& p, double cap, Hint& hint) const {
     if (leaves_.empty()) return cap;
     double smallest = cap;
-    visit_leaf(std::min<std::uint32_t>(hint, shape_.first_leaf() - 1), p, smallest, hint);
+    visit_leaf(std::min(hint, static_cast<Hint>(leaves_.size() - 1)), p, smallest, hint);
     struct Postponed {
         double bound;
         std::uint32_t level;
@@ -277,7 +276,7 @@ double IsotropicCones::search(const Point& p, double cap, Hint& hint) const {
         const Postponed next = stack[--height];
         if (next.bound >= smallest) continue;
         if (next.level == levels) {
-            visit_leaf(next.node, p, smallest, hint);
+            visit_leaf(static_cast<Hint>(shape_.leaf_in(next.node)), p, smallest, hint);
             continue;
         }
         const Node& node = nodes_[first_of_level_[next.level] + next.node];

@@ -44,8 +44,7 @@ public:
 
 private:
     static constexpr std::uint64_t leaf_size = 16;
-    static constexpr int arity_bits = 3;
-    static constexpr int arity = 1 << arity_bits;
+    static constexpr int arity = 8;
     // Unaligned, so that vectors of them take memory as everything else does.
     using Lanes = Eigen::Array<double, leaf_size, 1, Eigen::DontAlign>;
     using Children = Eigen::Array<double, arity, 1, Eigen::DontAlign>;

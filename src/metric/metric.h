@@ -34,6 +34,13 @@ inline Metric operator*(double factor, const Metric& m) {
             factor * m.xy, factor * m.xz, factor * m.yz};
 }
 
+/// M^2.
+inline Metric square(const Metric& m) {
+    return {m.xx * m.xx + m.xy * m.xy + m.xz * m.xz, m.xy * m.xy + m.yy * m.yy + m.yz * m.yz,
+            m.xz * m.xz + m.yz * m.yz + m.zz * m.zz, m.xy * (m.xx + m.yy) + m.xz * m.yz,
+            m.xz * (m.xx + m.zz) + m.xy * m.yz,      m.yz * (m.yy + m.zz) + m.xy * m.xz};
+}
+
 inline bool is_axis_aligned(const Metric& m) { return m.xy == 0 && m.xz == 0 && m.yz == 0; }
 inline bool is_isotropic(const Metric& m) {
     return is_axis_aligned(m) && m.xx == m.yy && m.xx == m.zz;

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+
+#include "geometry/point.h"
+#include "metric/metric.h"
+
+namespace controlspace {
+
+/// The same number of eight things, to be computed with at once. Unaligned, so that vectors of
+/// lanes take memory as everything else does.
+inline constexpr int lane_count = 8;
+using Lanes = Eigen::Array<double, lane_count, 1, Eigen::DontAlign>;
+
+/// Eight symmetric tensors.
+struct TensorLanes {
+    Lanes xx, yy, zz, xy, xz, yz;
+
+    static TensorLanes identity() {
+        const Lanes one = Lanes::Ones();
+        const Lanes zero = Lanes::Zero();
+        return {one, one, one, zero, zero, zero};
+    }
+
+    Metric operator[](Eigen::Index lane) const {
+        return {xx[lane], yy[lane], zz[lane], xy[lane], xz[lane], yz[lane]};
+    }
+    void set(Eigen::Index lane, const Metric& m) {
+        xx[lane] = m.xx;
+        yy[lane] = m.yy;
+        zz[lane] = m.zz;
+        xy[lane] = m.xy;
+        xz[lane] = m.xz;
+        yz[lane] = m.yz;
+    }
+};
+
+/// Eight vectors.
+struct VectorLanes {
+    Lanes x, y, z;
+
+    static VectorLanes zero() { return {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()}; }
+
+    Vector operator[](Eigen::Index lane) const { return {x[lane], y[lane], z[lane]}; }
+    void set(Eigen::Index lane, const Vector& v) {
+        x[lane] = v.x();
+        y[lane] = v.y();
+        z[lane] = v.z();
+    }
+};
+
+/// From `v` to `p`.
+inline VectorLanes displacements(const VectorLanes& v, const Point& p) {
+    return {p.x() - v.x, p.y() - v.y, p.z() - v.z};
+}
+
+/// M^2.
+inline TensorLanes square(const TensorLanes& m) {
+    return {m.xx.square() + m.xy.square() + m.xz.square(),
+            m.xy.square() + m.yy.square() + m.yz.square(),
+            m.xz.square() + m.yz.square() + m.zz.square(),
+            m.xy * (m.xx + m.yy) + m.xz * m.yz,
+            m.xz * (m.xx + m.zz) + m.xy * m.yz,
+            m.yz * (m.yy + m.zz) + m.xy * m.xz};
+}
+
+/// |M v|.
+inline Lanes lengths_of_products(const TensorLanes& m, const VectorLanes& v) {
+    return ((m.xx * v.x + m.xy * v.y + m.xz * v.z).square() +
+            (m.xy * v.x + m.yy * v.y + m.yz * v.z).square() +
+            (m.xz * v.x + m.yz * v.y + m.zz * v.z).square())
+        .sqrt();
+}
+
+/// |M^-1 v|, M positive definite: to the bit what `metric_length` gives, but for axis-aligned M.
+inline Lanes metric_lengths(const TensorLanes& m, const VectorLanes& v) {
+    const Lanes i0 = m.xx.inverse();
+    const Lanes l10 = m.xy * i0;
+    const Lanes l20 = m.xz * i0;
+    const Lanes i1 = (m.yy - l10 * m.xy).inverse();
+    const Lanes left = m.yz - l20 * m.xy;
+    const Lanes l21 = left * i1;
+    const Lanes i2 = (m.zz - l20 * m.xz - l21 * left).inverse();
+    const Lanes y = v.y - l10 * v.x;
+    const Lanes z = (v.z - l20 * v.x - l21 * y) * i2;
+    const Lanes b = y * i1 - l21 * z;
+    return (((v.x * i0 - l10 * b - l20 * z).square() + b.square()) + z.square()).sqrt();
+}
+
+/// Pivots of a factorisation: the tensor is positive definite where all three are positive.
+struct Pivots {
+    Lanes xx, yy, zz;
+
+    bool are_positive(Eigen::Index lane) const {
+        return (xx[lane] > 0) & (yy[lane] > 0) & (zz[lane] > 0);
+    }
+};
+
+/// Of `b_factor` * b2 - a2, made less by what rounding leaves in doubt. The factorisation's
+/// backward error is a few epsilon of the largest entry, which the diagonal gives up in advance.
+inline Pivots room_below(const Metric& a2, const Lanes& b_factor, const TensorLanes& b2) {
+    constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+    const Lanes doubt = rounding * b_factor * (b2.xx + b2.yy + b2.zz);
+    const Lanes xx = b_factor * b2.xx - a2.xx - doubt;
+    const Lanes xy = b_factor * b2.xy - a2.xy;
+    const Lanes xz = b_factor * b2.xz - a2.xz;
+    const Lanes yx = xy / xx;
+    const Lanes zx = xz / xx;
+    const Lanes yy = b_factor * b2.yy - a2.yy - doubt - yx * xy;
+    const Lanes yz = b_factor * b2.yz - a2.yz - zx * xy;
+    const Lanes zz = b_factor * b2.zz - a2.zz - doubt - zx * xz - yz.square() / yy;
+    return {xx, yy, zz};
+}
+
+}  // namespace controlspace
