@@ -170,7 +170,7 @@ Command parse_command_line(int argc, const char* const* argv) {
     compare
         ->add_option("STUDY", options.study_file,
                      "Study file (.toml); left out: the paper's sphere at rho = tau = 1, in both "
-                     "modes, or one run if sources, law, schedule or reference are given")
+                     "modes, or one run if sources, field, law, schedule or reference are given")
         ->option_text("FILE.toml");
     add_options(*compare, run_settings(), Run{},
                 "Settings of cases (lists with commas; all combinations are run)", given);

@@ -19,7 +19,8 @@ Study starting_point(const CompareOptions& options) {
     if (!options.study_file.empty()) return read_study(options.study_file);
     bool one_mode = options.as_published;
     for (const auto& [key, words] : options.settings) {
-        one_mode |= key == "sources" || key == "law" || key == "schedule" || key == "reference";
+        one_mode |= key == "sources" || key == "field" || key == "law" || key == "schedule" ||
+                    key == "reference";
     }
     return one_mode ? Study{} : parse_study(quick_study_text(), "built-in study");
 }

@@ -19,11 +19,12 @@ const Setting<Study> table[] = {
      [](Study& s, const SettingValues& v) { s.sources.field.slope = number(v.front()); },
      [](const Study& s) { return one(s.sources.field.slope); }},
     {"field_lengths", number_type, 2, "",
-     "Lengths across and along the surface of the field sphere or planes, there [length]; one "
-     "number: isotropic",
+     "Lengths across and along the surface of the field sphere or planes, there "
+     "[length]",
      [](Study& s, const SettingValues& v) {
-         s.sources.field.lengths.across = positive(number(v.front()));
-         s.sources.field.lengths.along = positive(number(v.back()));
+         if (v.size() != 2) throw InputError("give two numbers: across along");
+         s.sources.field.lengths.across = positive(number(v[0]));
+         s.sources.field.lengths.along = positive(number(v[1]));
      },
      [](const Study& s) {
          const SurfaceLengths& lengths = s.sources.field.lengths;

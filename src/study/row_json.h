@@ -13,7 +13,8 @@ namespace controlspace {
 /// a row with an `error` all measures are.
 nlohmann::ordered_json to_json(const Row& row);
 
-/// The way back, for rows of a study of `sources`, whose rho, s_a and s_n are the row's. What is
+/// The way back, for rows of a study of `sources`, whose sampling, rho, s_a, s_n and kind of
+/// field are the row's. What is
 /// not written stays as it is in an empty row: the worst place, the Riemannian maximum of the finer
 /// probes, the checksum of access in order. `coarser_max` and `coarser_share` are no numbers in
 /// rows that have none. Throws InputError or nlohmann::json::exception for what is no such row.

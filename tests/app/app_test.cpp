@@ -77,6 +77,23 @@ TEST_CASE("the paper's values are shown beside rows that were run as published")
     CHECK_THAT(file_text(box / "out" / "summary.md"), Contains("## Table 4"));
 }
 
+TEST_CASE("a field with irregular sources on top is followed by grids") {
+    const Sandbox box("mixture");
+    const Outcome outcome = box.run(
+        "compare --field ugawg-polar-2 --centre 0.5 0.5 0.5 --radius 0.3 --h 0.05 "
+        "--sampling random,poisson --structures uniform-trilinear --voxel 0.1 --output out" +
+        quick);
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    CHECK_THAT(outcome.out, Contains("field ugawg-polar-2, random sources") &&
+                                Contains("field ugawg-polar-2, poisson sources"));
+    const auto json = nlohmann::json::parse(file_text(box / "out" / "results.json"));
+    REQUIRE(json["rows"].size() == 2);
+    CHECK(json["rows"][1]["sampling"] == "poisson");
+    CHECK(json["rows"][1]["field"] == "ugawg-polar-2");
+    CHECK(json["settings"]["centre"] == nlohmann::json{0.5, 0.5, 0.5});
+}
+
 TEST_CASE("a domain may be given, and negative numbers in it") {
     const Sandbox box("domain");
     box.write("s.csv", sources_csv);
@@ -135,6 +152,15 @@ TEST_CASE("bad input ends with one line and status 2, and writes nothing") {
         {"compare --sources s.csv --domain 0 1e300 0 1 0 1", "--domain"},
         {"compare --sources s.csv --rho 0.5", "rho"},
         {"compare --sources s.csv --radius 2", "radius"},
+        {"compare --sources none", "neither sources nor a field"},
+        {"compare --field cube", "--field: unknown value 'cube'"},
+        {"compare --field ugawg-linear", "outside the domain [0, 1] x [0, 1] x [0, 1]"},
+        {"compare --sources none --field ugawg-linear --domain 0 1 0 1 0 2", "ugawg-linear"},
+        {"compare --field sphere --field-radius nan", "--field-radius"},
+        {"compare --field sphere --field-lengths 0.1 -1", "--field-lengths: -1 is not positive"},
+        {"compare --field-radius 0.5 --sources sphere", "field_radius"},
+        {"compare --sources s.csv --sampling random", "sampling"},
+        {"compare --sampling odd", "--sampling: unknown value 'odd'"},
         {"compare --name 'two\nlines'", "--name"},
         {"compare --sources s.csv --as-published", "published-sphere"},
         {"compare --sources s.csv --output file", "file"},

@@ -134,11 +134,6 @@ TEST_CASE("keys of a run at the top are for all runs that do not set them") {
     CHECK(study.runs[1].rho == std::vector{0.2});
 }
 
-TEST_CASE("one length of a field is that in all directions") {
-    const SurfaceLengths lengths = parse("field_lengths = 0.02").sources.field.lengths;
-    CHECK(lengths == SurfaceLengths{.across = 0.02, .along = 0.02});
-}
-
 TEST_CASE("a study may have no sources, or those of a file called so") {
     CHECK(parse("sources = 'none'").sources.kind == SourcesKind::none);
     CHECK(parse("sources = './none'").sources.kind == SourcesKind::file);
@@ -188,6 +183,7 @@ TEST_CASE("what is wrong in a study file is named with its line") {
         {"field = 'cube'", "field: unknown value 'cube': give none, sphere, planes, ugawg-linear"},
         {"field_lengths = [0.1, nan]", "field_lengths: nan is not a finite number"},
         {"field_lengths = [0.1, -1]", "field_lengths: -1 is not positive"},
+        {"field_lengths = 0.1", "field_lengths: give two numbers: across along"},
         {"field_lengths = [1, 2, 3]", "field_lengths: 3 values: give 2 at most"},
         {"field_radius = 0", "field_radius: 0 is not positive"},
         {"field_growth = -0.1", "field_growth: -0.1 is out of range"},
