@@ -32,11 +32,14 @@ std::string variant_label(const Case& c) {
         label += fmt::format(", c {:.4g}", *c.voxel_factor);
     }
     if (c.prune_delta) label += fmt::format(", pruned at {:.4g}", *c.prune_delta);
+    if (c.target_delta) label += fmt::format(", δ <= {:.4g}", *c.target_delta);
     return label;
 }
 
 std::string structure_label(const Case& c) {
-    return c.split ? fmt::format("{} {}", c.structure, name_of(*c.split)) : variant_label(c);
+    // An adapted tree is cut by no rule.
+    const bool by_rule = c.split && !c.target_delta;
+    return by_rule ? fmt::format("{} {}", c.structure, name_of(*c.split)) : variant_label(c);
 }
 
 std::string setting_label(const Case& c) {

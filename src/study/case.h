@@ -52,6 +52,8 @@ struct Case {
     std::optional<double> voxel = {};         ///< grids only; none: by tau and the sources
     std::optional<double> voxel_factor = {};  ///< grids in levels only
     std::optional<double> prune_delta = {};   ///< OpenVDB only; none: nothing is pruned
+    /// Trees only: adapted to this δ in place of insertion and gradation; none: they are not.
+    std::optional<double> target_delta = {};
     GradationLaw law = GradationLaw::cone;
     GradationSchedule schedule = GradationSchedule::queue;
     ReferenceKind reference = ReferenceKind::exact;

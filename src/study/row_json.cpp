@@ -37,6 +37,7 @@ void add_setting(Json& json, const Case& c) {
     json["voxel"] = or_null(c.voxel);
     json["voxel_factor"] = or_null(c.voxel_factor);
     json["prune_delta"] = or_null(c.prune_delta);
+    json["target_delta"] = or_null(c.target_delta);
     json["law"] = name_of(c.law);
     json["schedule"] = name_of(c.schedule);
     json["reference"] = name_of(c.reference);
@@ -130,6 +131,7 @@ Case setting_from(const Json& json, const SourcesChoice& sources) {
     c.voxel = newer_from<double>(json, "voxel");
     c.voxel_factor = newer_from<double>(json, "voxel_factor");
     c.prune_delta = newer_from<double>(json, "prune_delta");
+    c.target_delta = newer_from<double>(json, "target_delta");
     c.law = named<GradationLaw>(json, "law");
     c.schedule = named<GradationSchedule>(json, "schedule");
     c.reference = named<ReferenceKind>(json, "reference");

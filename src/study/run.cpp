@@ -66,8 +66,8 @@ private:
 void require_follows(const CatalogueEntry& entry) {
     if (entry.has_voxels && !entry.has_levels) return;
     throw InputError(
-        "this structure follows point sources only: an analytic field takes a grid, or a tree that "
-        "is adapted to it");
+        "this structure follows point sources only: an analytic field takes a grid, or a tree with "
+        "target_delta");
 }
 
 void follow_at_nodes(ControlSpace& space, const MetricField& field) {
@@ -90,6 +90,17 @@ const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> ca
 std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
                                             const CatalogueEntry& entry, const Workload& workload,
                                             Measures& m, const StudyObserver& observer) {
+    if (c.target_delta) {
+        tell(observer.phase_started, "adaptation");
+        const auto start = std::chrono::steady_clock::now();
+        auto space = entry.make(space_options(study, c, workload));
+        const AdaptationReport report =
+            space->adapt({workload.sources, workload.field.field, c.g_r, *c.target_delta});
+        m.insert_s = seconds_since(start);
+        m.footprint.remark = fmt::format("δ {:.4g} reached{}{}", report.reached,
+                                         report.shortfall.empty() ? "" : "; ", report.shortfall);
+        return space;
+    }
     if (has_field(c.sources)) {
         tell(observer.phase_started, "adaptation");
         require_follows(entry);
@@ -118,7 +129,9 @@ Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry
                   const StudyObserver& observer) {
     Measures m;
     const auto space = make_and_fill(study, c, entry, workload, m, observer);
+    const std::string remark = std::move(m.footprint.remark);
     m.footprint = space->footprint();
+    if (!remark.empty()) m.footprint.remark = remark;
 
     tell(observer.phase_started, "access");
     const auto random = random_points(workload.domain, study.access_points, study.seed);

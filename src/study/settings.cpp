@@ -245,6 +245,10 @@ const Setting<Run> run_table[] = {
     {"prune_delta", number_type, 0, "",
      "Non-conformity up to which OpenVDB grids join voxels after gradation; 0: they do not",
      set_not_negative<&Run::prune_delta>, get_numbers<&Run::prune_delta>},
+    {"target_delta", number_type, 0, "",
+     "Non-conformity to the exact field that trees are adapted to, in place of insertion and "
+     "gradation; 0: they are not",
+     set_not_negative<&Run::target_delta>, get_numbers<&Run::target_delta>},
     {"law", text_type, 0, "", "Law of gradation: cone, mean-length", set_names<&Run::law>,
      get_names<&Run::law>},
     {"schedule", text_type, 0, "",

@@ -159,6 +159,13 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
     } else if (entry.group != "baselines") {
         multiply(cases, run.octree_depth, [](Case& c, int depth) { c.max_depth = depth; });
     }
+    if (entry.group != "baselines") {
+        multiply(cases, run.target_delta, [&](Case& c, double delta) {
+            c.target_delta = unless_zero(delta);
+            // Adapted trees heed no rule: one of the rules stands for all.
+            if (c.target_delta && c.split) c.split = run.splits.front();
+        });
+    }
     if (entry.has_voxels) {
         multiply(cases, run.voxel, [](Case& c, double edge) { c.voxel = unless_zero(edge); });
     }

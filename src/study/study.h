@@ -31,7 +31,8 @@ struct Run {
     std::vector<int> octree_depth{14};
     std::vector<double> voxel{0};  ///< 0: by tau and the smallest length that is asked for
     std::vector<double> voxel_factor{1};
-    std::vector<double> prune_delta{0};  ///< 0: no pruning
+    std::vector<double> prune_delta{0};   ///< 0: no pruning
+    std::vector<double> target_delta{0};  ///< 0: no adaptation
     std::vector<GradationLaw> law{GradationLaw::cone};
     std::vector<GradationSchedule> schedule{GradationSchedule::queue};
     std::vector<ReferenceKind> reference{ReferenceKind::exact};

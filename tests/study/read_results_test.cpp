@@ -28,6 +28,7 @@ std::vector<Row> some_rows() {
     rows[1].setting.voxel = 0.01;
     rows[1].setting.voxel_factor = 0.7;
     rows[1].setting.prune_delta = 0.05;
+    rows[1].setting.target_delta = 0.1;
     rows[1].measures->footprint.bytes_published.reset();
     rows.push_back({published_case(), 36186, std::nullopt, "out of memory, \"really\""});
     return rows;
@@ -94,7 +95,7 @@ TEST_CASE("results of before grids, samplings and fields had settings are read")
     const Folder folder("older");
     Json json = valid_json();
     for (Json& row : json["rows"]) {
-        for (const char* field : {"voxel", "voxel_factor", "prune_delta", "sampling", "field"})
+        for (const char* field : {"voxel", "voxel_factor", "prune_delta", "target_delta", "sampling", "field"})
             row.erase(field);
     }
     folder.write(json.dump());

@@ -118,6 +118,24 @@ TEST_CASE("reference and sources are made once for the cases that share them") {
     CHECK(phases["insertion"] == 16);
 }
 
+TEST_CASE("with a target, trees are adapted, once for all rules, and say what they reached") {
+    Study study = small_study({"K_V", "K_oL"});
+    study.runs[0].splits = {SplitRule::middle, SplitRule::golden};
+    study.runs[0].target_delta = {0, 0.3};
+    const auto rows = run(study, tree_catalogue());
+    REQUIRE(rows.size() == 5);
+    for (const Row& row : rows) {
+        REQUIRE(row.measures);
+        if (!row.setting.target_delta) {
+            CHECK(row.measures->footprint.remark.empty());
+            continue;
+        }
+        CHECK(row.measures->footprint.remark.find("reached") != std::string::npos);
+        CHECK(row.measures->accuracy.max <= 0.3);
+        CHECK(structure_label(row.setting) == row.setting.structure + ", δ <= 0.3");
+    }
+}
+
 TEST_CASE("a study that cannot be run is refused before anything runs") {
     Study study = small_study({"K_L"});
     study.domain = Box{Point::Constant(0), Point::Constant(1)};
