@@ -97,6 +97,9 @@ std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
         const AdaptationReport report =
             space->adapt({workload.sources, workload.field.field, c.g_r, *c.target_delta});
         m.insert_s = seconds_since(start);
+        const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
+        m.gradation.largest_ratio_left =
+            largest_gradation(nodes.graph, nodes.metrics, GradationLaw::cone);
         m.footprint.remark = fmt::format("δ {:.4g} reached{}{}", report.reached,
                                          report.shortfall.empty() ? "" : "; ", report.shortfall);
         return space;
