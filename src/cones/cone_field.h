@@ -23,11 +23,13 @@ class ConeField {
 public:
     /// Positions must be finite, metrics positive definite, g >= 1. Builds on all of TBB's threads.
     ///
-    /// With a `tolerance`, a cone is passed over where it would shorten no length of the metric
+    /// With a `tolerance` t, a cone is passed over where it would shorten no length of the metric
     /// reached so far by more than that fraction. The answer is then longer than no cone by more
     /// than this factor, but other cones may be met on the way, so it may differ a little more from
-    /// the exact one. 0, exact, by default; without effect on isotropic sources. For 895534 sources
-    /// in a thin layer on a sphere 1e-4 halves the time of a query, at δ of about 1e-8.
+    /// the exact one. 0, exact, by default; without effect on isotropic sources. On spheres of
+    /// layered sources (anisotropies of 4 and 50, 36186 and 895534 sources, 60 to 2000 random
+    /// places, t from 1e-6 to 1e-2) the non-conformity to the exact field was at most 2.3 t^2; 1e-3
+    /// takes 60 % of the time, 1e-2 half.
     ConeField(std::span<const PointSource> sources, double g, const Metric& largest,
               double tolerance = 0);
 

@@ -54,8 +54,9 @@ void require_usable(std::span<const PointSource> sources, double g, const Metric
 
 class ExactReference : public MetricField {
 public:
-    ExactReference(std::span<const PointSource> sources, double g, const Metric& largest)
-        : field_(sources, g, largest) {}
+    ExactReference(std::span<const PointSource> sources, double g, const Metric& largest,
+                   double tolerance)
+        : field_(sources, g, largest, tolerance) {}
 
     void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
         evaluate_blocks(x, out,
@@ -104,9 +105,13 @@ private:
 }  // namespace
 
 std::unique_ptr<MetricField> exact_reference(std::vector<PointSource> sources, double g,
-                                             const Metric& largest) {
+                                             const Metric& largest, double tolerance) {
     require_usable(sources, g, largest);
-    return std::make_unique<ExactReference>(sources, g, largest);
+    if (!std::isfinite(tolerance) || tolerance < 0) {
+        throw InputError(
+            fmt::format("tolerance {} of the reference: give a finite one >= 0", tolerance));
+    }
+    return std::make_unique<ExactReference>(sources, g, largest, tolerance);
 }
 
 std::unique_ptr<MetricField> brute_force_reference(std::vector<PointSource> sources, double g,

@@ -107,7 +107,7 @@ std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
     if (has_field(c.sources)) {
         tell(observer.phase_started, "adaptation");
         require_follows(entry);
-        const auto field = make_reference(c, workload);
+        const auto field = make_reference(study, c, workload);
         const auto start = std::chrono::steady_clock::now();
         auto space = entry.make(space_options(study, c, workload));
         follow_at_nodes(*space, *field);

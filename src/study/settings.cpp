@@ -192,6 +192,13 @@ const Setting<Study> general_table[] = {
          s.fine_probe_grid = integer_within<int>(v.front(), 1, 300);
      },
      [](const Study& s) { return one(s.fine_probe_grid); }},
+    {"reference_tolerance", number_type, 1, "",
+     "Exact reference: pass over anisotropic sources that would shorten a length by less than this "
+     "fraction t; errs by a delta of 2 t^2 or so, and takes less time [1]",
+     [](Study& s, const SettingValues& v) {
+         s.reference_tolerance = within(number(v.front()), 0, 0.1);
+     },
+     [](const Study& s) { return one(s.reference_tolerance); }},
     {"output", text_type, 1, "", "New folder for the results; left out: results/NAME-DATE-TIME",
      [](Study& s, const SettingValues& v) { s.output = text(v.front()); },
      [](const Study& s) { return s.output.empty() ? SettingValues{} : SettingValues{s.output}; }},

@@ -53,7 +53,8 @@ struct Study {
     int access_repeats = 9;
     int probe_grid = 30;        ///< n of the n^3 cell centres for δ_R, and for access in order
     int fine_probe_grid = 101;  ///< n of the finer ones
-    std::string output;         ///< folder; empty: results/NAME-DATE-TIME
+    double reference_tolerance = 0;  ///< of the exact reference, see cones/cone_field.h
+    std::string output;              ///< folder; empty: results/NAME-DATE-TIME
     std::vector<Run> runs{1};
 };
 

@@ -84,20 +84,21 @@ SpaceOptions space_options(const Study& study, const Case& c, const Workload& wo
     return options;
 }
 
-std::shared_ptr<const MetricField> make_reference(const Case& c, const Workload& workload) {
+std::shared_ptr<const MetricField> make_reference(const Study& study, const Case& c,
+                                                  const Workload& workload) {
     const double largest = workload.domain.half_diagonal();
     if (c.reference == ReferenceKind::published_sphere) {
         const SourcesChoice& s = c.sources;
         return published_sphere_reference(s.radius, s.h * s.s_a, c.g_r, largest);
     }
-    std::shared_ptr<const MetricField> cones =
-        exact_reference(workload.sources, c.g_r, Metric::isotropic(largest));
+    std::shared_ptr<const MetricField> cones = exact_reference(
+        workload.sources, c.g_r, Metric::isotropic(largest), study.reference_tolerance);
     if (!workload.field.field) return cones;
     return mixture({std::move(cones), workload.field.field});
 }
 
 ReferenceProbes make_reference_probes(const Study& study, const Case& c, const Workload& workload) {
-    const auto field = make_reference(c, workload);
+    const auto field = make_reference(study, c, workload);
     return {make_probes(*field, cell_centres(workload.domain, study.probe_grid)),
             make_probes(*field, cell_centres(workload.domain, study.fine_probe_grid))};
 }

@@ -275,7 +275,12 @@ TEST_CASE("What no reference can be made of is named") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double infinity = std::numeric_limits<double>::infinity();
     const PointSource good{Point::Zero(), wide};
-    for (const auto make : {exact_reference, brute_force_reference}) {
+    const auto exact = [](std::vector<PointSource> sources, double g, const Metric& largest) {
+        return exact_reference(std::move(sources), g, largest);
+    };
+    CHECK_THROWS_WITH(exact_reference({good}, 1.25, wide, -1), Catch::Contains("tolerance -1"));
+    CHECK_THROWS_AS(exact_reference({good}, 1.25, wide, nan), InputError);
+    for (const auto make : {+exact, brute_force_reference}) {
         for (const double g : {0.999, -1.0, nan, infinity}) {
             CHECK_THROWS_AS(make({good}, g, wide), InputError);
         }

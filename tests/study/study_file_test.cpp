@@ -51,6 +51,7 @@ TEST_CASE("every key of a study file is read") {
         access_repeats = 5
         probe_grid = 12
         fine_probe_grid = 13
+        reference_tolerance = 0.001
         output = "out"
         field_centre = [1, 2, 3]
         field_radius = 0.75
@@ -96,6 +97,7 @@ TEST_CASE("every key of a study file is read") {
     CHECK(study.access_repeats == 5);
     CHECK(study.probe_grid == 12);
     CHECK(study.fine_probe_grid == 13);
+    CHECK(study.reference_tolerance == 0.001);
     CHECK(study.output == "out");
     const FieldChoice& field = study.sources.field;
     CHECK(field.centre == Point(1, 2, 3));
@@ -176,6 +178,7 @@ TEST_CASE("what is wrong in a study file is named with its line") {
         {"domain = [0, 1]", "domain: give six numbers"},
         {"domain = [0, 1, 0, 1, 1, 1]", "no extent along z"},
         {"fine_probe_grid = 100000", "out of range"},
+        {"reference_tolerance = -1e-3", "out of range"},
         {"name = 'a/b'", "cannot name a folder"},
         {"sources = ''", "sources: no name"},
         {"centre = [0, 1]", "centre: give three numbers: x y z"},

@@ -78,7 +78,7 @@ TEST_CASE("the reference of a field with sources is the intersection of both") {
     c.sources.field.kind = FieldKind::planes;
     c.sources.field.lengths = {.across = 0.02, .along = 0.3};
     const Workload mixed = make_workload(study, c.sources);
-    const auto reference = make_reference(c, mixed);
+    const auto reference = make_reference(study, c, mixed);
     const double largest = mixed.domain.half_diagonal();
     const auto cones = exact_reference(mixed.sources, c.g_r, Metric::isotropic(largest));
     Draw draw(1);
@@ -92,7 +92,7 @@ TEST_CASE("the reference of a field with sources is the intersection of both") {
     c.sources.kind = SourcesKind::none;
     c.sources.field.lengths.growth = 100;
     const Workload alone = make_workload(study, c.sources);
-    const auto field = make_reference(c, alone);
+    const auto field = make_reference(study, c, alone);
     CHECK(value_at(*field, {-0.5, 0.9, 0}).xx == Approx(0.02).epsilon(1e-12));
     CHECK(difference(value_at(*field, {1, 1, 1}), Metric::isotropic(largest)) < 1e-12);
 }
@@ -107,4 +107,28 @@ TEST_CASE("sources follow the sampling and the seed of the study") {
     CHECK_FALSE(first == regular);
     study.seed = 2;
     CHECK_FALSE(make_workload(study, choice).sources == first);
+}
+
+TEST_CASE("the reference of anisotropic sources is exact unless the study has a tolerance") {
+    Study study = small_study();
+    Case c;
+    c.sources = study.sources;
+    c.sources.s_n = 0.25;
+    const Workload workload = make_workload(study, c.sources);
+    const Metric largest = Metric::isotropic(workload.domain.half_diagonal());
+    const auto is_that_of = [&](double tolerance, double asked_of_study) {
+        study.reference_tolerance = asked_of_study;
+        const auto field = exact_reference(workload.sources, c.g_r, largest, tolerance);
+        const auto reference = make_reference(study, c, workload);
+        Draw draw(1);
+        bool same = true;
+        for (int i = 0; i < 50; ++i) {
+            const Point p(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
+            same = same && value_at(*reference, p) == value_at(*field, p);
+        }
+        return same;
+    };
+    CHECK(is_that_of(0, 0));
+    CHECK(is_that_of(0.05, 0.05));
+    CHECK_FALSE(is_that_of(0, 0.05));
 }
