@@ -193,14 +193,18 @@ Command parse_command_line(int argc, const char* const* argv) {
     paper
         ->add_option("INPUT", paper_options.inputs,
                      "Folders of results to read, or a study file (.toml) to run; left out: the "
-                     "paper's tables at rho = 1 and the experiments")
+                     "paper's tables at rho = 1, and the experiments")
         ->option_text("FOLDER ... | FILE.toml");
-    paper->add_flag("--full", paper_options.full, "The paper's rho = 0.2 too (many minutes)");
+    paper->add_flag("--full", paper_options.full, "Without INPUT: the paper's rho = 0.2 too");
+    paper->add_flag("--experiments", paper_options.experiments,
+                    "With INPUT: run the experiments on why cells differ, at the settings of its "
+                    "cells, unless they lie in its folder");
     paper
         ->add_option("--output", paper_options.output,
                      "New folder for the results; left out: results/NAME-DATE-TIME")
         ->option_text("TEXT");
     paper->add_flag("--quiet", paper_options.quiet, "No progress on standard error");
+    paper->footer(statuses);
 
 #ifdef CONTROLSPACE_OPENVDB
     ExportOptions export_options;

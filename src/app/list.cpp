@@ -36,6 +36,7 @@ std::string list_text() {
     const Entry splits[] = {
         {name_of(SplitRule::middle), "middle of the longest axis"},
         {name_of(SplitRule::golden), "golden section of the longest axis, nearer to the source"},
+        {name_of(SplitRule::exact_golden), "the same with sections to all digits, not to five"},
         {name_of(SplitRule::metric), "so that the source's part is l_min long in its metric"}};
     const Entry laws[] = {
         {name_of(GradationLaw::cone), "h1 <= h0 + (g_r - 1) |v|, as in the exact reference"},

@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
         } else if (std::holds_alternative<ListCommand>(command)) {
             print(list_text());
         } else if (const auto* paper_options = std::get_if<PaperOptions>(&command)) {
-            paper(*paper_options);
+            return paper(*paper_options) ? 0 : 3;
 #ifdef CONTROLSPACE_OPENVDB
         } else if (const auto* export_options = std::get_if<ExportOptions>(&command)) {
             export_vdb(*export_options);

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "app/run_study.h"
@@ -22,14 +23,46 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the results of the second built-in study lie, in the folder of the first.
-constexpr std::string_view tie_order_folder = "tie-order";
+/// A built-in study of experiments, and where its results lie in the folder of the cells.
+struct Experiments {
+    std::string_view folder;
+    std::string_view (*study_text)();
+};
+constexpr Experiments all_experiments[] = {{"experiments", experiments_study_text},
+                                           {"tie-order-x", tie_order_x_study_text},
+                                           {"tie-order-zx", tie_order_zx_study_text}};
+
+Study built_in(std::string_view text) { return parse_study(text, "built-in study"); }
 
 struct Findings {
     PaperEvidence evidence;
     std::vector<std::string> origins;  ///< of the evidence, a line each
     fs::path folder;                   ///< for the page
+    bool all_measured = true;
 };
+
+void add(Findings& findings, const Study& study, std::span<const Row> rows,
+         const Provenance& provenance, bool complete) {
+    findings.evidence.add(study, rows);
+    findings.origins.push_back(origin_text(provenance, complete));
+    for (const Row& row : rows) findings.all_measured &= row.error.empty();
+}
+
+fs::path run(Findings& findings, const Study& study, const PaperOptions& options,
+             Interruption& interruption) {
+    const FinishedStudy finished =
+        run_study(study, options.command_line, options.quiet, interruption);
+    add(findings, finished.study, finished.rows, finished.provenance, true);
+    return finished.folder;
+}
+
+void read(Findings& findings, const fs::path& folder) {
+    const StoredResults results = read_results(folder);
+    if (!results.complete) {
+        spdlog::warn("{}: the results are not complete: cases are missing", folder.string());
+    }
+    add(findings, results.study, results.rows, results.provenance, results.complete);
+}
 
 bool has_paper_cases(const Study& study) {
     const auto cases = expand(study, structures());
@@ -37,71 +70,70 @@ bool has_paper_cases(const Study& study) {
                        [](const Case& c) { return is_as_published(c) && paper_row(c) != nullptr; });
 }
 
-/// Adds the paper's denser sources, 0.2 of the spacing, to every run.
-void add_dense_sources(Study& study) {
+/// Leaves to each run of `study` the densities and τ at which there are cells, or close to which.
+void keep_settings_of(const PaperEvidence& evidence, Study& study) {
+    const auto cells = evidence.cells();
+    const auto drop = [&](std::vector<double>& values, auto&& value_of) {
+        std::erase_if(values, [&](double x) {
+            return std::none_of(cells.begin(), cells.end(), [&](const PaperEvidence::Cell& cell) {
+                return std::abs(x - value_of(*cell.paper)) <= 0.05 * x;
+            });
+        });
+    };
     for (Run& run : study.runs) {
-        const std::vector<double> sparse = run.rho;
-        for (const double rho : sparse) run.rho.push_back(0.2 * rho);
+        drop(run.rho, [](const PaperRow& row) { return row.rho; });
+        drop(run.tau, [](const PaperRow& row) { return row.tau; });
     }
 }
 
-void add(Findings& findings, const FinishedStudy& finished) {
-    findings.evidence.add(finished.study, finished.rows);
-    findings.origins.push_back(origin_text(finished.provenance, true));
-}
-
-Findings run_built_in(const PaperOptions& options) {
-    Study tables = parse_study(paper_study_text(), "built-in study");
-    Study tie_order = parse_study(tie_order_study_text(), "built-in study");
-    if (options.full) {
-        add_dense_sources(tables);
-        add_dense_sources(tie_order);
+/// Runs the experiments on the cells found so far whose results do not lie there yet.
+void run_experiments(Findings& findings, const PaperOptions& options, Interruption& interruption) {
+    if (findings.evidence.cells().empty()) return;
+    for (const Experiments& experiments : all_experiments) {
+        const fs::path folder = findings.folder / experiments.folder;
+        if (fs::exists(folder / "results.json")) continue;
+        Study study = built_in(experiments.study_text());
+        keep_settings_of(findings.evidence, study);
+        study.output = folder;
+        run(findings, study, options, interruption);
     }
-    Interruption interruption;
-    Findings findings;
-    tables.output = options.output;
-    const FinishedStudy finished =
-        run_study(tables, options.command_line, options.quiet, interruption);
-    add(findings, finished);
-    findings.folder = finished.folder;
-    tie_order.output = finished.folder / tie_order_folder;
-    add(findings, run_study(tie_order, options.command_line, options.quiet, interruption));
-    return findings;
 }
 
-Findings run_file(const PaperOptions& options) {
+Study study_to_run(const PaperOptions& options) {
+    if (options.inputs.empty()) {
+        Study study = built_in(paper_study_text());
+        if (!options.full) {
+            for (Run& run : study.runs) std::erase_if(run.rho, [](double rho) { return rho < 1; });
+        }
+        return study;
+    }
     Study study = read_study(options.inputs.front());
-    if (!options.output.empty()) study.output = options.output;
     if (!has_paper_cases(study)) {
         throw InputError(
             fmt::format("{}: has no case of the paper's tables: give law mean-length, schedule "
                         "passes, reference published-sphere and the paper's sphere",
                         options.inputs.front().string()));
     }
-    Interruption interruption;
+    return study;
+}
+
+Findings run_cells(const PaperOptions& options, Interruption& interruption) {
+    Study study = study_to_run(options);
+    if (!options.output.empty()) study.output = options.output;
     Findings findings;
-    const FinishedStudy finished =
-        run_study(study, options.command_line, options.quiet, interruption);
-    add(findings, finished);
-    findings.folder = finished.folder;
+    findings.folder = run(findings, study, options, interruption);
     return findings;
 }
 
-void read_folder(Findings& findings, const fs::path& folder) {
-    const StoredResults results = read_results(folder);
-    if (!results.complete) {
-        spdlog::warn("{}: the results are not complete: cases are missing", folder.string());
-    }
-    findings.evidence.add(results.study, results.rows);
-    findings.origins.push_back(origin_text(results.provenance, results.complete));
-}
-
-Findings read_folders(const PaperOptions& options) {
+Findings read_cells(const PaperOptions& options) {
     Findings findings;
+    findings.folder = options.inputs.front();
     for (const fs::path& folder : options.inputs) {
-        read_folder(findings, folder);
-        const fs::path nested = folder / tie_order_folder;
-        if (fs::exists(nested / "results.json")) read_folder(findings, nested);
+        read(findings, folder);
+        for (const Experiments& experiments : all_experiments) {
+            const fs::path nested = folder / experiments.folder;
+            if (fs::exists(nested / "results.json")) read(findings, nested);
+        }
     }
     if (findings.evidence.cells().empty()) {
         throw InputError(
@@ -109,30 +141,36 @@ Findings read_folders(const PaperOptions& options) {
                         "paper`, or of `controlspace compare --as-published`",
                         options.inputs.front().string()));
     }
-    findings.folder = options.inputs.front();
     return findings;
 }
 
-Findings find(const PaperOptions& options) {
-    if (options.inputs.empty()) return run_built_in(options);
-    if (options.full) throw InputError("--full is for the built-in studies: leave out the names");
+/// Whether the inputs are folders of results.
+bool are_folders(const PaperOptions& options) {
     const auto is_folder = [](const fs::path& path) { return fs::is_directory(path); };
-    const bool study_file = options.inputs.size() == 1 && !is_folder(options.inputs.front());
-    if (study_file) return run_file(options);
-    if (!options.output.empty()) {
-        throw InputError("--output is for what is run: leave it out with folders of results");
-    }
-    return read_folders(options);
+    return options.inputs.size() > 1 ||
+           std::any_of(options.inputs.begin(), options.inputs.end(), is_folder);
 }
 
 }  // namespace
 
-void paper(const PaperOptions& options) {
-    const Findings findings = find(options);
+bool paper(const PaperOptions& options) {
+    const bool read_only = are_folders(options);
+    if (options.full && !options.inputs.empty()) {
+        throw InputError("--full is for the built-in studies: leave out the names");
+    }
+    if (read_only && !options.output.empty()) {
+        throw InputError("--output is for what is run: leave it out with folders of results");
+    }
+    Interruption interruption;
+    Findings findings = read_only ? read_cells(options) : run_cells(options, interruption);
+    if (options.experiments || options.inputs.empty()) {
+        run_experiments(findings, options, interruption);
+    }
     write_paper_page(findings.folder, paper_page(findings.evidence, findings.origins));
     print(paper_summary(findings.evidence, TableStyle::terminal));
     print(
         fmt::format("\nEvery cell and experiment: {}\n", (findings.folder / "paper.md").string()));
+    return findings.all_measured;
 }
 
 }  // namespace controlspace

@@ -22,6 +22,10 @@ double metric_fraction(double length, double t, double l_min) {
 // equally long but for rounding. To five digits 0.61803² < 0.38197: the former is the longer one,
 // which gives trees of the published sizes.
 double golden_fraction(double t) { return t < 0.5 ? 0.38197 : 0.61803; }
+double exact_golden_fraction(double t) {
+    constexpr double upper = 0.61803398874989485;
+    return t < 0.5 ? 1 - upper : upper;
+}
 
 }  // namespace
 
@@ -36,6 +40,8 @@ Subdivision cut(SplitRule rule, const Box& box, const PointSource& source, doubl
             break;
         case SplitRule::golden:
             return halves(box, axis, low + golden_fraction(t) * (high - low));
+        case SplitRule::exact_golden:
+            return halves(box, axis, low + exact_golden_fraction(t) * (high - low));
         case SplitRule::metric: {
             const double length = lengths[static_cast<std::size_t>(axis)];
             return halves(box, axis, low + metric_fraction(length, t, l_min) * (high - low));

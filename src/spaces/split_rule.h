@@ -19,6 +19,7 @@ enum class SplitRule {
              ///< the upper one for a source in the middle
     metric,  ///< s_M: so that the part with the source is l_min long, or the cut is half of l_min
              ///< beyond the source; peels slabs, so its depth grows linearly
+    exact_golden,  ///< s_Gx: s_G with sections to double precision instead of five digits
 };
 
 /// The cut of `box` for `source`, which lies in it.

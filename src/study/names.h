@@ -15,8 +15,11 @@ struct Names;
 
 template <>
 struct Names<SplitRule> {
-    static constexpr std::array<std::pair<SplitRule, std::string_view>, 3> table{
-        {{SplitRule::middle, "s_L"}, {SplitRule::golden, "s_G"}, {SplitRule::metric, "s_M"}}};
+    static constexpr std::array<std::pair<SplitRule, std::string_view>, 4> table{
+        {{SplitRule::middle, "s_L"},
+         {SplitRule::golden, "s_G"},
+         {SplitRule::exact_golden, "s_Gx"},
+         {SplitRule::metric, "s_M"}}};
 };
 template <>
 struct Names<GradationLaw> {

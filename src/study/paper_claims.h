@@ -31,7 +31,8 @@ struct ClaimOutcome {
 /// A conclusion that the paper's tables suggest.
 struct Claim {
     std::string_view sentence;
-    std::string_view measure;  ///< what is compared
+    std::string_view measure;   ///< what is compared
+    std::string_view shown_by;  ///< experiment or table with more
     /// At one setting; none where an entry that it needs is missing.
     std::optional<ClaimOutcome> (*test)(std::span<const ClaimEntry>);
 };
@@ -39,7 +40,6 @@ struct Claim {
 std::span<const Claim> paper_claims();
 
 enum class ClaimVerdict { stands, does_not_stand, not_measured };
-std::string_view to_string(ClaimVerdict verdict);
 
 /// A claim over all settings.
 struct JudgedClaim {

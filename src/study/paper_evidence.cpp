@@ -67,19 +67,18 @@ double value(PaperTable table, const PaperRow& p) {
 void PaperEvidence::add(const Study& study, std::span<const Row> rows) {
     const Box box = study.domain.value_or(paper_box());
     if (!is_near_paper_box(box)) return;
-    const bool in_paper_box = box == paper_box();
     for (const Row& row : rows) {
         const bool known = std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
-            return entry.in_paper_box == in_paper_box && entry.row.setting == row.setting;
+            return entry.box == box && entry.row.setting == row.setting;
         });
-        if (!known) entries_.push_back({row, in_paper_box});
+        if (!known) entries_.push_back({row, box});
     }
 }
 
 std::vector<PaperEvidence::Cell> PaperEvidence::cells() const {
     std::vector<Cell> cells;
     for (const Entry& entry : entries_) {
-        if (!entry.in_paper_box || !is_as_published(entry.row.setting)) continue;
+        if (entry.box != paper_box() || !is_as_published(entry.row.setting)) continue;
         if (const PaperRow* paper = paper_row(entry.row.setting)) {
             cells.push_back({&entry.row, paper});
         }
@@ -92,7 +91,7 @@ std::vector<PaperEvidence::Cell> PaperEvidence::cells() const {
 
 const Measures* PaperEvidence::find(const Case& setting) const {
     for (const Entry& entry : entries_) {
-        if (entry.in_paper_box && entry.row.measures && entry.row.setting == setting) {
+        if (entry.box == paper_box() && entry.row.measures && entry.row.setting == setting) {
             return &*entry.row.measures;
         }
     }
@@ -101,11 +100,12 @@ const Measures* PaperEvidence::find(const Case& setting) const {
 
 std::vector<const Measures*> PaperEvidence::near_ties(const Case& setting) const {
     std::vector<const Measures*> found;
-    for (const auto& [row, in_paper_box] : entries_) {
+    for (const auto& [row, box] : entries_) {
         if (!row.measures || !near(row.setting.tau, setting.tau, rounding)) continue;
-        if (in_paper_box && row.setting.tau == setting.tau) continue;
+        if (box == paper_box() && row.setting == setting) continue;
         Case same = row.setting;
         same.tau = setting.tau;
+        if (same.split == SplitRule::exact_golden) same.split = SplitRule::golden;
         if (same == setting) found.push_back(&*row.measures);
     }
     return found;
@@ -113,9 +113,9 @@ std::vector<const Measures*> PaperEvidence::near_ties(const Case& setting) const
 
 std::vector<const Measures*> PaperEvidence::near_densities(const Case& setting) const {
     std::vector<const Measures*> found;
-    for (const auto& [row, in_paper_box] : entries_) {
+    for (const auto& [row, box] : entries_) {
         const double rho = row.setting.sources.rho;
-        if (!in_paper_box || !row.measures || rho == setting.sources.rho ||
+        if (box != paper_box() || !row.measures || rho == setting.sources.rho ||
             !near(rho, setting.sources.rho, 0.05)) {
             continue;
         }
@@ -128,10 +128,10 @@ std::vector<const Measures*> PaperEvidence::near_densities(const Case& setting) 
 
 std::vector<const Row*> PaperEvidence::other_depths(const Case& setting) const {
     std::vector<const Row*> found;
-    for (const auto& [row, in_paper_box] : entries_) {
+    for (const auto& [row, box] : entries_) {
         Case same = row.setting;
         same.max_depth = setting.max_depth;
-        if (in_paper_box && row.measures && same == setting && row.setting != setting) {
+        if (box == paper_box() && row.measures && same == setting && row.setting != setting) {
             found.push_back(&row);
         }
     }

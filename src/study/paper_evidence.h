@@ -42,7 +42,8 @@ public:
     /// Measures at a setting; null where it is missing or failed.
     const Measures* find(const Case& setting) const;
 
-    /// The same setting but for rounding: τ or the box differ by 1e-8 of their size at most.
+    /// The same setting but for what decides between edges that are almost equally long: τ or the
+    /// box differ by 1e-8 of their size at most, and s_G's sections may be exact.
     std::vector<const Measures*> near_ties(const Case& setting) const;
     /// The same setting with sources up to 5 % closer or farther apart.
     std::vector<const Measures*> near_densities(const Case& setting) const;
@@ -52,7 +53,7 @@ public:
 private:
     struct Entry {
         Row row;
-        bool in_paper_box;
+        Box box;
     };
     std::vector<Entry> entries_;
 };

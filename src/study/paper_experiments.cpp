@@ -122,11 +122,12 @@ TextTable depth_limit(const PaperEvidence& evidence) {
 }
 
 TextTable near_ties(const PaperEvidence& evidence) {
-    auto table = empty_table("Experiment: edges that are equal but for rounding",
-                             "s_G and s_M cut boxes whose edges are equally long but for rounding, "
-                             "and s_M slabs that are as long as l_min but for rounding. Range over "
-                             "runs that differ by a billionth in l_min or in the box's length "
-                             "along x, which then goes first among equally long edges.",
+    auto table = empty_table("Experiment: edges that are almost equally long",
+                             "s_G and s_M cut boxes whose edges are equally long but for rounding "
+                             "or the digits of the golden section, and s_M slabs that are as long "
+                             "as l_min but for rounding. Range over runs with another order among "
+                             "them: a box longer by a billionth along some axes, l_min by as much, "
+                             "s_G's sections to all digits instead of five.",
                              {"runs", "MB", "range", "paper", "delta_R", "range", "paper"});
     fill(table, evidence, [&](const Cell& cell, const Case& c, const Measures& m) -> Cells {
         const auto variants = evidence.near_ties(c);
@@ -236,18 +237,17 @@ TextTable scatter(const PaperEvidence& evidence) {
     return table;
 }
 
-/// Spearman's rho over the cells of one setting, as text.
+/// Spearman's rho over the cells of one setting.
 template <class Ours, class Paper>
-std::string rank_text(const std::vector<Cell>& cells, bool with_faults, Ours&& ours,
-                      Paper&& paper) {
+std::optional<double> rank_correlation(const std::vector<Cell>& cells, bool with_faults,
+                                       Ours&& ours, Paper&& paper) {
     std::vector<double> a, b;
     for (const Cell& cell : cells) {
         if (!with_faults && is_touched_by_fault(cell.paper->structure)) continue;
         a.push_back(ours(*cell.ours->measures));
         b.push_back(paper(*cell.paper));
     }
-    const auto rho = spearman(a, b);
-    return rho ? fmt::format("{:.2f} ({})", *rho, a.size()) : "–";
+    return spearman(a, b);
 }
 
 }  // namespace
@@ -258,7 +258,8 @@ std::vector<TextTable> paper_experiments(const PaperEvidence& evidence) {
         near_ties(evidence),      accounting(evidence),      clock_ticks(),
         two_references(evidence), schedules(evidence),       scatter(evidence)};
     for (TextTable& table : tables) {
-        if (table.rows.empty()) table.note += " Not in these results: see `controlspace paper`.";
+        if (table.rows.empty())
+            table.note += " Not in these results: see `controlspace paper --experiments`.";
     }
     return tables;
 }
@@ -277,9 +278,9 @@ TextTable rank_table(const PaperEvidence& evidence) {
         cells[static_cast<std::size_t>(at - settings.begin())].push_back(cell);
     }
     TextTable table{"Ranks: Spearman's rho, ours against the paper's",
-                    "1: the same order; -1: the reverse. Number of rows in brackets, ties "
-                    "averaged. Without faults: without K_oLB, K_V and K_oV.",
-                    {{"table", Align::left}, {"rows", Align::left}},
+                    "Within each column of a table. 1: the same order; -1: the reverse; ties share "
+                    "the mean of their ranks. Without faults: without K_oLB, K_V and K_oV.",
+                    {{"table", Align::left}, {"rows", Align::left}, {"mean"}},
                     {}};
     for (const auto& [rho, tau] : settings) {
         table.columns.push_back({fmt::format("ρ {} τ {}", rho, tau)});
@@ -288,9 +289,15 @@ TextTable rank_table(const PaperEvidence& evidence) {
         for (const bool with_faults : {true, false}) {
             auto& row =
                 table.rows.emplace_back(Cells{name, with_faults ? "all" : "without faults"});
+            double sum = 0;
+            std::size_t known = 0;
             for (const auto& column : cells) {
-                row.push_back(rank_text(column, with_faults, ours, paper));
+                const auto correlation = rank_correlation(column, with_faults, ours, paper);
+                row.push_back(correlation ? fixed(*correlation) : "–");
+                sum += correlation.value_or(0);
+                known += correlation ? 1 : 0;
             }
+            row.insert(row.begin() + 2, known > 0 ? fixed(sum / static_cast<double>(known)) : "–");
         }
     };
     for (const PaperTable t : paper_tables) {

@@ -15,28 +15,53 @@ namespace {
 constexpr Verdict verdicts[] = {Verdict::equal, Verdict::explained, Verdict::not_comparable,
                                 Verdict::unexplained, Verdict::failed};
 
-TextTable claims_table(const PaperEvidence& evidence) {
-    TextTable table{"What stands, what does not",
-                    "Each conclusion is a comparison of numbers, made at every setting measured; "
-                    "it stands if it holds at all of them.",
+/// The claims of one verdict; a table without rows if there are none.
+TextTable claims_table(std::span<const JudgedClaim> claims, ClaimVerdict verdict,
+                       std::string heading) {
+    TextTable table{std::move(heading),
+                    "Holds: number of settings of the sphere at which our numbers bear it out, "
+                    "and the paper's own. It stands if ours do at every setting.",
                     {{"conclusion", Align::left},
-                     {"measured", Align::left},
-                     {"settings"},
+                     {"holds"},
                      {"in the paper"},
+                     {"numbers, ours", Align::left},
                      {"compared", Align::left},
-                     {"numbers", Align::left}},
+                     {"more in", Align::left}},
                     {}};
-    for (const JudgedClaim& judged : judge_claims(evidence)) {
+    for (const JudgedClaim& judged : claims) {
+        if (judged.verdict != verdict) continue;
         const auto share = [](std::size_t part, std::size_t all) {
             return all == 0 ? std::string("–") : fmt::format("{} of {}", part, all);
         };
         table.rows.push_back(
-            {std::string(judged.claim->sentence), std::string(to_string(judged.verdict)),
-             share(judged.holds, judged.settings), share(judged.paper_holds, judged.paper_settings),
-             std::string(judged.claim->measure),
-             judged.settings == 0 ? "" : fmt::format("{}: {}", judged.place, judged.numbers)});
+            {std::string(judged.claim->sentence), share(judged.holds, judged.settings),
+             share(judged.paper_holds, judged.paper_settings),
+             judged.settings == 0 ? "" : fmt::format("{}: {}", judged.place, judged.numbers),
+             std::string(judged.claim->measure), std::string(judged.claim->shown_by)});
     }
     return table;
+}
+
+/// "Of the paper's conclusions 5 stand, 4 do not. Of ..."
+std::string headline(const PaperEvidence& evidence, std::span<const JudgedClaim> claims) {
+    const auto claims_that = [&](ClaimVerdict verdict) {
+        return std::count_if(claims.begin(), claims.end(),
+                             [&](const JudgedClaim& c) { return c.verdict == verdict; });
+    };
+    std::vector<CellVerdict> cells = judge(evidence, PaperTable::size);
+    const auto more = judge(evidence, PaperTable::delta_r);
+    cells.insert(cells.end(), more.begin(), more.end());
+    const auto cells_that = [&](Verdict verdict) {
+        return std::count_if(cells.begin(), cells.end(),
+                             [&](const CellVerdict& cell) { return cell.verdict == verdict; });
+    };
+    return fmt::format(
+        "Of the conclusions that the paper's tables suggest {} stand and {} do not. Of the {} "
+        "cells of Tables 1 and 4 {} are equal to the printed digit, {} differ "
+        "for a reason that an experiment shows, {} differ and are not explained.\n",
+        claims_that(ClaimVerdict::stands), claims_that(ClaimVerdict::does_not_stand), cells.size(),
+        cells_that(Verdict::equal), cells_that(Verdict::explained),
+        cells_that(Verdict::unexplained));
 }
 
 TextTable counts_table(const PaperEvidence& evidence) {
@@ -110,8 +135,20 @@ TextTable open_table(const PaperEvidence& evidence) {
 }  // namespace
 
 std::string paper_summary(const PaperEvidence& evidence, TableStyle style) {
-    return fmt::format("{}\n{}\n{}", render(claims_table(evidence), style),
-                       render(counts_table(evidence), style), render(open_table(evidence), style));
+    const std::vector<JudgedClaim> claims = judge_claims(evidence);
+    std::string text = headline(evidence, claims);
+    const auto add = [&](const TextTable& table) { text += '\n' + render(table, style); };
+    const auto add_claims = [&](ClaimVerdict verdict, std::string heading) {
+        const TextTable table = claims_table(claims, verdict, std::move(heading));
+        if (!table.rows.empty()) add(table);
+    };
+    add_claims(ClaimVerdict::stands, "Conclusions that stand");
+    add_claims(ClaimVerdict::does_not_stand, "Conclusions that do not stand");
+    add_claims(ClaimVerdict::not_measured, "Conclusions that were not measured");
+    add(rank_table(evidence));
+    add(counts_table(evidence));
+    add(open_table(evidence));
+    return text;
 }
 
 std::string paper_page(const PaperEvidence& evidence, std::span<const std::string> origins) {
@@ -124,7 +161,6 @@ std::string paper_page(const PaperEvidence& evidence, std::span<const std::strin
     const auto add = [&](const TextTable& table) {
         text += fmt::format("\n{}", render(table, TableStyle::markdown));
     };
-    add(rank_table(evidence));
     for (const TextTable& table : paper_experiments(evidence)) add(table);
     for (const PaperTable t : paper_tables) {
         TextTable table = cells_table(std::string(title(t)), "");

@@ -9,11 +9,11 @@
 
 namespace controlspace {
 
-/// What to see in a minute: which conclusions of the paper stand, how many cells of each table are
-/// equal, explained or not, and every cell that is not explained.
+/// What to see in a minute: which conclusions of the paper stand, the ranks, how many cells of each
+/// table are equal, explained or not, and every cell that is not explained.
 std::string paper_summary(const PaperEvidence& evidence, TableStyle style);
 
-/// paper.md: the summary, the ranks, the experiments, and every cell with its verdict. `origins`
+/// paper.md: the summary, the experiments, and every cell with its verdict. `origins`
 /// say, one line each, where the rows are from.
 std::string paper_page(const PaperEvidence& evidence, std::span<const std::string> origins);
 

@@ -45,10 +45,13 @@ Case with_structure(Case setting, std::string_view id);
 ///   any               equal, if our value rounds to the paper's
 ///   K_oLB             balance: ours is below 2 x K_oL's size, the paper's above 3 x its own, and
 ///                     (Table 4) ours is not less accurate than K_oL
-///   s_G, s_M          ties: cases equal but for rounding differ among each other by as much
+///   s_G, s_M          ties: cases that choose otherwise among edges of almost equal length differ
+///                     among each other by as much, or reach the paper's value
 ///   K_V, K_oV         shared vertices: the paper's size holds over 5 % more control nodes than
 ///                     there are places, and (Table 4) ours is more accurate
 ///   K_oL, Table 4     links: all faces instead of one leaf a face change ours by as much
+///   any, Table 4      scatter: the paper's value lies within those that ours takes when the
+///                     sources are a little closer or farther apart
 /// Whatever is left is unexplained.
 std::vector<CellVerdict> judge(const PaperEvidence& evidence, PaperTable table);
 

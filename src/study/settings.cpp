@@ -211,7 +211,7 @@ const Setting<Run> run_table[] = {
      [](const Run& r) {
          return SettingValues{r.structures.begin(), r.structures.end()};
      }},
-    {"splits", text_type, 0, "", "Where kd-trees cut: s_L, s_G, s_M", set_names<&Run::splits>,
+    {"splits", text_type, 0, "", "Where kd-trees cut: s_L, s_G, s_Gx, s_M", set_names<&Run::splits>,
      get_names<&Run::splits>},
     {"rho", number_type, 0, "", "Spacing of sampled sources [h]", set_positive<&Run::rho>,
      get_numbers<&Run::rho>},

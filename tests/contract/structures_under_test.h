@@ -64,7 +64,7 @@ inline Work isotropic_sphere() {
     return {"isotropic", sample_sphere({.h = 0.05, .s_a = 2, .s_n = 1, .rho = 2})};
 }
 inline Work anisotropic_sphere() {
-    return {"anisotropic", sample_sphere({.h = 0.06, .s_a = 4, .s_n = 0.25, .rho = 3})};
+    return {"anisotropic", sample_sphere({.h = 0.1, .s_a = 4, .s_n = 0.25, .rho = 2})};
 }
 
 }  // namespace controlspace

@@ -36,6 +36,14 @@ TEST_CASE("s_G cuts at the golden section nearer to the source") {
     CHECK(cut(SplitRule::golden, box, at(3.9, 0.1), 1).at.x() == Approx(4 * 0.61803));
 }
 
+TEST_CASE("s_Gx cuts at exact sections: twice near the middle is as much as once near the end") {
+    const double once = cut(SplitRule::exact_golden, box, at(1.9, 0.1), 1).at.x() / 4;
+    const double far = cut(SplitRule::exact_golden, box, at(2.0, 0.1), 1).at.x() / 4;
+    CHECK(once + far == 1);
+    CHECK(far * far == Approx(once).epsilon(1e-15));
+    CHECK(once == Approx(0.38197).epsilon(1e-4));
+}
+
 TEST_CASE("s_M leaves l_min around the source") {
     // The edge along x is 40 metric lengths; l_min = 2 takes a twentieth of it, 0.2.
     const auto place = [](double x) { return cut(SplitRule::metric, box, at(x, 0.1), 2).at.x(); };

@@ -106,7 +106,7 @@ TEST_CASE("each claim is true of rows that it fits, and false of others") {
     CHECK_FALSE(holds("The plain octree is the fastest to read.", octree(1.1)));
 }
 
-TEST_CASE("the all-rounder has the best mean rank of all but s_M") {
+TEST_CASE("an all-rounder is among the best three in mean rank, s_M left out") {
     std::vector<ClaimEntry> entries{
         {"K_L", s_l, 2, 2, 2, 2}, {"K_L", s_g, 3, 3, 3, 3},  {"K_V", s_l, 9, 9, 9, 1},
         {"K_V", s_g, 8, 8, 8, 8}, {"K_Li", s_l, 7, 7, 7, 7}, {"K_Li", s_g, 6, 6, 6, 6},
@@ -115,6 +115,9 @@ TEST_CASE("the all-rounder has the best mean rank of all but s_M") {
     entries.push_back({"K_L", s_m, 1, 1, 20, 20});
     CHECK(holds("K_L is a good all-rounder.", entries));
     entries[6] = {"K_oL", {}, 1, 1, 1, 1};
+    CHECK(holds("K_L is a good all-rounder.", entries));
+    entries[0] = {"K_L", s_l, 20, 20, 20, 20};
+    entries[1] = {"K_L", s_g, 21, 21, 21, 21};
     CHECK_FALSE(holds("K_L is a good all-rounder.", entries));
     entries.resize(4);
     CHECK_FALSE(claim("K_L is a good all-rounder.").test(entries));

@@ -180,10 +180,37 @@ TEST_CASE("links explain K_oL as far as another choice of them moves it") {
     CHECK(verdict(1.60).verdict == Verdict::unexplained);
 }
 
-TEST_CASE("an unexplained delta_R is shown with its scatter over near densities") {
-    Case denser = setting("K_L", SplitRule::middle);
-    denser.sources.rho = 0.99;
-    const auto evidence = evidence_of(
-        {measured(setting("K_L", SplitRule::middle), 17.07, 1.80), measured(denser, 17, 1.62)});
-    CHECK_THAT(verdict_on(evidence, PaperTable::delta_r, "K_L").reason, Contains("1.62 to 1.80"));
+TEST_CASE("scatter explains a delta_R that near densities reach, and no size") {
+    // Table 1: 17.07, Table 4: 1.78.
+    const auto verdict = [&](double near_delta, PaperTable table) {
+        Case denser = setting("K_L", SplitRule::middle);
+        denser.sources.rho = 0.99;
+        return verdict_on(evidence_of({measured(setting("K_L", SplitRule::middle), 17.2, 1.80),
+                                       measured(denser, 17, near_delta)}),
+                          table, "K_L");
+    };
+    CHECK(verdict(1.62, PaperTable::delta_r).verdict == Verdict::explained);
+    CHECK(verdict(1.784, PaperTable::delta_r).verdict == Verdict::explained);
+    CHECK(verdict(1.79, PaperTable::delta_r).verdict == Verdict::unexplained);
+    CHECK_THAT(verdict(1.79, PaperTable::delta_r).reason, Contains("1.79 to 1.80"));
+    CHECK(verdict(1.62, PaperTable::size).verdict == Verdict::unexplained);
+}
+
+TEST_CASE("exact golden sections are another choice among almost equal edges") {
+    // Table 4: 1.62.
+    const auto evidence =
+        evidence_of({measured(setting("K_L", SplitRule::golden), 8.16, 1.66),
+                     measured(setting("K_L", SplitRule::exact_golden), 8.4, 1.6)});
+    REQUIRE(evidence.cells().size() == 1);
+    CHECK(verdict_on(evidence, PaperTable::delta_r, "K_L").verdict == Verdict::explained);
+}
+
+TEST_CASE("every box that is longer by a billionth counts, with the same setting too") {
+    const Case golden = setting("K_L", SplitRule::golden);
+    PaperEvidence evidence = evidence_of({measured(golden, 8.16, 1.66)});
+    Study other = stretched_box();
+    other.domain->high.z() += 1e-9;
+    evidence.add(stretched_box(), std::vector{measured(golden, 8.2, 1.67)});
+    evidence.add(other, std::vector{measured(golden, 8.2, 1.5)});
+    CHECK(evidence.near_ties(golden).size() == 2);
 }

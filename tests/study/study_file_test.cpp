@@ -169,7 +169,7 @@ TEST_CASE("what is wrong in a study file is named with its line") {
         {"voxel_factor = 0", "voxel_factor: 0 is not positive"},
         {"kd_depth = -1", "kd_depth: -1 is out of range"},
         {"law = 'cones'", "law: unknown value 'cones': give cone, mean-length"},
-        {"splits = ['s_L', 's_X']", "splits: unknown value 's_X': give s_L, s_G, s_M"},
+        {"splits = ['s_L', 's_X']", "splits: unknown value 's_X': give s_L, s_G, s_Gx, s_M"},
         {"schedule = 1", "schedule: 1 is not a text"},
         {"seed = [1, 2]", "seed: 2 values: give 1 at most"},
         {"seed = -1", "seed: -1 is out of range"},
