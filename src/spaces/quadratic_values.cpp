@@ -4,6 +4,7 @@
 
 #include "metric/blend.h"
 #include "metric/decompose.h"
+#include "metric/intersection.h"
 
 namespace controlspace {
 
@@ -31,9 +32,19 @@ double admissible_share(const Metric& own, const Metric& departure) {
     return deepest >= -0.5 ? 1 : -0.5 / deepest;
 }
 
+// The largest length along any direction that `departure` adds to `own`, in those of `own`. It
+// bounds growth(own + s departure, own) by 1 + s times it.
+double largest_departure(const Metric& own, const Metric& departure) {
+    if (is_axis_aligned(own) && is_axis_aligned(departure)) {
+        return std::max({departure.xx / own.xx, departure.yy / own.yy, departure.zz / own.zz});
+    }
+    return svd(Cholesky(own).solve(departure.matrix())).s[0];
+}
+
 }  // namespace
 
-Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, const Vector& t) {
+Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, const Vector& t,
+                    double largest_growth) {
     // The nodes are means of seven metrics, so the sum over 27 nodes is one over seven metrics.
     // On an axis with coordinate s, the functions of the two outer nodes are s(s-1)/2 and s(s+1)/2,
     // and sum to s². With q = s² of the other two axes, the face node of an axis enters by itself
@@ -58,7 +69,10 @@ Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, cons
 
     const Metric departure = difference(sum, own);
     const double share = admissible_share(own, departure);
-    return share >= 1 ? sum : moved(own, share, departure);
+    const Metric deep_enough = share >= 1 ? sum : moved(own, share, departure);
+    if (is_within(deep_enough, largest_growth, own)) return deep_enough;
+    const Metric left = difference(deep_enough, own);
+    return moved(own, (largest_growth - 1) / largest_departure(own, left), left);
 }
 
 }  // namespace controlspace

@@ -18,20 +18,23 @@ namespace controlspace {
 /// quadratic functions undershoot; where the result would fall below own / 2 along any direction,
 /// its departure from `own` is scaled down until it does not. So it is always positive definite.
 ///
-/// On the coarse side nothing is scaled down. On a leaf's face the answer is the mean of two
-/// leaves, far coarser than `own` beside a large neighbour, as at a cut plane before gradation;
-/// that is the scheme. Beyond the coarsest of the seven metrics it hardly gets: to cut that off
-/// leaves the share of places that are coarser than asked as it is, and the worst of them, and
-/// makes the mean error 1 to 2 % larger (the paper's sphere, all settings).
-Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, const Vector& t);
+/// A leaf's face gets the mean of two leaves, far coarser than `own` beside a large neighbour, as
+/// beside a source at a cut plane. Where the result would exceed `largest_growth` times `own` along
+/// any direction, its departure is scaled down too; at least 1. (Cut off at the coarsest of the
+/// seven metrics instead, it is as often coarser than asked, and less accurate.)
+Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, const Vector& t,
+                    double largest_growth);
 
-/// One metric a leaf, interpolated with those of the neighbours when asked (K_Li).
+/// One metric a leaf, interpolated with those of the neighbours when asked (K_Li). Nowhere coarser
+/// than the cone of the leaf's own metric at its centre, with the ratio of the gradation to come:
+/// on the paper's sphere that leaves its Tables 1 and 4 as they are, and divides δ_S by up to 20.
 class QuadraticValues : public LeafValues {
 public:
     static constexpr int order = 2;
     static constexpr CutBy cut_by = CutBy::faces;
 
-    using LeafValues::LeafValues;
+    explicit QuadraticValues(const SpaceOptions& options)
+        : LeafValues(options), slope_(options.ratio - 1) {}
 
     template <class Node>
     Metric value(const Topology<Node>& tree, const Point& x) const {
@@ -44,8 +47,8 @@ public:
 
 private:
     template <class Node>
-    static Metric interpolate(const Topology<Node>& tree, const Point& place,
-                              std::span<const Metric> metrics) {
+    Metric interpolate(const Topology<Node>& tree, const Point& place,
+                       std::span<const Metric> metrics) const {
         const Point x = place.cwiseMax(tree.domain().low).cwiseMin(tree.domain().high);
         const LeafPlace here = tree.locate(x);
         const Metric& own = metrics[here.leaf];
@@ -55,9 +58,12 @@ private:
             const bool inside = locate_across(tree, here.box, face, x, neighbour);
             across[static_cast<std::size_t>(face)] = inside ? metrics[neighbour.leaf] : own;
         }
-        const Vector t = 2 * (x - here.box.centre()).cwiseQuotient(here.box.edges());
-        return triquadratic(own, across, t);
+        const Vector v = x - here.box.centre();
+        const Vector t = 2 * v.cwiseQuotient(here.box.edges());
+        return triquadratic(own, across, t, 1 + slope_ * metric_length(own, v));
     }
+
+    double slope_;  ///< g_r - 1
 };
 
 }  // namespace controlspace

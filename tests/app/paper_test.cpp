@@ -29,7 +29,7 @@ TEST_CASE("the paper's tables beside ours: from results, with experiments that l
     CHECK_THAT(outcome.out, Contains("Of the 4 cells of Tables 1 and 4 2 are equal"));
     CHECK_THAT(outcome.out, Contains("Every cell and experiment: out/paper.md"));
     const std::string page = file_text(box / "out" / "paper.md");
-    CHECK_THAT(page, Contains("| K_L       | s_M   | 1 | 1 | 6.48 |  6.48 | equal"));
+    CHECK_THAT(page, Contains("| K_L       | s_M   |   1 |   1 | 6.48 |  6.48 | equal"));
     CHECK_THAT(page, Contains("links: not tried here"));
     CHECK(lines(page) > 60);
 

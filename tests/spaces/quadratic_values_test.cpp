@@ -1,15 +1,19 @@
 #include "spaces/quadratic_values.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "metric/draw.h"
 #include "metric/intersection.h"
+#include "spaces/catalogue.h"
 
 using namespace controlspace;
 
 namespace {
 
 using Across = std::array<Metric, 6>;
+
+constexpr double unlimited = 1e300;
 
 // Node (i, j, k), each -1, 0 or 1, of the 27-node hexahedron as the header words it.
 Metric node(const Metric& own, const Across& across, const std::array<int, 3>& step) {
@@ -58,17 +62,17 @@ TEST_CASE("the sum over seven metrics is the one over 27 nodes") {
         const Metric expected = by_nodes(own, across, t);
         const Eigen::Matrix3d above = expected.matrix() - 0.5 * own.matrix();
         if (Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(above).eigenvalues()[0] < 0) continue;
-        CHECK(difference(triquadratic(own, across, t), expected) < 1e-13);
+        CHECK(difference(triquadratic(own, across, t, unlimited), expected) < 1e-13);
     }
 }
 
 TEST_CASE("own metric at the centre, constants everywhere") {
     Draw draw(2);
     const Metric own = draw.metric(0.1, 100);
-    CHECK(triquadratic(own, draw_across(draw, 1, 10), Vector::Zero()) == own);
+    CHECK(triquadratic(own, draw_across(draw, 1, 10), Vector::Zero(), 1) == own);
     Across constant;
     constant.fill(own);
-    CHECK(difference(triquadratic(own, constant, Vector(0.3, -0.9, 0.5)), own) < 1e-14);
+    CHECK(difference(triquadratic(own, constant, Vector(0.3, -0.9, 0.5), 1), own) < 1e-14);
 }
 
 TEST_CASE("reflecting the axes reflects the field") {
@@ -78,13 +82,13 @@ TEST_CASE("reflecting the axes reflects the field") {
         Across across;
         for (Metric& m : across) m = Metric::isotropic(draw.uniform(0.5, 2));
         const Vector t(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
-        const Metric here = triquadratic(own, across, t);
+        const Metric here = triquadratic(own, across, t, unlimited);
         for (std::size_t a = 0; a < 3; ++a) {
             Across mirrored = across;
             std::swap(mirrored[2 * a], mirrored[2 * a + 1]);
             Vector s = t;
             s[static_cast<Eigen::Index>(a)] *= -1;
-            CHECK(difference(triquadratic(own, mirrored, s), here) < 1e-14);
+            CHECK(difference(triquadratic(own, mirrored, s, unlimited), here) < 1e-14);
         }
     }
 }
@@ -101,7 +105,7 @@ TEST_CASE("never below half of the leaf's own metric, whatever the neighbours") 
                                          : draw.metric(0.01, anisotropy);
         }
         const Vector t(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
-        const Metric m = triquadratic(own, across, t);
+        const Metric m = triquadratic(own, across, t, unlimited);
         REQUIRE(is_positive_definite(m));
         // m >= own / 2 as matrices, up to rounding.
         const Eigen::Matrix3d above = m.matrix() - 0.5 * own.matrix();
@@ -111,4 +115,43 @@ TEST_CASE("never below half of the leaf's own metric, whatever the neighbours") 
         undershoots += difference(m, by_nodes(own, across, t)) > 1e-9;
     }
     CHECK(undershoots > 20);  // the case was met
+}
+
+TEST_CASE("never longer than the growth that is allowed, and the interpolation where it may be") {
+    Draw draw(5);
+    int limited = 0;
+    for (int i = 0; i < 500; ++i) {
+        const double anisotropy = i % 2 == 0 ? 1 : 30;
+        const Metric own = draw.metric(0.1, anisotropy);
+        const Across across = draw_across(draw, i % 3 == 0 ? 0.1 : 1, anisotropy);
+        const Vector t(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
+        const double allowed = draw.uniform(1, 3);
+        const Metric free = triquadratic(own, across, t, unlimited);
+        const Metric m = triquadratic(own, across, t, allowed);
+        REQUIRE(is_positive_definite(m));
+        CHECK(growth(m, own) <= allowed * (1 + 1e-9));
+        if (growth(free, own) <= allowed) {
+            CHECK(m == free);
+        } else {
+            ++limited;
+            // Isotropic answers take what is allowed, no less.
+            if (anisotropy == 1) CHECK(growth(m, own) == Approx(allowed));
+        }
+    }
+    CHECK(limited > 100);
+}
+
+TEST_CASE("a source at a leaf's face is met by K_Li, before gradation and after") {
+    // Next to the cut planes in the middle of the domain, and in its corner.
+    for (const Point& p : {Point(0, 0, 0), Point(1e-9, 0.3, -0.5), Point(-1, -1, -1)}) {
+        const PointSource source{p, Metric::isotropic(0.01)};
+        const Box domain{Point::Constant(-1), Point::Constant(1)};
+        const auto space = tree_catalogue()[1].make({.domain = domain});
+        REQUIRE(tree_catalogue()[1].id == "K_Li");
+        space->insert(source);
+        // Along a leaf's half diagonal, at most sqrt(3) / 2 of its size, sizes grow by 0.25.
+        CHECK(sample_at(*space, p).xx <= 0.01 * (1 + 0.25 * std::sqrt(0.75)));
+        space->grade({.ratio = 1.25});
+        CHECK(sample_at(*space, p).xx <= 0.01 * (1 + 0.25 * std::sqrt(0.75)));
+    }
 }
