@@ -20,7 +20,7 @@ TEST_CASE("the paper's tables beside ours: from results, with experiments that l
         box.run("compare --as-published --structures K_L,K_oL --splits s_M --output out" + quick)
             .status == 0);
     const std::string unpublished = " --structures K_oL --output other";
-    REQUIRE(box.run("compare --sources sphere" + quick + unquick).status == 0);
+    REQUIRE(box.run("compare --sources sphere" + quick + unpublished).status == 0);
     fs::remove(box / "out" / "paper.md");
     const Outcome outcome = box.run("paper out");
     INFO(outcome.err);
