@@ -11,10 +11,10 @@ namespace fs = std::filesystem;
 namespace {
 
 // Folders with the same number know nothing of each other.
-const std::map<std::string, int> layers{{"geometry", 0},  {"metric", 1},    {"sources", 2},
-                                        {"gradation", 2}, {"cones", 3},     {"fields", 3},
-                                        {"spaces", 4},    {"baselines", 5}, {"measure", 5},
-                                        {"study", 6},     {"export", 7},    {"app", 8}};
+const std::map<std::string, int> layers{
+    {"geometry", 0}, {"metric", 1}, {"sources", 2},   {"gradation", 2}, {"cones", 3},
+    {"fields", 3},   {"spaces", 4}, {"baselines", 5}, {"measure", 5},   {"study", 6},
+    {"mesh", 6},     {"export", 7}, {"app", 8}};
 
 bool is_source(const fs::path& path) {
     return path.extension() == ".h" || path.extension() == ".cpp";

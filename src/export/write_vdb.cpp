@@ -16,6 +16,7 @@
 #include "export/vdb_builder.h"
 #include "export/vdb_file.h"
 #include "export/vdb_points.h"
+#include "spaces/space_field.h"
 
 namespace controlspace {
 namespace {
@@ -184,17 +185,6 @@ void share_trees(const std::vector<MetricGrid>& kinds, const openvdb::GridPtrVec
         }
     }
 }
-
-class SpaceAsField final : public MetricField {
-public:
-    explicit SpaceAsField(const ControlSpace& space) : space_(space) {}
-    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
-        space_.sample(x, out);
-    }
-
-private:
-    const ControlSpace& space_;
-};
 
 }  // namespace
 

@@ -1,0 +1,156 @@
+#include "mesh/gmsh_mesher.h"
+
+#include <gmsh.h>
+
+#include <catch2/catch.hpp>
+#include <stdexcept>
+
+#include "fields/formula_field.h"
+#include "mesh/conformity.h"
+#include "mesh/fixtures.h"
+#include "sources/files.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const Box two_cube{Point::Constant(-1), Point::Constant(1)};
+
+const FormulaField sphere([](const Point& p) { return around_sphere(p, 0.2); });
+
+/// Without printing either.
+template <class List>
+bool same(const List& a, const List& b) {
+    return a == b;
+}
+
+}  // namespace
+
+TEST_CASE("Gmsh fills the box with tetrahedra of the size that is asked for") {
+    const GmshAlgorithm algorithm = GENERATE(GmshAlgorithm::delaunay, GmshAlgorithm::hxt);
+    CAPTURE(static_cast<int>(algorithm));
+    const GmshRun run = mesh_with_gmsh(two_cube, sphere, {.algorithm = algorithm});
+    CHECK(volume(run.mesh) == Approx(8));
+    CHECK(area(run.mesh) == Approx(24));
+    for (const Tetrahedron& tet : run.mesh.tets) REQUIRE(signed_volume(run.mesh, tet) > 0);
+    for (const Point& p : run.mesh.vertices) REQUIRE(two_cube.contains(p));
+    const Conformity c = conformity(run.mesh, sphere);
+    CHECK(c.mean_length == Approx(1).epsilon(0.1));
+    CHECK(c.l_r > 0.55);
+    CHECK(c.quality_min > 0.1);
+    CHECK(run.queries > c.nodes / 4);
+    CHECK(run.query_seconds < run.seconds);
+    CHECK_FALSE(run.anisotropic);
+}
+
+TEST_CASE("one thread makes the same mesh again") {
+    const GmshRun run = mesh_with_gmsh(two_cube, sphere);
+    const GmshRun again = mesh_with_gmsh(two_cube, sphere);
+    CHECK(same(again.mesh.vertices, run.mesh.vertices));
+    CHECK(same(again.mesh.tets, run.mesh.tets));
+    CHECK(again.queries == run.queries);
+}
+
+TEST_CASE("place and size of the domain do not change the mesh") {
+    const Box box{Point::Zero(), Point::Constant(2)};
+    const GmshRun large = mesh_with_gmsh(box, sphere);
+    SECTION("a tiny one, by a power of two") {
+        const double size = 0x1p-40;
+        const Box tiny{box.low, size * box.high};
+        const FormulaField field(
+            [size](const Point& p) { return size * around_sphere(p / size, 0.2); });
+        const GmshRun small = mesh_with_gmsh(tiny, field);
+        CHECK(small.queries == large.queries);
+        CHECK(same(small.mesh.tets, large.mesh.tets));
+        CHECK(volume(small.mesh) / (size * size * size) == Approx(8));
+    }
+    SECTION("a far one") {
+        const Point low(1e6, -1e6, 5e5);
+        const FormulaField field([&](const Point& p) { return around_sphere(p - low, 0.2); });
+        const GmshRun far = mesh_with_gmsh({low, low + box.edges()}, field);
+        CHECK(volume(far.mesh) == Approx(8));
+        CHECK(static_cast<double>(far.mesh.tets.size()) ==
+              Approx(static_cast<double>(large.mesh.tets.size())).epsilon(0.05));
+    }
+}
+
+TEST_CASE("of an anisotropic field, Gmsh is given the smallest length, and it is said") {
+    const FormulaField thin([](const Point&) { return Metric{0.2, 0.4, 0.8, 0, 0, 0}; });
+    const FormulaField smallest([](const Point&) { return Metric::isotropic(0.2); });
+    const GmshRun run = mesh_with_gmsh(unit_box, thin);
+    CHECK(run.anisotropic);
+    CHECK(same(run.mesh.tets, mesh_with_gmsh(unit_box, smallest).mesh.tets));
+}
+
+TEST_CASE("a field that fails does so outside of Gmsh") {
+    std::atomic<int> asked = 0;
+    const auto after_some = [&](auto&& fail) {
+        return FormulaField([&asked, fail](const Point& p) {
+            // The estimate asks first.
+            return ++asked > 14000 ? fail() : around_sphere(p, 0.2);
+        });
+    };
+    struct OwnError {};
+    const auto throwing = after_some([]() -> Metric { throw OwnError{}; });
+    CHECK_THROWS_AS(mesh_with_gmsh(two_cube, throwing), OwnError);
+    asked = 0;
+    const auto wrong = after_some([] { return Metric{1, 1, -1, 0, 0, 0}; });
+    CHECK_THAT(error_of([&] { mesh_with_gmsh(two_cube, wrong); }),
+               Contains("is no metric") && Contains("(1 1 -1 0 0 0)"));
+    // And Gmsh can be used again.
+    CHECK_FALSE(mesh_with_gmsh(two_cube, sphere).mesh.tets.empty());
+}
+
+TEST_CASE("options out of range and meshes beyond all measure are refused") {
+    const auto error_with = [](const GmshOptions& options) {
+        return error_of([&] { mesh_with_gmsh(two_cube, sphere, options); });
+    };
+    CHECK_THAT(error_with({.factor = 0.0}), Contains("factor"));
+    CHECK_THAT(error_with({.factor = std::nan("")}), Contains("factor"));
+    CHECK_THAT(error_with({.optimize = 1.0}), Contains("optimize"));
+    CHECK_THAT(error_with({.max_tets = 100}), Contains("tetrahedra, more than 1e+02"));
+    const FormulaField fine([](const Point&) { return Metric::isotropic(1e-9); });
+    CHECK_THAT(error_of([&] { mesh_with_gmsh(two_cube, fine); }), Contains("tetrahedra"));
+    CHECK_THAT(error_of([&] {
+                   mesh_with_gmsh({Point::Zero(), Point(1, 1, 0)}, sphere);
+               }),
+               Contains("domain"));
+}
+
+TEST_CASE("a .msh file holds the mesh, as Gmsh reads it") {
+    const ScratchDirectory folder;
+    TetMesh mesh = kuhn_mesh(2);
+    mesh.triangles = {{0, 1, 4}, {0, 3, 4}};
+    const auto path = folder.path() / "box.msh";
+    write_msh(path, mesh);
+    CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
+
+    gmsh::initialize(0, nullptr, false);
+    gmsh::option::setNumber("General.Terminal", 0);
+    gmsh::open(path.string());
+    std::vector<std::size_t> tags, corners;
+    std::vector<double> x, unused;
+    gmsh::model::mesh::getNodes(tags, x, unused);
+    TetMesh read;
+    read.vertices.resize(tags.size());
+    for (std::size_t i = 0; i < tags.size(); ++i) {
+        read.vertices.at(tags[i] - 1) = Point(x[3 * i], x[3 * i + 1], x[3 * i + 2]);
+    }
+    tags.clear();
+    gmsh::model::mesh::getElementsByType(4, tags, corners);
+    for (std::size_t i = 0; i + 3 < corners.size(); i += 4) {
+        Tetrahedron& tet = read.tets.emplace_back();
+        for (std::size_t k = 0; k < 4; ++k) tet[k] = static_cast<VertexIndex>(corners[i + k] - 1);
+    }
+    tags.clear();
+    corners.clear();
+    gmsh::model::mesh::getElementsByType(2, tags, corners);
+    gmsh::finalize();
+    CHECK(read.vertices == mesh.vertices);
+    CHECK(read.tets == mesh.tets);
+    CHECK(corners == std::vector<std::size_t>{1, 2, 5, 1, 4, 5});
+
+    CHECK_THAT(error_of([&] { write_msh(folder.path() / "none" / "box.msh", mesh); }),
+               Contains("box.msh"));
+}
