@@ -62,22 +62,12 @@ private:
     std::vector<Entry> entries_;
 };
 
-/// Structures without voxels of their own have no nodes to follow a field at.
-void require_follows(const CatalogueEntry& entry) {
-    if (entry.has_voxels && !entry.has_levels) return;
-    throw InputError(
-        "this structure follows point sources only: an analytic field takes a grid, or a tree with "
-        "target_delta");
-}
-
-void follow_at_nodes(ControlSpace& space, const MetricField& field) {
-    ControlNodes nodes = space.control_nodes(Neighbourhood::faces);
-    std::vector<Point> x(nodes.metrics.size());
-    for (NodeIndex i = 0; i < x.size(); ++i) {
-        x[i] = std::visit([&](const auto& graph) { return Point(graph.position(i)); }, nodes.graph);
+/// A field is followed by adaptation; without a target for it only what keeps its elements can be.
+void require_follows(const Case& c, const CatalogueEntry& entry) {
+    if (c.target_delta || entry.graded_from_start || (entry.has_voxels && !entry.has_levels)) {
+        return;
     }
-    field.evaluate(x, nodes.metrics);
-    space.assign(nodes.metrics);
+    throw InputError("an analytic field is followed by adaptation: set target_delta, for trees");
 }
 
 }  // namespace
@@ -90,28 +80,23 @@ const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> ca
 std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
                                             const CatalogueEntry& entry, const Workload& workload,
                                             Measures& m, const StudyObserver& observer) {
-    if (c.target_delta) {
+    if (c.target_delta || has_field(c.sources)) {
+        require_follows(c, entry);
         tell(observer.phase_started, "adaptation");
+        AdaptationGoal goal{workload.sources, workload.field.field, c.g_r};
+        if (c.target_delta) goal.target = *c.target_delta;
         const auto start = std::chrono::steady_clock::now();
         auto space = entry.make(space_options(study, c, workload));
-        const AdaptationReport report =
-            space->adapt({workload.sources, workload.field.field, c.g_r, *c.target_delta});
+        const AdaptationReport report = space->adapt(goal);
         m.insert_s = seconds_since(start);
         const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
         m.gradation.largest_ratio_left =
             largest_gradation(nodes.graph, nodes.metrics, GradationLaw::cone);
-        m.footprint.remark = fmt::format("δ {:.4g} reached{}{}", report.reached,
-                                         report.shortfall.empty() ? "" : "; ", report.shortfall);
-        return space;
-    }
-    if (has_field(c.sources)) {
-        tell(observer.phase_started, "adaptation");
-        require_follows(entry);
-        const auto field = make_reference(study, c, workload);
-        const auto start = std::chrono::steady_clock::now();
-        auto space = entry.make(space_options(study, c, workload));
-        follow_at_nodes(*space, *field);
-        m.insert_s = seconds_since(start);
+        if (c.target_delta) {
+            m.footprint.remark =
+                fmt::format("δ {:.4g} reached{}{}", report.reached,
+                            report.shortfall.empty() ? "" : "; ", report.shortfall);
+        }
         return space;
     }
     tell(observer.phase_started, "insertion");

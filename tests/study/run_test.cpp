@@ -148,35 +148,29 @@ TEST_CASE("a study that cannot be run is refused before anything runs") {
     CHECK_THROWS_WITH(PreparedStudy(study, tree_catalogue()), Contains("no/such/file.csv"));
 }
 
-TEST_CASE("with a field, grids follow it and the sources; what cannot is a row that says so") {
-    // An octree that was never cut passes for a grid of one voxel.
-    const auto trees = tree_catalogue();
-    std::vector<CatalogueEntry> catalogue(trees.begin(), trees.end());
-    CatalogueEntry& grid = catalogue[3];
-    REQUIRE(grid.id == "K_oL");
-    grid.has_voxels = true;
-    Study study = small_study({"K_oL", "K_L"});
-    study.sources.field.lengths = {.across = 0.01, .along = 0.5};
-    study.runs[0].field = {FieldKind::sphere, FieldKind::planes};
-    study.probe_grid = 1;
-    const auto rows = run(study, catalogue);
-    REQUIRE(rows.size() == 4);
-    for (const Row& row : rows) {
-        CHECK(row.sources > 100);
-        if (row.setting.structure == "K_L") {
-            CHECK_THAT(row.error, Contains("field"));
-            continue;
+TEST_CASE("with a field, trees are adapted to it and the sources; without a target they say so") {
+    Study study = small_study({"K_V", "K_oL"});
+    study.sources.field.lengths = {.across = 0.1, .along = 0.4};
+    study.runs[0].field = {FieldKind::planes};
+    study.runs[0].target_delta = {0, 0.3};
+    const auto check = [&](bool has_sources) {
+        const auto rows = run(study, tree_catalogue());
+        REQUIRE(rows.size() == 4);
+        for (const Row& row : rows) {
+            INFO(structure_label(row.setting) << ": " << row.error);
+            CHECK((row.sources > 100) == has_sources);
+            if (!row.setting.target_delta) {
+                CHECK_THAT(row.error, Contains("target_delta"));
+                continue;
+            }
+            REQUIRE(row.measures);
+            CHECK(row.measures->footprint.control_nodes > 8);
+            CHECK(row.measures->accuracy.max <= 0.3);
+            CHECK((row.measures->source_accuracy > 0) == has_sources);
         }
-        REQUIRE(row.measures);
-        CHECK(row.measures->footprint.control_nodes == 1);
-        CHECK(row.measures->accuracy.max == 0);  // the probe is the voxel's centre
-        CHECK(row.measures->accuracy_fine.max > 1);
-    }
+    };
+    check(true);
     study.sources.kind = SourcesKind::none;
     study.sources.h = SourcesChoice{}.h;
-    const auto alone = run(study, catalogue);
-    REQUIRE(alone[0].measures);
-    CHECK(alone[0].sources == 0);
-    CHECK(alone[0].measures->accuracy.max == 0);
-    CHECK(alone[0].measures->source_accuracy == 0);
+    check(false);
 }
