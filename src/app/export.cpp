@@ -9,6 +9,7 @@
 
 #include "app/standard_output.h"
 #include "app/threads.h"
+#include "app/vdb_readers.h"
 #include "baselines/catalogue.h"
 #include "error.h"
 #include "study/names.h"
@@ -85,7 +86,7 @@ void export_vdb(const ExportOptions& options) {
     const Study study = study_of(options);
     const auto threads = limit_threads(study.threads);
     const Case c = only_case(study);
-    const Workload workload = make_workload(study, c.sources);
+    const Workload workload = make_workload(study, c.sources, vdb_readers());
     Measures unused;
     const auto space = make_and_fill(study, c, entry_of(c, structures()), workload, unused, {});
 

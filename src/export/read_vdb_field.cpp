@@ -186,42 +186,40 @@ AnalyticField tensor_field(const VdbFile& file) {
     return field_of(TensorGrids{diagonal, off_diagonal}, coarsest, finest);
 }
 
-AnalyticField length_field(const VdbFile& file, const VdbFieldOptions& options) {
-    const auto grid = file.read_as<openvdb::FloatGrid>(options.grid);
+AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
+    const auto grid = file.read_as<openvdb::FloatGrid>(what.grid);
     double finest = largest_magnitude;
     double coarsest = 0;
     for (auto value = grid->beginValueOn(); value; ++value) {
         const double given = *value;
         if (!std::isfinite(given)) {
-            file.fail(fmt::format("grid '{}' holds {} at voxel {}: give finite numbers",
-                                  options.grid, given, name_of(value.getCoord())));
+            file.fail(fmt::format("grid '{}' holds {} at voxel {}: give finite numbers", what.grid,
+                                  given, name_of(value.getCoord())));
         }
-        const double h = options.density ? length_of_density(given, options.density->finest,
-                                                             options.density->coarsest)
-                                         : given;
+        const double h =
+            what.density ? length_of_density(given, what.density->finest, what.density->coarsest)
+                         : given;
         if (!is_length(h)) {
             file.fail(fmt::format("grid '{}' holds {} at voxel {}: lengths must be positive",
-                                  options.grid, given, name_of(value.getCoord())));
+                                  what.grid, given, name_of(value.getCoord())));
         }
-        if (options.density) value.setValue(static_cast<float>(h));
+        if (what.density) value.setValue(static_cast<float>(h));
         finest = std::min(finest, h);
         coarsest = std::max(coarsest, h);
     }
-    return field_of(LengthGrid{grid}, options.density ? options.density->coarsest : coarsest,
-                    finest);
+    return field_of(LengthGrid{grid}, what.density ? what.density->coarsest : coarsest, finest);
 }
 
 }  // namespace
 
-AnalyticField read_vdb_field(const std::filesystem::path& path, const VdbFieldOptions& options) {
-    if (options.density &&
-        !(is_length(options.density->finest) && is_length(options.density->coarsest))) {
+AnalyticField read_vdb_field(const std::filesystem::path& path, const VdbLengths& what) {
+    if (what.density && !(is_length(what.density->finest) && is_length(what.density->coarsest))) {
         throw InputError(fmt::format("lengths {} and {} for densities 1 and 0: give positive ones",
-                                     options.density->finest, options.density->coarsest));
+                                     what.density->finest, what.density->coarsest));
     }
     const VdbFile file(path);
-    if (!options.grid.empty()) return length_field(file, options);
-    if (options.density) file.fail("name the grid of densities: it holds " + file.listing());
+    if (!what.grid.empty()) return length_field(file, what);
+    if (what.density) file.fail("name the grid of densities: it holds " + file.listing());
     return tensor_field(file);
 }
 

@@ -1,25 +1,11 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
-#include <string>
 
 #include "fields/analytic_field.h"
+#include "study/vdb_choice.h"
 
 namespace controlspace {
-
-/// How a density, somebody's painting, stands for lengths; density_of the other way round.
-struct DensitySizes {
-    double finest = 0;    ///< length at density 1
-    double coarsest = 0;  ///< length at density 0, and where nothing is painted
-};
-
-struct VdbFieldOptions {
-    /// A grid of one number a voxel; empty: metric_diag and metric_off.
-    std::string grid = {};
-    /// Takes the numbers of `grid` as densities; none: as lengths in the units of the domain.
-    std::optional<DensitySizes> density = {};
-};
 
 /// Reads the metrics that write_vdb wrote, or lengths or densities of anybody's. Between the
 /// voxels' centres the eight around a point are blended, linear in M; those that are not active do
@@ -30,7 +16,6 @@ struct VdbFieldOptions {
 /// Throws InputError that names the file for what cannot be read, grids that are missing (with a
 /// list of what is there), of another type, empty, or under a transform that is not linear; and for
 /// voxels that are not a number, not positive (lengths), or not positive definite.
-AnalyticField read_vdb_field(const std::filesystem::path& path,
-                             const VdbFieldOptions& options = {});
+AnalyticField read_vdb_field(const std::filesystem::path& path, const VdbLengths& what = {});
 
 }  // namespace controlspace

@@ -54,15 +54,14 @@ double largest_curvature(const Sampler& grid, const Point& x, double step) {
     return std::max(std::abs(curvatures[0]), std::abs(curvatures[2]));
 }
 
-std::string grid_of(const VdbFile& file, const VdbSourceOptions& options) {
-    if (!options.grid.empty()) return options.grid;
+std::string grid_of(const VdbFile& file, const VdbSurface& surface) {
+    if (!surface.grid.empty()) return surface.grid;
     if (file.grids().size() > 1) file.fail("name one of its grids: it holds " + file.listing());
     return file.grids().front();
 }
 
-double isovalue_of(const VdbFile& file, const openvdb::FloatGrid& grid,
-                   const VdbSourceOptions& options) {
-    if (options.isovalue) return *options.isovalue;
+double isovalue_of(const VdbFile& file, const openvdb::FloatGrid& grid, const VdbSurface& surface) {
+    if (surface.isovalue) return *surface.isovalue;
     switch (grid.getGridClass()) {
         case openvdb::GRID_LEVEL_SET:
             return 0;
@@ -86,18 +85,18 @@ void require_finite(const VdbFile& file, const openvdb::FloatGrid& grid) {
 }  // namespace
 
 std::vector<PointSource> read_vdb_sources(const std::filesystem::path& path,
-                                          const VdbSourceOptions& options) {
+                                          const VdbSurface& surface) {
     const VdbFile file(path);
-    const bool by_curvature = options.per_radius != 0;
-    if (by_curvature == (options.h != 0) ||
-        !is_length(by_curvature ? options.per_radius : options.h)) {
+    const bool by_curvature = surface.per_radius != 0;
+    if (by_curvature == (surface.h != 0) ||
+        !is_length(by_curvature ? surface.per_radius : surface.h)) {
         file.fail(
             "a surface has no lengths of its own: give a positive length, or one in units of the "
             "radius of curvature");
     }
-    const auto grid = file.read_as<openvdb::FloatGrid>(grid_of(file, options));
+    const auto grid = file.read_as<openvdb::FloatGrid>(grid_of(file, surface));
     require_finite(file, *grid);
-    const double isovalue = isovalue_of(file, *grid, options);
+    const double isovalue = isovalue_of(file, *grid, surface);
 
     std::vector<openvdb::Vec3s> vertices;
     std::vector<openvdb::Vec4I> quads;
@@ -126,9 +125,9 @@ std::vector<PointSource> read_vdb_sources(const std::filesystem::path& path,
                                   const double way = (isovalue - sample(sampler, x)) / slope;
                                   x += std::clamp(way, -voxel, voxel) / slope * gradient;
                               }
-                              double h = options.h;
+                              double h = surface.h;
                               if (by_curvature) {
-                                  h = options.per_radius / largest_curvature(sampler, x, voxel);
+                                  h = surface.per_radius / largest_curvature(sampler, x, voxel);
                                   h = std::clamp(h, voxel, coarsest);
                               }
                               sources[i] = {x, Metric::isotropic(h)};

@@ -9,6 +9,7 @@
 #include "sources/scattered_surfaces.h"
 #include "spaces/catalogue.h"
 #include "study/field_choice.h"
+#include "study/vdb_choice.h"
 
 namespace controlspace {
 
@@ -27,6 +28,7 @@ enum class ReferenceKind {
 struct SourcesChoice {
     SourcesKind kind = SourcesKind::sphere;
     std::filesystem::path file;  ///< file only
+    VdbSurface surface;          ///< file only, a .vdb
     Sampling sampling = Sampling::regular;
     Point centre = Point::Zero();  ///< sphere only
     double radius = 0.8;           ///< sphere only

@@ -20,9 +20,10 @@ AnalyticField make_field(const FieldChoice& choice) {
         case FieldKind::ugawg_polar_2:
             return ugawg_polar_2();
         case FieldKind::none:
+        case FieldKind::file:
             break;
     }
-    throw std::logic_error("no field is no field to make");
+    throw std::logic_error("no formula to make a field of");
 }
 
 }  // namespace controlspace

@@ -46,13 +46,14 @@ struct Names<Sampling> {
 };
 template <>
 struct Names<FieldKind> {
-    static constexpr std::array<std::pair<FieldKind, std::string_view>, 6> table{
+    static constexpr std::array<std::pair<FieldKind, std::string_view>, 7> table{
         {{FieldKind::none, "none"},
          {FieldKind::sphere, "sphere"},
          {FieldKind::planes, "planes"},
          {FieldKind::ugawg_linear, "ugawg-linear"},
          {FieldKind::ugawg_polar_1, "ugawg-polar-1"},
-         {FieldKind::ugawg_polar_2, "ugawg-polar-2"}}};
+         {FieldKind::ugawg_polar_2, "ugawg-polar-2"},
+         {FieldKind::file, "file"}}};
 };
 
 template <class Enum>

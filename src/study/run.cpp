@@ -133,14 +133,15 @@ Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry
     return m;
 }
 
-PreparedStudy::PreparedStudy(Study study, std::span<const CatalogueEntry> catalogue)
+PreparedStudy::PreparedStudy(Study study, std::span<const CatalogueEntry> catalogue,
+                             const FileReaders& readers)
     : study_(std::move(study)), catalogue_(catalogue), cases_(expand(study_, catalogue)) {
     for (std::size_t i = 0; i < cases_.size(); ++i) {
         const Case& c = cases_[i];
         const bool known =
             std::any_of(sources_.begin(), sources_.end(),
                         [&](const SharedSources& shared) { return shared.choice == c.sources; });
-        if (!known) sources_.push_back({c.sources, make_workload(study_, c.sources), i});
+        if (!known) sources_.push_back({c.sources, make_workload(study_, c.sources, readers), i});
         SharedSources& shared = sources_of(c);
         shared.last_use = i;
         source_counts_.push_back(shared.workload.sources.size());

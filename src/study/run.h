@@ -25,7 +25,8 @@ struct StudyObserver {
 class PreparedStudy {
 public:
     /// Throws InputError for anything about the study that cannot be run.
-    PreparedStudy(Study study, std::span<const CatalogueEntry> catalogue);
+    PreparedStudy(Study study, std::span<const CatalogueEntry> catalogue,
+                  const FileReaders& readers = {});
 
     const Study& study() const { return study_; }
     std::span<const Case> cases() const { return cases_; }

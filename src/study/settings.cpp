@@ -12,6 +12,7 @@
 #include "study/field_settings.h"
 #include "study/names.h"
 #include "study/setting_values.h"
+#include "study/vdb_settings.h"
 
 namespace controlspace {
 namespace {
@@ -131,7 +132,8 @@ const Setting<Study> general_table[] = {
      },
      [](const Study& s) { return SettingValues{s.name}; }},
     {"sources", text_type, 1, "",
-     "sphere, planes, a file of sources: .csv, a pipe of such, or .mesh beside .sol; or none, for "
+     "sphere, planes, a file of sources: .csv, a pipe of such, .mesh beside .sol, or a surface in "
+     "a .vdb; or none, for "
      "a field alone",
      set_sources, [](const Study& s) { return SettingValues{sources_name(s.sources)}; }},
     {"centre", number_type, 3, "", "x y z: centre of the sphere [length]",
@@ -232,8 +234,8 @@ const Setting<Run> run_table[] = {
     {"sampling", text_type, 0, "", "How sampled sources lie: regular, random, clustered, poisson",
      set_names<&Run::sampling>, get_names<&Run::sampling>},
     {"field", text_type, 0, "",
-     "Analytic field that is asked for besides the sources: none, sphere, planes, ugawg-linear, "
-     "ugawg-polar-1, ugawg-polar-2",
+     "Continuous field that is asked for besides the sources: none, sphere, planes, ugawg-linear, "
+     "ugawg-polar-1, ugawg-polar-2, file",
      set_names<&Run::field>, get_names<&Run::field>},
     {"s_a", number_type, 0, "", "Tangential length of sampled sources [h]", set_positive<&Run::s_a>,
      get_numbers<&Run::s_a>},
@@ -283,8 +285,9 @@ void require_type(ValueType type, const SettingValue& value) {
 std::span<const Setting<Study>> study_settings() {
     static const std::vector<Setting<Study>> all = [] {
         std::vector<Setting<Study>> settings(std::begin(general_table), std::end(general_table));
-        const auto fields = field_settings();
-        settings.insert(settings.end(), fields.begin(), fields.end());
+        for (const auto more : {field_settings(), vdb_settings()}) {
+            settings.insert(settings.end(), more.begin(), more.end());
+        }
         return settings;
     }();
     return all;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "error.h"
+#include "study/file_readers.h"
 
 namespace controlspace {
 namespace {
@@ -67,6 +68,11 @@ void require_needed(const SourcesChoice& sources, const Run& run) {
         (sources.radius != plain.radius || sources.centre != plain.centre)) {
         throw InputError("radius and centre are for the sphere: leave them out with other sources");
     }
+    if (!is_vdb(sources) && sources.surface != plain.surface) {
+        throw InputError(
+            "vdb_size, vdb_size_per_radius, vdb_grid and vdb_isovalue are for sources out of a "
+            ".vdb: leave them out with other sources");
+    }
     if (sources.kind != SourcesKind::planes && sources.slope != plain.slope) {
         throw InputError("slope is for the planes: leave it out with other sources");
     }
@@ -101,6 +107,14 @@ void require_needed_fields(const Study& study) {
         return std::any_of(study.runs.begin(), study.runs.end(),
                            [&](const Run& run) { return has(run.field, kind); });
     };
+    const bool file = any_run_has(FieldKind::file);
+    if (file && field.file.empty()) {
+        throw InputError("field = \"file\" needs field_file: name a .vdb");
+    }
+    if (!file && (!field.file.empty() || field.vdb != plain.vdb)) {
+        throw InputError(
+            "field_file, field_grid and field_density_sizes are for field = \"file\": set that");
+    }
     const bool sphere = any_run_has(FieldKind::sphere);
     const bool planes = any_run_has(FieldKind::planes);
     if (!sphere && (field.radius != plain.radius || field.centre != plain.centre)) {

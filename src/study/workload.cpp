@@ -1,9 +1,12 @@
 #include "study/workload.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <utility>
 
+#include "error.h"
 #include "fields/mixture.h"
 #include "measure/reference.h"
 #include "sources/read_sources.h"
@@ -13,7 +16,13 @@
 namespace controlspace {
 namespace {
 
-std::vector<PointSource> make_sources(const SourcesChoice& s, std::uint64_t seed) {
+[[noreturn]] void fail_without_reader(const std::filesystem::path& file) {
+    throw InputError(fmt::format(
+        "{}: this program is built without OpenVDB, which reads .vdb files", file.string()));
+}
+
+std::vector<PointSource> make_sources(const SourcesChoice& s, std::uint64_t seed,
+                                      const FileReaders& readers) {
     switch (s.kind) {
         case SourcesKind::sphere:
             return scatter_sphere({.centre = s.centre,
@@ -32,7 +41,15 @@ std::vector<PointSource> make_sources(const SourcesChoice& s, std::uint64_t seed
         case SourcesKind::file:
             break;
     }
-    return read_sources(s.file);
+    if (!is_vdb(s)) return read_sources(s.file);
+    if (!readers.vdb_sources) fail_without_reader(s.file);
+    return readers.vdb_sources(s);
+}
+
+AnalyticField field_of(const FieldChoice& choice, const FileReaders& readers) {
+    if (choice.kind != FieldKind::file) return make_field(choice);
+    if (!readers.vdb_field) fail_without_reader(choice.file);
+    return readers.vdb_field(choice);
 }
 
 Box domain_of(const Study& study, const SourcesChoice& choice, const Workload& workload) {
@@ -53,10 +70,11 @@ double finest_length_of(const Workload& workload) {
 
 }  // namespace
 
-Workload make_workload(const Study& study, const SourcesChoice& choice) {
+Workload make_workload(const Study& study, const SourcesChoice& choice,
+                       const FileReaders& readers) {
     Workload workload;
-    workload.sources = make_sources(choice, study.seed);
-    if (has_field(choice)) workload.field = make_field(choice.field);
+    workload.sources = make_sources(choice, study.seed, readers);
+    if (has_field(choice)) workload.field = field_of(choice.field, readers);
     workload.domain = domain_of(study, choice, workload);
     require_defined(workload.field, workload.domain, std::string(name_of(choice.field.kind)));
     for (std::size_t i = 0; i < workload.sources.size(); ++i) {

@@ -7,6 +7,7 @@
 #include "geometry/box.h"
 #include "measure/accuracy.h"
 #include "sources/point_source.h"
+#include "study/file_readers.h"
 #include "study/study.h"
 
 namespace controlspace {
@@ -21,7 +22,8 @@ struct Workload {
 
 /// Samples or reads the sources, and checks that each lies in the domain, and the domain where the
 /// field is defined. Throws InputError.
-Workload make_workload(const Study& study, const SourcesChoice& choice);
+Workload make_workload(const Study& study, const SourcesChoice& choice,
+                       const FileReaders& readers = {});
 
 /// What the structure of case `c` is made with; throws InputError where it is out of range.
 SpaceOptions space_options(const Study& study, const Case& c, const Workload& workload);

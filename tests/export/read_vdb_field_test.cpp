@@ -159,7 +159,7 @@ TEST_CASE("a painted density drives lengths") {
     grid->tree().setValueOn({0, 0, 0}, 1.0F);
     grid->tree().setValueOn({3, 3, 3}, 0.0F);
     grid->tree().setValueOn({40, 40, 40}, 5.0F);
-    const VdbFieldOptions options{.grid = "paint", .density = DensitySizes{0.01, 1}};
+    const VdbLengths options{.grid = "paint", .density = DensitySizes{0.01, 1}};
     const AnalyticField read = read_vdb_field(write_grids(folder, {grid}), options);
     CHECK(at(*read.field, {0, 0, 0}).xx == Approx(0.01));
     CHECK(at(*read.field, {0.5, 0.5, 0.5}).xx == Approx(0.1));
@@ -183,10 +183,10 @@ TEST_CASE("our own density leads back to the smallest length") {
 
 TEST_CASE("files that cannot be used are refused in one line") {
     const ScratchDirectory folder;
-    const auto error = [&](const fs::path& path, const VdbFieldOptions& options) {
+    const auto error = [&](const fs::path& path, const VdbLengths& options) {
         return error_of([&] { read_vdb_field(path, options); });
     };
-    const auto foreign = [&](const openvdb::GridCPtrVec& grids, const VdbFieldOptions& options) {
+    const auto foreign = [&](const openvdb::GridCPtrVec& grids, const VdbLengths& options) {
         return error(write_grids(folder, grids), options);
     };
     const openvdb::Vec3s one(1);

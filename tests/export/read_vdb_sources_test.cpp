@@ -89,7 +89,7 @@ TEST_CASE("a fog's surface is where it is one half, unless an isovalue says othe
     openvdb::tools::sdfToFogVolume(*fog);
     const auto path = write_grids(folder, {fog});
     // Within the band of three voxels a fog grows linearly from the surface inwards.
-    const auto mean_radius = [&](const VdbSourceOptions& options) {
+    const auto mean_radius = [&](const VdbSurface& options) {
         double sum = 0;
         const auto sources = read_vdb_sources(path, options);
         for (const PointSource& s : sources) sum += (s.position - centre).norm();
@@ -102,7 +102,7 @@ TEST_CASE("a fog's surface is where it is one half, unless an isovalue says othe
 
 TEST_CASE("surfaces that cannot be used are refused in one line") {
     const ScratchDirectory folder;
-    const auto error = [&](const openvdb::GridCPtrVec& grids, const VdbSourceOptions& options) {
+    const auto error = [&](const openvdb::GridCPtrVec& grids, const VdbSurface& options) {
         const fs::path path = write_grids(folder, grids);
         return error_of([&] { read_vdb_sources(path, options); });
     };
