@@ -6,6 +6,7 @@
 #include <openvdb/tree/LeafManager.h>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -94,7 +95,10 @@ Extremes fill(const Builders& builders, const MetricField& field, const VoxelLat
             for (std::size_t a = 0; a < 3; ++a) {
                 inside[a] = std::min(side, lattice.counts[a] - first[a]);
             }
-            sample_block(field, lattice, first, options.tolerance, s.block);
+            // A thread that waits for its part of the field must not take up another block, whose
+            // scratch would be the same.
+            tbb::this_task_arena::isolate(
+                [&] { sample_block(field, lattice, first, options.tolerance, s.block); });
             for (std::size_t v = 0; v < SampledBlock::size; ++v) {
                 if (s.block.same_as[v] != v) continue;
                 s.frames[v] = eigen_frame(s.block.metrics[v]);

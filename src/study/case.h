@@ -28,7 +28,6 @@ enum class ReferenceKind {
 struct SourcesChoice {
     SourcesKind kind = SourcesKind::sphere;
     std::filesystem::path file;  ///< file only
-    VdbSurface surface;          ///< file only, a .vdb
     Sampling sampling = Sampling::regular;
     Point centre = Point::Zero();  ///< sphere only
     double radius = 0.8;           ///< sphere only
@@ -38,6 +37,7 @@ struct SourcesChoice {
     double s_a = 2;                ///< tangential length in units of h
     double s_n = 1;                ///< normal length in units of the tangential one
     FieldChoice field = {};
+    VdbSurface surface = {};  ///< file only, a .vdb
 
     bool operator==(const SourcesChoice&) const = default;
 };
