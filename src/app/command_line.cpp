@@ -8,6 +8,7 @@
 
 #include "error.h"
 #include "export/metric_grids.h"
+#include "mesh/mesh_settings.h"
 #include "study/provenance.h"
 #include "study/settings.h"
 
@@ -16,12 +17,6 @@ namespace {
 
 /// Words given for each setting, by key.
 using WordsByKey = std::map<std::string_view, std::vector<std::string>>;
-
-std::string option_name(std::string_view key) {
-    std::string name = "--" + std::string(key);
-    std::replace(name.begin(), name.end(), '_', '-');
-    return name;
-}
 
 std::string type_name(ValueType type, std::size_t at_most) {
     const std::string name = type == ValueType::number         ? "NUMBER"
@@ -133,6 +128,27 @@ CLI::App* add_export(CLI::App& app, ExportOptions& options, WordsByKey& given) {
 }
 #endif
 
+#ifdef CONTROLSPACE_GMSH
+CLI::App* add_mesh(CLI::App& app, MeshOptions& options, WordsByKey& given) {
+    CLI::App* command = app.add_subcommand(
+        "mesh", "Make meshes with structures as size fields, and measure how they conform");
+    command
+        ->add_option("INPUT", options.input,
+                     "Study file (.toml) or file of sources; left out: the paper's sphere")
+        ->option_text("FILE");
+    add_options(*command, mesh_settings(), MeshSettings{}, "Settings of the meshing", given);
+    constexpr std::string_view without[] = {"access_points", "access_repeats", "fine_probe_grid"};
+    Run defaults;
+    defaults.structures = {"K_oL"};
+    defaults.splits = {SplitRule::middle};
+    add_options(*command, run_settings(), defaults,
+                "Settings of cases (lists with commas; all combinations are meshed)", given);
+    add_options(*command, study_settings(), Study{}, "Settings of the study", given, without);
+    command->add_flag("--quiet", options.quiet, "No progress on standard error");
+    return command;
+}
+#endif
+
 /// The command line as a shell would take it again.
 std::string command_line_text(int argc, const char* const* argv) {
     std::string text;
@@ -212,6 +228,12 @@ Command parse_command_line(int argc, const char* const* argv) {
     const CLI::App* export_command = add_export(app, export_options, given_to_export);
 #endif
 
+#ifdef CONTROLSPACE_GMSH
+    MeshOptions mesh_options;
+    WordsByKey given_to_mesh;
+    const CLI::App* mesh_command = add_mesh(app, mesh_options, given_to_mesh);
+#endif
+
     CLI::App* list =
         app.add_subcommand("list", "Name the structures, splits, laws, schedules and references");
 
@@ -239,6 +261,13 @@ Command parse_command_line(int argc, const char* const* argv) {
         export_options.settings = given_settings(given_to_export);
         export_options.command_line = command_line_text(argc, argv);
         return export_options;
+    }
+#endif
+#ifdef CONTROLSPACE_GMSH
+    if (mesh_command->parsed()) {
+        mesh_options.settings = given_settings(given_to_mesh);
+        mesh_options.command_line = command_line_text(argc, argv);
+        return mesh_options;
     }
 #endif
     options.settings = given_settings(given);

@@ -5,6 +5,7 @@
 
 #include "app/compare.h"
 #include "app/export.h"
+#include "app/mesh.h"
 #include "app/paper.h"
 
 namespace controlspace {
@@ -15,7 +16,8 @@ struct TextCommand {
 };
 struct ListCommand {};
 
-using Command = std::variant<TextCommand, ListCommand, CompareOptions, ExportOptions, PaperOptions>;
+using Command = std::variant<TextCommand, ListCommand, CompareOptions, ExportOptions, MeshOptions,
+                             PaperOptions>;
 
 /// Throws InputError for what is no valid command line.
 Command parse_command_line(int argc, const char* const* argv);

@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <sys/resource.h>
 
 #include <chrono>
 #include <ctime>
 
+#include "app/input_study.h"
+#include "app/peak_memory.h"
 #include "app/standard_output.h"
 #include "app/threads.h"
 #include "app/vdb_readers.h"
@@ -15,26 +16,9 @@
 #include "study/names.h"
 #include "study/provenance.h"
 #include "study/run.h"
-#include "study/study_file.h"
 
 namespace controlspace {
 namespace {
-
-Study study_of(const ExportOptions& options) {
-    Study study;
-    if (options.input.extension() == ".toml") {
-        study = read_study(options.input);
-    } else {
-        study.runs.front().structures = {"K_oL"};
-        study.runs.front().splits = {SplitRule::middle};
-        if (!options.input.empty()) {
-            study.sources.kind = SourcesKind::file;
-            study.sources.file = options.input;
-        }
-    }
-    apply(options.settings, study);
-    return study;
-}
 
 Case only_case(const Study& study) {
     const std::vector<Case> cases = expand(study, structures());
@@ -58,12 +42,6 @@ std::vector<VdbNote> notes_of(const Case& c, const std::string& command_line) {
             {"command_line", command_line}};
 }
 
-double peak_megabytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;
-}
-
 /// What writing took.
 struct Cost {
     double seconds;
@@ -77,13 +55,13 @@ std::string summary(const std::filesystem::path& path, const VdbReport& report, 
         "{:.1f} MB in the file; {:.1f} s, {:.1f} s of processors, {:.0f} MB of memory at most\n",
         path.string(), report.counts[0], report.counts[1], report.counts[2], report.voxel,
         100 * report.kept, report.finest, report.coarsest, static_cast<double>(report.file) / 1e6,
-        cost.seconds, cost.processor_seconds, peak_megabytes());
+        cost.seconds, cost.processor_seconds, static_cast<double>(peak_memory()) / 1e6);
 }
 
 }  // namespace
 
 void export_vdb(const ExportOptions& options) {
-    const Study study = study_of(options);
+    const Study study = study_of_input(options.input, options.settings);
     const auto threads = limit_threads(study.threads);
     const Case c = only_case(study);
     const Workload workload = make_workload(study, c.sources, vdb_readers());

@@ -11,6 +11,7 @@
 #include "app/compare.h"
 #include "app/export.h"
 #include "app/list.h"
+#include "app/mesh.h"
 #include "app/standard_output.h"
 #include "error.h"
 
@@ -39,6 +40,10 @@ int main(int argc, char** argv) {
 #ifdef CONTROLSPACE_OPENVDB
         } else if (const auto* export_options = std::get_if<ExportOptions>(&command)) {
             export_vdb(*export_options);
+#endif
+#ifdef CONTROLSPACE_GMSH
+        } else if (const auto* mesh_options = std::get_if<MeshOptions>(&command)) {
+            return mesh(*mesh_options) ? 0 : 3;
 #endif
         } else {
             return compare(std::get<CompareOptions>(command)) ? 0 : 3;

@@ -8,105 +8,12 @@
 #include <string>
 
 #include "error.h"
+#include "sources/medit_words.h"
 #include "sources/text_file.h"
 
 namespace controlspace {
 
 namespace {
-
-// Medit files are words between white space, whatever the lines; # starts a comment.
-class Words {
-public:
-    Words(std::string_view text, const std::filesystem::path& path) : text_(text), path_(path) {
-        if (word() != "MeshVersionFormatted") {
-            fail("does not start with MeshVersionFormatted: give an ASCII Medit file");
-        }
-        const auto version = count("MeshVersionFormatted");
-        if (version < 1 || version > 4) fail("MeshVersionFormatted must be 1 to 4");
-    }
-
-    /// The next word; empty at the end.
-    std::string_view word() {
-        while (at_ < text_.size()) {
-            const char c = text_[at_];
-            if (c == '#') {
-                at_ = std::min(text_.find('\n', at_), text_.size());
-            } else if (is_blank(c)) {
-                line_ += c == '\n' ? 1 : 0;
-                ++at_;
-            } else {
-                break;
-            }
-        }
-        const std::size_t begin = at_;
-        while (at_ < text_.size() && !is_blank(text_[at_])) ++at_;
-        return text_.substr(begin, at_ - begin);
-    }
-
-    /// Goes behind the keyword, checking the dimension on the way.
-    void find(std::string_view keyword) {
-        bool is_3d = false;
-        for (std::string_view w = word(); w != "End"; w = word()) {
-            if (w.empty()) break;
-            if (w == "Dimension") {
-                const auto dimension = count("Dimension");
-                if (dimension != 3) {
-                    fail(fmt::format("Dimension is {}: only 3 can be read", dimension));
-                }
-                is_3d = true;
-            }
-            if (w != keyword) continue;
-            if (!is_3d) fail(fmt::format("no Dimension before {}: add 'Dimension 3'", keyword));
-            return;
-        }
-        throw InputError(
-            fmt::format("{} has no {}: give a file that has", path_.string(), keyword));
-    }
-
-    std::uint64_t count(std::string_view what) {
-        const std::string_view w = word();
-        std::uint64_t n = 0;
-        if (!parse_number(w, n)) {
-            fail(fmt::format("{} is followed by {} instead of a count", what, quote(w)));
-        }
-        return n;
-    }
-
-    /// A count of rows with `numbers` numbers each, as the rest of the file can hold.
-    std::size_t rows(std::string_view what, std::size_t numbers) {
-        const std::uint64_t n = count(what);
-        if (n == 0) fail(fmt::format("{} 0: nothing to read", what));
-        const std::size_t most = (text_.size() - at_) / (2 * numbers);  // "0 0 0 ..."
-        if (n > most) {
-            fail(fmt::format("{} {}, but the rest of the file can hold {} at most: is it cut off?",
-                             what, n, most));
-        }
-        return static_cast<std::size_t>(n);
-    }
-
-    double number(std::string_view what, std::size_t index) {
-        const std::string_view w = word();
-        double x = 0;
-        if (w.empty()) fail(fmt::format("the file ends within {} {}", what, index + 1));
-        if (!parse_number(w, x)) {
-            fail(fmt::format("{} {}: {} is not a number", what, index + 1, quote(w)));
-        }
-        if (!std::isfinite(x)) fail(fmt::format("{} {} has {}, not finite", what, index + 1, x));
-        return x;
-    }
-
-    [[noreturn]] void fail(const std::string& what) const {
-        throw InputError(fmt::format("{}: {}", place(path_, line_), what));
-    }
-
-private:
-    static bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-
-    std::string_view text_;
-    const std::filesystem::path& path_;
-    std::size_t at_ = 0;
-    std::size_t line_ = 1;
-};
 
 enum SolutionType : std::uint64_t { scalar = 1, symmetric_tensor = 3 };
 
@@ -123,7 +30,7 @@ std::optional<Metric> from_riemannian(const Metric& riemannian) {
 }  // namespace
 
 std::vector<Point> parse_medit_vertices(std::string_view text, const std::filesystem::path& path) {
-    Words words(text, path);
+    MeditWords words(text, path);
     words.find("Vertices");
     std::vector<Point> vertices(words.rows("Vertices", 4));
     for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -139,7 +46,7 @@ std::vector<Point> parse_medit_vertices(std::string_view text, const std::filesy
 }
 
 std::vector<Metric> parse_medit_metrics(std::string_view text, const std::filesystem::path& path) {
-    Words words(text, path);
+    MeditWords words(text, path);
     words.find("SolAtVertices");
     const std::size_t n = words.rows("SolAtVertices", 1);
     const std::uint64_t fields = words.count("SolAtVertices");

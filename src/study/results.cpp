@@ -72,13 +72,6 @@ std::string csv_field(const Json& value) {
     return quoted + '"';
 }
 
-/// Replaces `path` at once: readers see the old text or the new one, never a part.
-void replace_file(const std::filesystem::path& path, const std::string& text) {
-    OutputFile file(path);
-    file.write(text);
-    file.commit();
-}
-
 }  // namespace
 
 std::string results_json(const Provenance& p, const Study& study, std::span<const Row> rows,
@@ -146,17 +139,27 @@ void write_paper_page(const std::filesystem::path& folder, const std::string& pa
     replace_file(folder / "paper.md", page);
 }
 
-ResultsFolder::ResultsFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+void make_results_folder(const std::filesystem::path& folder, std::string_view file) {
     std::error_code error;
-    std::filesystem::create_directories(folder_, error);
-    if (error || !std::filesystem::is_directory(folder_)) {
+    std::filesystem::create_directories(folder, error);
+    if (error || !std::filesystem::is_directory(folder)) {
         throw InputError(fmt::format("{}: cannot be made ({}): choose another output folder",
-                                     folder_.string(), error ? error.message() : "it is a file"));
+                                     folder.string(), error ? error.message() : "it is a file"));
     }
-    if (std::filesystem::exists(folder_ / "results.json", error)) {
+    if (std::filesystem::exists(folder / file, error)) {
         throw InputError(fmt::format("{}: holds results already: choose another output folder",
-                                     folder_.string()));
+                                     folder.string()));
     }
+}
+
+void replace_file(const std::filesystem::path& path, std::string_view text) {
+    OutputFile file(path);
+    file.write(text);
+    file.commit();
+}
+
+ResultsFolder::ResultsFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
+    make_results_folder(folder_, "results.json");
 }
 
 void ResultsFolder::write(const Provenance& provenance, const Study& study,

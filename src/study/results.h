@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "study/provenance.h"
 #include "study/row.h"
@@ -34,6 +35,14 @@ std::string results_paper_page(const Provenance& provenance, const Study& study,
 
 /// Writes paper.md into `folder`, at once; throws InputError, naming it, if that fails.
 void write_paper_page(const std::filesystem::path& folder, const std::string& page);
+
+/// Makes a folder for results with its parents. Throws InputError if that fails, or if `file`,
+/// which marks results, lies there already.
+void make_results_folder(const std::filesystem::path& folder, std::string_view file);
+
+/// Replaces `path` at once: readers see the old text or the new one, never a part. Throws
+/// InputError.
+void replace_file(const std::filesystem::path& path, std::string_view text);
 
 /// The folder a study's results go to. Each write replaces each file at once, so that whatever
 /// happens whole files lie there.

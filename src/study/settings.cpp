@@ -302,17 +302,12 @@ std::string to_string(const SettingValues& values) {
     return fmt::format("{}", fmt::join(words, ", "));
 }
 
-template <class Target>
-void set_checked(const Setting<Target>& setting, Target& target, const SettingValues& values) {
+void require_fit(ValueType type, std::size_t at_most, const SettingValues& values) {
     if (values.empty()) throw InputError("no value: give at least one");
-    if (setting.at_most > 0 && values.size() > setting.at_most) {
-        throw InputError(fmt::format("{} values: give {} at most", values.size(), setting.at_most));
+    if (at_most > 0 && values.size() > at_most) {
+        throw InputError(fmt::format("{} values: give {} at most", values.size(), at_most));
     }
-    for (const SettingValue& value : values) require_type(setting.type, value);
-    setting.set(target, values);
+    for (const SettingValue& value : values) require_type(type, value);
 }
-
-template void set_checked(const Setting<Study>&, Study&, const SettingValues&);
-template void set_checked(const Setting<Run>&, Run&, const SettingValues&);
 
 }  // namespace controlspace

@@ -43,11 +43,14 @@ std::span<const Setting<Run>> run_settings();
 /// "1, 0.5", for help texts.
 std::string to_string(const SettingValues& values);
 
-/// Throws InputError unless `values` are of the setting's type and number.
-template <class Target>
-void set_checked(const Setting<Target>& setting, Target& target, const SettingValues& values);
+/// Throws InputError unless `values` are of the type, and from 1 to `at_most` (0: any number).
+void require_fit(ValueType type, std::size_t at_most, const SettingValues& values);
 
-extern template void set_checked(const Setting<Study>&, Study&, const SettingValues&);
-extern template void set_checked(const Setting<Run>&, Run&, const SettingValues&);
+/// Sets what fits the setting's type and number; throws InputError for what does not.
+template <class Target>
+void set_checked(const Setting<Target>& setting, Target& target, const SettingValues& values) {
+    require_fit(setting.type, setting.at_most, values);
+    setting.set(target, values);
+}
 
 }  // namespace controlspace

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/given_settings.h"
+
+namespace controlspace {
+
+/// What the command line of `mesh` asks for.
+struct MeshOptions {
+    std::filesystem::path input;  ///< study file or file of sources; empty: the paper's sphere
+    GivenSettings settings;       ///< of the study, of its runs, and of the meshing
+    bool quiet = false;
+    std::string command_line;
+};
+
+/// Makes a mesh of each case of the study, and one of each exact field to compare with, into a new
+/// folder, and prints how they conform. Returns whether all succeeded; the rows of those that did
+/// not say why. Throws InputError.
+bool mesh(const MeshOptions& options);
+
+}  // namespace controlspace

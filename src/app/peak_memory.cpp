@@ -1,0 +1,19 @@
+#include "app/peak_memory.h"
+
+#include <fstream>
+#include <string>
+
+namespace controlspace {
+
+void restart_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
+std::size_t peak_memory() {
+    std::ifstream status("/proc/self/status");
+    for (std::string word; status >> word;) {
+        std::size_t kibibytes = 0;
+        if (word == "VmHWM:" && status >> kibibytes) return kibibytes * 1024;
+    }
+    return 0;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mesh/conformity.h"
+#include "mesh/mesh_settings.h"
+#include "study/case.h"
+#include "study/provenance.h"
+#include "study/text_table.h"
+
+namespace controlspace {
+
+/// What came of meshing one field; nothing is measured where there is an error.
+struct MeshRow {
+    Case setting;        ///< of the exact field: of the first structure that it is compared with
+    bool exact = false;  ///< the reference itself was meshed, by no structure
+    Mesher mesher = Mesher::delaunay;
+    std::string error;
+    Conformity conformity;       ///< to the reference
+    double creation_s = 0;       ///< of the structure
+    double seconds = 0;          ///< of meshing, by the clock
+    std::size_t queries = 0;     ///< of sizes
+    double query_seconds = 0;    ///< spent in them
+    std::size_t peak_bytes = 0;  ///< of the program and, if that is more, of MMG
+    double delta_r_max = 0;      ///< δ_R of the structure
+    double delta_r_mean = 0;
+};
+
+/// All tables: the measures and the histogram for each setting, and the paper's Table 5 for what it
+/// has; with how L_R goes with δ_R.
+std::string mesh_tables(std::span<const MeshRow> rows, TableStyle style);
+
+/// meshes.json: provenance, settings of the meshing, and rows.
+std::string mesh_json(const Provenance& provenance, const MeshSettings& settings,
+                      std::span<const MeshRow> rows, bool complete);
+
+/// "K_L s_L", or "exact".
+std::string mesh_label(const MeshRow& row);
+
+}  // namespace controlspace

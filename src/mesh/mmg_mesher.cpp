@@ -1,0 +1,146 @@
+#include "mesh/mmg_mesher.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "error.h"
+#include "mesh/child_program.h"
+#include "mesh/read_medit_mesh.h"
+#include "mesh/write_medit.h"
+
+namespace controlspace {
+namespace {
+
+namespace fs = std::filesystem;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// A new folder, removed with all that is in it unless it is to be kept.
+class TemporaryFolder {
+public:
+    explicit TemporaryFolder(const fs::path& parent) {
+        std::string pattern = (parent / "mmg-XXXXXX").string();
+        if (::mkdtemp(pattern.data()) == nullptr) {
+            throw InputError(fmt::format("cannot make a folder in {}: {}", parent.string(),
+                                         std::strerror(errno)));
+        }
+        path_ = fs::absolute(pattern);
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        if (!keep_) fs::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    const fs::path& path() const { return path_; }
+    void keep() { keep_ = true; }
+
+private:
+    fs::path path_;
+    bool keep_ = false;
+};
+
+std::vector<Metric> metrics_at(const TetMesh& mesh, const MetricField& field) {
+    std::vector<Metric> metrics(mesh.vertices.size());
+    field.evaluate(mesh.vertices, metrics);
+    for (std::size_t i = 0; i < metrics.size(); ++i) {
+        if (is_positive_definite(metrics[i])) continue;
+        const Point& p = mesh.vertices[i];
+        throw InputError(fmt::format("the field at ({}, {}, {}) is no metric: {}", p.x(), p.y(),
+                                     p.z(), to_string(metrics[i])));
+    }
+    return metrics;
+}
+
+std::string reason(const ChildOutcome& outcome, const MmgOptions& options) {
+    if (outcome.timed_out) return fmt::format("took longer than {} s", options.time_limit_s);
+    if (outcome.signal != 0) return fmt::format("was ended by signal {}", outcome.signal);
+    if (outcome.status != 0) return fmt::format("failed with status {}", outcome.status);
+    return "left no mesh that can be read";
+}
+
+/// One call of MMG on `mesh`.
+TetMesh remesh(const TetMesh& mesh, const std::vector<Metric>& metrics, const fs::path& program,
+               const MmgOptions& options, MmgRun& run) {
+    TemporaryFolder folder(options.folder);
+    const fs::path log = folder.path() / "log", out = folder.path() / "out.mesh";
+    write_medit_mesh(folder.path() / "in.mesh", mesh);
+    write_medit_solution(folder.path() / "in.sol", metrics);
+    const std::vector<std::string> words{
+        program.string(), "-v",   "1",      "-hgrad", "-1",      "-in",
+        "in.mesh",        "-sol", "in.sol", "-out",   "out.mesh"};
+    const auto start = std::chrono::steady_clock::now();
+    const ChildOutcome outcome = run_child(words, folder.path(), log, options.time_limit_s);
+    run.seconds += seconds_since(start);
+    run.peak_bytes = std::max(run.peak_bytes, outcome.peak_bytes);
+    std::string unreadable;
+    if (outcome.succeeded()) {
+        try {
+            return read_medit_mesh(out);
+        } catch (const InputError& error) {
+            unreadable = fmt::format(" ({})", error.what());
+        }
+    }
+    folder.keep();
+    constexpr std::size_t enough = 3;
+    throw InputError(fmt::format("MMG {}{}: {} (its files: {})", reason(outcome, options),
+                                 unreadable, last_lines(log, enough), folder.path().string()));
+}
+
+}  // namespace
+
+fs::path find_mmg() {
+    for (const char* name : {"mmg3d_O3", "mmg3d"}) {
+        if (const fs::path found = find_program(name); !found.empty()) return found;
+    }
+    return {};
+}
+
+fs::path require_mmg(const MmgOptions& options) {
+    if (options.program.empty()) {
+        const fs::path found = find_mmg();
+        if (found.empty()) {
+            throw InputError("MMG is missing: there is no mmg3d_O3 in PATH; name it by --mmg");
+        }
+        return found;
+    }
+    const fs::path found = find_program(options.program.string());
+    if (found.empty()) {
+        throw InputError(fmt::format("{}: no program that can be run: name MMG's mmg3d_O3",
+                                     options.program.string()));
+    }
+    return found;
+}
+
+MmgRun mesh_with_mmg(const TetMesh& start, const MetricField& field, const MmgOptions& options) {
+    if (options.rounds < 1) {
+        throw InputError(fmt::format("{} rounds of MMG: give 1 or more", options.rounds));
+    }
+    if (!(options.time_limit_s > 0)) {
+        throw InputError(
+            fmt::format("a time limit of {} s: give a positive one", options.time_limit_s));
+    }
+    const fs::path program = require_mmg(options);
+    MmgRun run;
+    run.mesh = start;
+    for (int round = 0; round < options.rounds; ++round) {
+        const auto before = std::chrono::steady_clock::now();
+        const std::vector<Metric> metrics = metrics_at(run.mesh, field);
+        run.query_seconds += seconds_since(before);
+        run.queries += metrics.size();
+        run.mesh = remesh(run.mesh, metrics, program, options, run);
+    }
+    return run;
+}
+
+}  // namespace controlspace

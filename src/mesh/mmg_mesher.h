@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+#include "mesh/tet_mesh.h"
+#include "metric/metric_field.h"
+
+namespace controlspace {
+
+struct MmgOptions {
+    /// MMG's executable mmg3d_O3; empty: as found by find_mmg.
+    std::filesystem::path program;
+    int rounds = 3;
+    double time_limit_s = 900;  ///< of a round
+    /// Where a folder for temporary files is made. It is removed, unless something fails.
+    std::filesystem::path folder = ".";
+};
+
+/// A mesh, and what it took; times by the clock.
+struct MmgRun {
+    TetMesh mesh;
+    double seconds = 0;  ///< in MMG, its reading and writing of files included
+    std::size_t queries = 0;
+    double query_seconds = 0;    ///< in the field
+    std::size_t peak_bytes = 0;  ///< most memory that MMG held
+};
+
+/// mmg3d_O3 or mmg3d in PATH; empty if neither is there.
+std::filesystem::path find_mmg();
+
+/// The program that `options` name, or find_mmg. Throws InputError if it cannot be run.
+std::filesystem::path require_mmg(const MmgOptions& options);
+
+/// Remeshes `start` to the metric that `field` asks for, by the program MMG3D. Each round takes the
+/// field at the vertices of the mesh that the one before made, and MMG interpolates between them;
+/// it does no gradation of its own.
+///
+/// Throws InputError if MMG is missing, fails, leaves no mesh or takes too long, with its last
+/// words and the folder where its files are left; for options out of range; and for a field that is
+/// not positive definite somewhere. What the field throws passes through.
+MmgRun mesh_with_mmg(const TetMesh& start, const MetricField& field, const MmgOptions& options);
+
+}  // namespace controlspace
