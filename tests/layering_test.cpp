@@ -6,6 +6,8 @@
 #include <regex>
 #include <string>
 
+#include "data_folder.h"
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -23,7 +25,7 @@ bool is_source(const fs::path& path) {
 }  // namespace
 
 TEST_CASE("no folder includes from one to its right") {
-    const fs::path root = fs::path(CONTROLSPACE_DATA_DIR).parent_path();
+    const fs::path root = data_folder().parent_path();
     const std::regex include("^#include \"([a-z]+)/.*");
     int includes = 0;
     for (const auto& [folder, layer] : layers) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "data_folder.h"
 #include "metric/draw.h"
 #include "metric/intersection.h"
 #include "metric/nonconformity.h"
@@ -25,7 +26,7 @@ struct Golden {
 };
 
 std::vector<Golden> read_golden() {
-    std::ifstream file(CONTROLSPACE_DATA_DIR "/golden/metric_golden.csv");
+    std::ifstream file(data_folder() / "golden/metric_golden.csv");
     std::vector<Golden> rows;
     std::string line;
     std::getline(file, line);  // where the numbers come from

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "data_folder.h"
 #include "sources/files.h"
 
 using namespace controlspace;
@@ -10,7 +11,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const std::filesystem::path samples = CONTROLSPACE_DATA_DIR "/samples";
+const std::filesystem::path samples = data_folder() / "samples";
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "data_folder.h"
 #include "error.h"
 
 using namespace controlspace;
@@ -73,7 +74,7 @@ TEST_CASE("tables in another form are refused with their line") {
 
 TEST_CASE("the rerun agrees with the paper's tables where it was programmed alike") {
     // delta_R_max of the rerun, rounded, is the printed value; sizes follow from the counts.
-    std::ifstream file(CONTROLSPACE_DATA_DIR "/paper/reproduction.csv");
+    std::ifstream file(data_folder() / "paper/reproduction.csv");
     std::vector<std::string> header;
     std::size_t checked = 0;
     for (std::string line; std::getline(file, line);) {

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "data_folder.h"
 #include "error.h"
 #include "gradation/law.h"
 #include "study/settings.h"
@@ -225,7 +226,7 @@ TEST_CASE("each setting gives back what it was set to") {
 }
 
 TEST_CASE("the study files of the project can be read") {
-    const std::filesystem::path folder = CONTROLSPACE_DATA_DIR "/studies";
+    const std::filesystem::path folder = data_folder() / "studies";
     const Study full = read_study(folder / "paper-sphere.toml");
     REQUIRE(full.runs.size() == 2);
     CHECK(full.runs[1].law == std::vector{GradationLaw::mean_length});

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "data_folder.h"
 #include "error.h"
 #include "study/study_file.h"
 
@@ -101,7 +102,7 @@ TEST_CASE("groups name many structures, and nothing is run twice") {
 }
 
 TEST_CASE("the paper's study has its 72 rows as published, and all structures by default") {
-    const auto cases = expand(read_study(CONTROLSPACE_DATA_DIR "/studies/paper-sphere.toml"));
+    const auto cases = expand(read_study(data_folder() / "studies/paper-sphere.toml"));
     std::size_t published = 0;
     for (const Case& c : cases) published += is_as_published(c) ? 1 : 0;
     CHECK(published == 72);
@@ -213,8 +214,8 @@ TEST_CASE("fields and sources that do not fit together are refused") {
 }
 
 TEST_CASE("the studies of irregular sources and of fields make sense") {
-    const std::string folder = CONTROLSPACE_DATA_DIR "/studies/";
-    CHECK(expand(read_study(folder + "sources.toml")).size() == 3 * 4 * 7);
-    CHECK(expand(read_study(folder + "fields.toml")).size() == 4 * 7);
-    CHECK(expand(read_study(folder + "mixtures.toml")).size() == 4 * 2 * 7);
+    const std::filesystem::path folder = data_folder() / "studies";
+    CHECK(expand(read_study(folder / "sources.toml")).size() == 3 * 4 * 7);
+    CHECK(expand(read_study(folder / "fields.toml")).size() == 4 * 7);
+    CHECK(expand(read_study(folder / "mixtures.toml")).size() == 4 * 2 * 7);
 }

@@ -1,0 +1,3 @@
+#include "data_folder.h"
+
+std::filesystem::path data_folder() { return CONTROLSPACE_DATA_DIR; }

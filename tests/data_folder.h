@@ -1,0 +1,6 @@
+#pragma once
+
+#include <filesystem>
+
+/// The project's folder `data`, absolute.
+std::filesystem::path data_folder();
