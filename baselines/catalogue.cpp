@@ -7,6 +7,7 @@
 #include "baselines/uniform_grid.h"
 #ifdef CONTROLSPACE_OPENVDB
 #include "baselines/openvdb_grid.h"
+#include "baselines/openvdb_levels.h"
 #endif
 
 namespace controlspace {
@@ -36,6 +37,14 @@ std::vector<CatalogueEntry> openvdb_structures() {
             "OpenVDB 5-4-3 tree, dense, a metric per voxel, trilinear")};
     entries[0].former_id = "openvdb-nearest";
     entries[1].former_id = "openvdb-trilinear";
+    entries.push_back(grid<make_openvdb_levels, Interpolation::nearest>(
+        "openvdb-levels-nearest",
+        "OpenVDB 3-3-2 trees, a stack of grids, a metric per voxel, constant"));
+    entries.push_back(grid<make_openvdb_levels, Interpolation::trilinear>(
+        "openvdb-levels-trilinear",
+        "OpenVDB 3-3-2 trees, a stack of grids, a metric per voxel, trilinear"));
+    entries[2].has_levels = entries[3].has_levels = true;
+    for (CatalogueEntry& entry : entries) entry.can_prune = true;
     return entries;
 }
 #endif

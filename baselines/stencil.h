@@ -86,6 +86,16 @@ public:
     }
 };
 
+/// Weights of a cell's corners for a place that is by `high`, 0 to 1 along each axis, off the low
+/// one. Corner numbers as in geometry/box.h: bit 0 is the high side in x, bit 1 in y, bit 2 in z.
+inline std::array<double, 8> trilinear_weights(const std::array<double, 3>& high) {
+    const std::array<double, 3> low{1 - high[0], 1 - high[1], 1 - high[2]};
+    const std::array<double, 4> xy{low[0] * low[1], high[0] * low[1], low[0] * high[1],
+                                   high[0] * high[1]};
+    return {xy[0] * low[2],  xy[1] * low[2],  xy[2] * low[2],  xy[3] * low[2],
+            xy[0] * high[2], xy[1] * high[2], xy[2] * high[2], xy[3] * high[2]};
+}
+
 /// Nodes at the cells' vertices; the eight of the cell are blended, linear in M.
 class TrilinearStencil : public CellsOfBox {
 public:
@@ -98,13 +108,7 @@ public:
     Metric value(const Point& x, Read&& read) const {
         std::array<double, 3> high;
         const Cell cell = locate(x, high);
-        const std::array<double, 3> low{1 - high[0], 1 - high[1], 1 - high[2]};
-        const std::array<double, 4> xy{low[0] * low[1], high[0] * low[1], low[0] * high[1],
-                                       high[0] * high[1]};
-        const std::array<double, 8> weights{xy[0] * low[2],  xy[1] * low[2],  xy[2] * low[2],
-                                            xy[3] * low[2],  xy[0] * high[2], xy[1] * high[2],
-                                            xy[2] * high[2], xy[3] * high[2]};
-        return blend_lengths(weights, [&](std::size_t corner) -> const Metric& {
+        return blend_lengths(trilinear_weights(high), [&](std::size_t corner) -> const Metric& {
             return at_corner(cell, corner, read);
         });
     }
@@ -129,7 +133,6 @@ private:
         }
         return cell;
     }
-    /// Corner numbers as in geometry/box.h: bit 0 is the high side in x, bit 1 in y, bit 2 in z.
     template <class Visit>
     static decltype(auto) at_corner(const Cell& cell, std::size_t corner, Visit&& visit) {
         const auto c = static_cast<std::uint32_t>(corner);

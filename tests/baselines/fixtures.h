@@ -18,7 +18,7 @@ inline std::span<const CatalogueEntry> grids() {
         std::vector<CatalogueEntry> lattices;
         std::copy_if(structures().begin(), structures().end(), std::back_inserter(lattices),
                      [](const CatalogueEntry& entry) {
-                         return entry.group == "baselines" && !entry.graded_from_start;
+                         return entry.has_voxels && !entry.has_levels;
                      });
         return lattices;
     }();

@@ -1,0 +1,55 @@
+#include "baselines/level_cells.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "error.h"
+
+namespace controlspace {
+
+LevelCells::LevelCells(const Box& domain, const Vector& coarsest_cells, int levels)
+    : CellsOfBox(domain, coarsest_cells * static_cast<double>(1 << (levels - 1))),
+      levels_(levels),
+      spacing_(domain.edges().cwiseQuotient(cells())) {}
+
+LevelCells::Coord LevelCells::cells_of(int level) const {
+    const auto along = [&](Axis a) { return static_cast<openvdb::Int32>(cells()[a]) >> level; };
+    return {along(0), along(1), along(2)};
+}
+
+Point LevelCells::vertex(int level, const Coord& c) const {
+    const Coord finest = c << static_cast<std::size_t>(level);
+    return domain().low + spacing_.cwiseProduct(Vector(finest.x(), finest.y(), finest.z()));
+}
+
+Box LevelCells::box(int level, const Coord& c) const {
+    return {vertex(level, c), vertex(level, c.offsetBy(1))};
+}
+
+bool LevelCells::contains(int level, const Coord& c) const {
+    const Coord n = cells_of(level);
+    return c.x() >= 0 && c.y() >= 0 && c.z() >= 0 && c.x() < n.x() && c.y() < n.y() &&
+           c.z() < n.z();
+}
+
+LevelCells choose_levels(const SpaceOptions& options) {
+    require_valid(options);
+    const double edge =
+        finest_voxel(options) *
+        (options.voxel > 0 ? 1 : std::min(1.0, options.voxel_factor / options.l_min));
+    const Vector edges = options.domain.edges();
+    constexpr double most = 1 << 29;
+    if (!(edges.maxCoeff() / edge <= most)) {
+        throw InputError(fmt::format(
+            "a grid in levels cannot have voxels of {:.3g} on an edge of {:.3g}, more than 2^29: "
+            "raise voxel",
+            edge, edges.maxCoeff()));
+    }
+    constexpr double fewest = 8;
+    int levels = 1;
+    while (edges.maxCoeff() >= 2 * fewest * edge * (1 << (levels - 1))) ++levels;
+    return {options.domain, whole_cells(edges / (edge * (1 << (levels - 1)))), levels};
+}
+
+}  // namespace controlspace

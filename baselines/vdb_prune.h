@@ -1,0 +1,105 @@
+#pragma once
+
+#include <openvdb/tree/NodeManager.h>
+
+#include <optional>
+
+#include "baselines/openvdb_value.h"
+#include "metric/intersection.h"
+#include "metric/nonconformity.h"
+
+namespace controlspace {
+
+/// Which leaves of a tree of metrics may make way for a tile, one value for all of their voxels.
+struct PruneRule {
+    double delta = 0;  ///< largest δ of a voxel to the tile
+    /// Inactive voxels hold something or mean something, so that a leaf is joined only if all of
+    /// its voxels are active; otherwise they do not count.
+    bool inactive_count = true;
+};
+
+/// Puts tiles in place of nodes that are alike: the intersection of their metrics, which asks for
+/// no larger elements than any of them, where all are within the rule's δ of it; nothing, where all
+/// voxels are inactive and hold the background. Nodes above the leaves are joined where their tiles
+/// are equal, so that tolerances do not add up. openvdb::tools::prune is no way to do it: it
+/// compares tensors by their first entry and takes the median.
+///
+/// Works on all of TBB's threads, with the same result whatever their number.
+template <class Tree>
+void prune_metrics(Tree& tree, const PruneRule& rule);
+
+namespace detail {
+
+struct Tile {
+    VdbMetric value;
+    bool active = false;
+};
+
+template <class Tree>
+class Prune {
+public:
+    Prune(const VdbMetric& background, const PruneRule& rule)
+        : background_(background), rule_(rule) {}
+
+    void operator()(typename Tree::RootNodeType& root) const {
+        for (auto child = root.beginChildOn(); child; ++child) {
+            if (const auto tile = tile_for(*child)) {
+                root.addTile(child.getCoord(), tile->value, tile->active);
+            }
+        }
+        root.eraseBackgroundTiles();
+    }
+    template <class Node>
+    void operator()(Node& node) const {
+        if constexpr (Node::LEVEL > 0) {
+            for (auto child = node.beginChildOn(); child; ++child) {
+                if (const auto tile = tile_for(*child)) {
+                    node.addTile(child.pos(), tile->value, tile->active);
+                }
+            }
+        }
+    }
+
+private:
+    std::optional<Tile> tile_for(const typename Tree::LeafNodeType& leaf) const {
+        if (leaf.isEmpty()) {
+            for (auto voxel = leaf.cbeginValueOff(); voxel; ++voxel) {
+                if (*voxel != background_) return std::nullopt;
+            }
+            return Tile{background_, false};
+        }
+        if (rule_.delta <= 0 || (rule_.inactive_count && !leaf.isDense())) return std::nullopt;
+        auto voxel = leaf.cbeginValueOn();
+        Metric common = (*voxel).metric;
+        while (++voxel) common = intersection(common, (*voxel).metric);
+        for (voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
+            if (nonconformity(common, (*voxel).metric) > rule_.delta) return std::nullopt;
+        }
+        return Tile{VdbMetric(common), true};
+    }
+
+    template <class Node>
+    std::optional<Tile> tile_for(const Node& node) const {
+        if (!node.isChildMaskOff()) return std::nullopt;
+        auto tile = node.cbeginValueAll();
+        const Tile first{*tile, tile.isValueOn()};
+        while (++tile) {
+            if (*tile != first.value || tile.isValueOn() != first.active) return std::nullopt;
+        }
+        return first;
+    }
+
+    VdbMetric background_;
+    PruneRule rule_;
+};
+
+}  // namespace detail
+
+template <class Tree>
+void prune_metrics(Tree& tree, const PruneRule& rule) {
+    tree.clearAllAccessors();
+    openvdb::tree::NodeManager<Tree, Tree::DEPTH - 2> nodes(tree);
+    nodes.foreachBottomUp(detail::Prune<Tree>(tree.background(), rule));
+}
+
+}  // namespace controlspace
