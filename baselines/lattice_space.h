@@ -28,6 +28,8 @@ namespace controlspace {
 ///   reader()  -> r with r(i, j, k) -> const Metric&; cheap, one per call of `sample`
 ///   writer()  -> w with w.get(i, j, k) -> const Metric& and w.set(i, j, k, metric)
 ///   void add_to(Footprint&) const                 its bytes
+///   void prune(double delta)                      optional: joins nodes within δ of each other;
+///                                                 never makes a metric larger
 ///
 /// For `Stencil` see baselines/stencil.h.
 template <class Storage, class Stencil>
@@ -82,7 +84,7 @@ public:
     }
 
     GradationReport grade(const GradationOptions& options) override {
-        if (!takes_later_sources_) return ControlSpace::grade(options);
+        if (!takes_later_sources_) return grade_and_prune(options);
         require_valid(options);
         GradationReport report;
         if (may_regrade(past_, options) && asks_isotropic_ &&
@@ -121,6 +123,7 @@ private:
     LatticeSpace(const SpaceOptions& options, Voxels voxels)
         : tolerance_(options.tolerance),
           takes_later_sources_(options.takes_later_sources),
+          prune_delta_(options.prune_delta),
           stencil_(options.domain, voxels.cells),
           storage_(stencil_.lattice(), Metric::isotropic(options.domain.half_diagonal())),
           remark_(std::move(voxels.remark)) {}
@@ -131,6 +134,14 @@ private:
         metrics.reserve(stencil_.lattice().size());
         for_each_node([&](auto i, auto j, auto k) { metrics.push_back(read(i, j, k)); });
         return metrics;
+    }
+
+    GradationReport grade_and_prune(const GradationOptions& options) {
+        const GradationReport report = ControlSpace::grade(options);
+        if constexpr (requires { storage_.prune(prune_delta_); }) {
+            if (prune_delta_ > 0) storage_.prune(prune_delta_);
+        }
+        return report;
     }
 
     void set_field(std::span<const Metric> metrics) {
@@ -189,6 +200,7 @@ private:
 
     double tolerance_;
     bool takes_later_sources_;
+    double prune_delta_;
     Stencil stencil_;
     Storage storage_;
     std::string remark_;

@@ -4,6 +4,7 @@
 
 #include "baselines/lattice_space.h"
 #include "baselines/openvdb_value.h"
+#include "baselines/vdb_prune.h"
 
 namespace controlspace {
 
@@ -60,6 +61,9 @@ public:
         };
         return Writer{openvdb::tree::ValueAccessor<VdbMetricTree, false>(tree_)};
     }
+
+    // Voxels that fill up the outermost leaves are inactive, and nobody reads them.
+    void prune(double delta) { prune_metrics(tree_, {.delta = delta, .inactive_count = false}); }
 
     void add_to(Footprint& footprint) const {
         const auto payload = tree_.leafCount() * static_cast<std::size_t>(leaf_payload);

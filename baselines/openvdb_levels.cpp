@@ -63,6 +63,7 @@ public:
         GradationReport report;
         std::uint64_t operations = 0;
         for (bool refined = true; refined;) {
+            require_memory();
             const std::vector<Metric> before = numbered().metrics();
             report = ControlSpace::grade(options);
             operations += report.operations;
@@ -186,14 +187,16 @@ private:
         for (VdbLevelTree& tree : trees_) prune_metrics(tree, {.delta = 0});
     }
 
-    // What numbering and grading a voxel takes besides the grids, at most: TODO measured.
-    static constexpr std::size_t gradation_bytes_per_voxel = 400;
+    // Numbers, graph and copies of metrics, as counted on spheres: 180 bytes for a voxel; for its
+    // vertices 330, and up to 500 where few of them are shared.
+    static constexpr std::size_t gradation_bytes_per_voxel =
+        Values::interpolation == Interpolation::nearest ? 250 : 600;
 
     SpaceOptions options_;
     LevelCells cells_;
     Trees trees_;
     std::size_t voxels_ = 0;           // that are active
-    std::size_t next_look_ = 1 << 14;  // number of voxels at which memory is looked at again
+    std::size_t next_look_ = 1 << 12;  // number of voxels at which memory is looked at again
 };
 
 }  // namespace

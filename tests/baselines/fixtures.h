@@ -16,13 +16,17 @@ namespace controlspace {
 inline std::span<const CatalogueEntry> grids() {
     static const std::vector<CatalogueEntry> all = [] {
         std::vector<CatalogueEntry> lattices;
-        std::copy_if(structures().begin(), structures().end(), std::back_inserter(lattices),
-                     [](const CatalogueEntry& entry) {
-                         return entry.has_voxels && !entry.has_levels;
-                     });
+        std::copy_if(
+            structures().begin(), structures().end(), std::back_inserter(lattices),
+            [](const CatalogueEntry& entry) { return entry.has_voxels && !entry.has_levels; });
         return lattices;
     }();
     return all;
+}
+
+inline const CatalogueEntry& structure_with_id(const std::string& id) {
+    return *std::find_if(structures().begin(), structures().end(),
+                         [&](const CatalogueEntry& entry) { return entry.id == id; });
 }
 
 /// 40 x 26 x 18 cells, none of them a cube or a whole number of OpenVDB's leaves.
