@@ -13,6 +13,7 @@
 #include "baselines/lattice_nodes.h"
 #include "baselines/stencil.h"
 #include "baselines/voxels.h"
+#include "error.h"
 #include "gradation/regrade.h"
 #include "metric/intersection.h"
 #include "spaces/catalogue.h"
@@ -35,7 +36,8 @@ namespace controlspace {
 template <class Storage, class Stencil>
 class LatticeSpace final : public ControlSpace {
 public:
-    /// Cells as fine as the options ask and allow. Throws InputError as choose_voxels does.
+    /// Cells as fine as the options ask and allow. Throws InputError as choose_voxels does, and
+    /// where later sources are to come to a grid that prunes what they would need.
     explicit LatticeSpace(const SpaceOptions& options)
         : LatticeSpace(options,
                        choose_voxels(options, Stencil::interpolation, [&](const Vector& nodes) {
@@ -126,7 +128,11 @@ private:
           prune_delta_(options.prune_delta),
           stencil_(options.domain, voxels.cells),
           storage_(stencil_.lattice(), Metric::isotropic(options.domain.half_diagonal())),
-          remark_(std::move(voxels.remark)) {}
+          remark_(std::move(voxels.remark)) {
+        if (takes_later_sources_ && prune_delta_ > 0) {
+            throw InputError("a grid that takes later sources cannot be pruned: set prune_delta 0");
+        }
+    }
 
     std::vector<Metric> metrics_of(const Storage& storage) const {
         const auto read = storage.reader();

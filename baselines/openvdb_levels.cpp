@@ -3,36 +3,49 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "baselines/level_nodes.h"
 #include "baselines/vdb_prune.h"
 #include "error.h"
+#include "gradation/regrade.h"
 
 namespace controlspace {
 
 namespace {
 
 using Coord = openvdb::Coord;
-using Trees = std::vector<VdbLevelTree>;
 
 constexpr std::size_t leaf_payload = VdbLevelTree::LeafNodeType::SIZE * sizeof(VdbMetric);
+
+/// The grids of a stack, the finest first, and their active voxels.
+struct Stack {
+    std::vector<VdbLevelTree> trees;
+    std::size_t voxels = 0;
+
+    explicit Stack(int levels) : trees(static_cast<std::size_t>(levels), VdbLevelTree(no_metric)) {}
+
+    std::size_t bytes() const {
+        std::size_t bytes = 0;
+        for (const VdbLevelTree& tree : trees) bytes += tree.memUsage();
+        return bytes;
+    }
+};
 
 // `Values` is CellMetrics or VertexMetrics.
 template <class Values>
 class LevelSpace final : public ControlSpace {
 public:
     explicit LevelSpace(const SpaceOptions& options)
-        : options_(options),
-          cells_(choose_levels(options)),
-          trees_(static_cast<std::size_t>(cells_.levels()), VdbLevelTree(no_metric)) {
-        LevelWriter at(trees_);
+        : options_(options), cells_(choose_levels(options)), field_(cells_.levels()) {
+        LevelWriter at(field_.trees);
         Values::fill(at, cells_, largest_metric(options.domain));
-        voxels_ = active_voxels();
+        field_.voxels = field_.trees.back().activeVoxelCount();
     }
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
-        const LevelReader at(trees_);
+        const LevelReader at(field_.trees);
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = value(at, cells_.place(x[i]));
     }
 
@@ -43,11 +56,19 @@ public:
 
     InsertionReport insert(std::span<const PointSource> sources) override {
         InsertionReport report;
-        LevelWriter at(trees_);
-        const LevelReader reader(trees_);
+        Stack& asked = asked_ ? *asked_ : field_;
+        LevelWriter to_asked(asked.trees);
+        LevelWriter to_field(field_.trees);
+        const LevelReader from_asked(asked.trees);
         for (const PointSource& source : sources) {
             require_valid(source, report.sources++, domain());
-            if (insert_valid(at, reader, source)) ++report.inserted;
+            const LevelCells::Place place = cells_.place(source.position);
+            const Metric held = value(from_asked, place);
+            if (!calls_for_change(source.metric, held, options_.tolerance)) continue;
+            ++report.inserted;
+            past_.reset();
+            lower(asked, to_asked, source, place);
+            if (asked_) lower(field_, to_field, source, place);
         }
         return report;
     }
@@ -57,26 +78,43 @@ public:
         return {nodes.graph(neighbourhood), nodes.metrics()};
     }
 
-    void assign(std::span<const Metric> metrics) override { numbered().assign(metrics, trees_); }
+    void assign(std::span<const Metric> metrics) override {
+        numbered().assign(metrics, field_.trees);
+        asked_.reset();
+        past_.reset();
+    }
 
     GradationReport grade(const GradationOptions& options) override {
+        require_valid(options);
+        if (options_.takes_later_sources) {
+            if (past_ && past_->options == options) {
+                return {.largest_ratio_left = past_->largest_ratio_left, .visits = 0};
+            }
+            if (asked_) {
+                field_ = Stack(*asked_);  // trees cannot be assigned
+            } else {
+                asked_.emplace(field_);
+            }
+        }
         GradationReport report;
         std::uint64_t operations = 0;
-        for (bool refined = true; refined;) {
+        while (true) {
             require_memory();
-            const std::vector<Metric> before = numbered().metrics();
-            report = ControlSpace::grade(options);
+            ControlNodes nodes = control_nodes(neighbourhood_of(options.schedule));
+            const std::vector<Metric> before = nodes.metrics;
+            report = controlspace::grade(nodes.graph, nodes.metrics, options);
             operations += report.operations;
-            const auto long_voxels = voxels_longer_than_wanted();
-            refined = !long_voxels.empty();
-            if (!refined) break;
-            assign(before);
-            LevelWriter at(trees_);
-            for (const auto& [level, c] : long_voxels) split(at, level, c);
-            clear();
+            set_field(nodes.metrics);
+            const auto too_long = voxels_longer_than_wanted();
+            if (too_long.empty()) break;
+            set_field(before);
+            LevelWriter at(field_.trees);
+            for (const auto& [level, c] : too_long) split(field_, at, level, c);
+            prune({.delta = 0});
         }
         report.operations = operations;
-        for (VdbLevelTree& tree : trees_) prune_metrics(tree, {.delta = options_.prune_delta});
+        prune({.delta = options_.prune_delta});
+        past_ = {options, report.largest_ratio_left};
         return report;
     }
 
@@ -84,25 +122,25 @@ public:
 
     Box element_at(const Point& x) const override {
         const Coord finest = cells_.place(x).finest;
-        const int level = LevelReader(trees_).level_at(finest);
+        const int level = LevelReader(field_.trees).level_at(finest);
         return cells_.box(level, finest >> static_cast<std::size_t>(level));
     }
 
     Footprint footprint() const override {
         Footprint footprint;
-        footprint.elements = voxels_;
+        footprint.elements = field_.voxels;
         footprint.control_nodes = numbered().size();
         int finest = cells_.top();
         int coarsest = 0;
         for (int level = 0; level <= cells_.top(); ++level) {
-            const VdbLevelTree& tree = trees_[static_cast<std::size_t>(level)];
-            if (tree.activeVoxelCount() > 0) {
-                finest = std::min(finest, level);
-                coarsest = std::max(coarsest, level);
-            }
+            const VdbLevelTree& tree = field_.trees[static_cast<std::size_t>(level)];
             footprint.bytes_payload += tree.leafCount() * leaf_payload;
+            if (tree.activeVoxelCount() == 0) continue;
+            finest = std::min(finest, level);
+            coarsest = std::max(coarsest, level);
         }
-        footprint.bytes_topology = bytes() - footprint.bytes_payload;
+        footprint.bytes_topology = field_.bytes() - footprint.bytes_payload;
+        if (asked_) footprint.bytes_auxiliary = asked_->bytes();
         footprint.depth = coarsest - finest + 1;
         footprint.remark =
             fmt::format("voxels of {:.3g} to {:.3g}", cells_.edges(finest).maxCoeff(),
@@ -111,18 +149,7 @@ public:
     }
 
 private:
-    LevelNodes numbered() const { return {cells_, trees_, Values::interpolation}; }
-
-    std::size_t bytes() const {
-        std::size_t bytes = 0;
-        for (const VdbLevelTree& tree : trees_) bytes += tree.memUsage();
-        return bytes;
-    }
-    std::size_t active_voxels() const {
-        std::size_t voxels = 0;
-        for (const VdbLevelTree& tree : trees_) voxels += tree.activeVoxelCount();
-        return voxels;
-    }
+    LevelNodes numbered() const { return {cells_, field_.trees, Values::interpolation}; }
 
     Metric value(const LevelReader& at, const LevelCells::Place& place) const {
         const int level = at.level_at(place.finest);
@@ -134,43 +161,41 @@ private:
         return std::max({lengths[0], lengths[1], lengths[2]}) > length;
     }
 
-    bool insert_valid(LevelWriter& at, const LevelReader& reader, const PointSource& source) {
-        const LevelCells::Place place = cells_.place(source.position);
-        if (!calls_for_change(source.metric, value(reader, place), options_.tolerance)) {
-            return false;
-        }
-        int level = reader.level_at(place.finest);
+    // Refines the voxel at a source and lowers what is left of it there.
+    void lower(Stack& stack, LevelWriter& at, const PointSource& source,
+               const LevelCells::Place& place) {
+        int level = at.level_at(place.finest);
         for (; level > 0 && is_longer(level, source.metric, options_.l_min); --level) {
-            split(at, level, place.finest >> static_cast<std::size_t>(level));
+            split(stack, at, level, place.finest >> static_cast<std::size_t>(level));
         }
         Values::lower(at, level, place.finest >> static_cast<std::size_t>(level), source.metric);
-        return true;
     }
 
-    void split(LevelWriter& at, int level, const Coord& c) {
-        if (voxels_ >= next_look_) require_memory();
+    void split(Stack& stack, LevelWriter& at, int level, const Coord& c) {
+        if (stack.voxels >= next_look_) require_memory();
         Values::split(at, level, c);
-        voxels_ += 7;
+        stack.voxels += 7;
     }
 
     // Stops a structure that outgrows the cap, long before the system stops the program.
     void require_memory() {
-        const std::size_t gradation = voxels_ * gradation_bytes_per_voxel;
-        if (bytes() + gradation > options_.max_bytes) {
+        const std::size_t bytes = field_.bytes() + (asked_ ? asked_->bytes() : 0) +
+                                  field_.voxels * gradation_bytes_per_voxel;
+        if (bytes > options_.max_bytes) {
             throw InputError(
                 fmt::format("a grid in levels would take more than {:.3g} GiB, gradation included: "
                             "raise voxel, "
                             "voxel_factor or max_memory",
                             static_cast<double>(options_.max_bytes) / (1 << 30)));
         }
-        next_look_ = voxels_ + voxels_ / 16;
+        next_look_ = field_.voxels + field_.voxels / 16;
     }
 
     std::vector<std::pair<int, Coord>> voxels_longer_than_wanted() const {
         std::vector<std::pair<int, Coord>> found;
-        const LevelReader at(trees_);
+        const LevelReader at(field_.trees);
         for (int level = 1; level <= cells_.top(); ++level) {
-            const VdbLevelTree& tree = trees_[static_cast<std::size_t>(level)];
+            const VdbLevelTree& tree = field_.trees[static_cast<std::size_t>(level)];
             for (auto voxel = tree.cbeginValueOn(); voxel; ++voxel) {
                 bool longer = false;
                 Values::for_each_metric(at, level, voxel.getCoord(), [&](const Metric& metric) {
@@ -182,9 +207,11 @@ private:
         return found;
     }
 
-    // Takes away leaves that hold nothing any more.
-    void clear() {
-        for (VdbLevelTree& tree : trees_) prune_metrics(tree, {.delta = 0});
+    void set_field(std::span<const Metric> metrics) { numbered().assign(metrics, field_.trees); }
+
+    // Takes away leaves that hold nothing any more, too.
+    void prune(const PruneRule& rule) {
+        for (VdbLevelTree& tree : field_.trees) prune_metrics(tree, rule);
     }
 
     // Numbers, graph and copies of metrics, as counted on spheres: 180 bytes for a voxel; for its
@@ -194,9 +221,13 @@ private:
 
     SpaceOptions options_;
     LevelCells cells_;
-    Trees trees_;
-    std::size_t voxels_ = 0;           // that are active
+    Stack field_;
     std::size_t next_look_ = 1 << 12;  // number of voxels at which memory is looked at again
+
+    // Where sources may come after gradation: what they ask for, on voxels that sources alone have
+    // refined; and the gradation that still holds.
+    std::optional<Stack> asked_;
+    std::optional<PastGradation> past_;
 };
 
 }  // namespace

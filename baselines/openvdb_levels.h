@@ -25,6 +25,9 @@ namespace controlspace {
 /// Nearest: a metric per voxel. Trilinear: one per vertex, also where it hangs on the side of a
 /// larger voxel; each grid has a halo of inactive voxels for the vertices on its rim.
 ///
+/// With `takes_later_sources`, each gradation starts from what the sources ask for, on voxels that
+/// they alone have refined: at the cost of the first one, unless nothing has changed.
+///
 /// Footprint: payload is the leaves' values, those that mean nothing included. Throws InputError
 /// where options are invalid, and where a structure outgrows `max_bytes`, gradation included.
 std::unique_ptr<ControlSpace> make_openvdb_levels(const SpaceOptions& options,

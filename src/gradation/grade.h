@@ -37,6 +37,12 @@ struct GradationReport {
     std::optional<std::uint64_t> visits = std::nullopt;
 };
 
+/// The neighbours that a schedule compares.
+inline Neighbourhood neighbourhood_of(GradationSchedule schedule) {
+    return schedule == GradationSchedule::queue ? Neighbourhood::faces
+                                                : Neighbourhood::nearest_per_face;
+}
+
 /// Throws InputError for a ratio below 1 or not finite.
 void require_valid(const GradationOptions& options);
 
