@@ -8,6 +8,7 @@
 #ifdef CONTROLSPACE_OPENVDB
 #include "baselines/openvdb_grid.h"
 #include "baselines/openvdb_levels.h"
+#include "baselines/openvdb_vec3s.h"
 #endif
 
 namespace controlspace {
@@ -45,6 +46,12 @@ std::vector<CatalogueEntry> openvdb_structures() {
         "OpenVDB 3-3-2 trees, a stack of grids, a metric per voxel, trilinear"));
     entries[2].has_levels = entries[3].has_levels = true;
     for (CatalogueEntry& entry : entries) entry.can_prune = true;
+    entries.push_back({.id = "openvdb-vec3s-trilinear",
+                       .description = "two of OpenVDB's Vec3S trees, dense, in floats, trilinear",
+                       .order = 1,
+                       .make = make_openvdb_vec3s,
+                       .has_voxels = true,
+                       .rounding = 1e-6});
     return entries;
 }
 #endif

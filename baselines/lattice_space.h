@@ -26,8 +26,8 @@ namespace controlspace {
 ///
 ///   Storage(const Lattice& lattice, const Metric& initial)
 ///   static double bytes_for(const Vector& nodes)  what a storage of so many nodes will allocate
-///   reader()  -> r with r(i, j, k) -> const Metric&; cheap, one per call of `sample`
-///   writer()  -> w with w.get(i, j, k) -> const Metric& and w.set(i, j, k, metric)
+///   reader()  -> r with r(i, j, k) -> const Metric& or Metric; cheap, one per call of `sample`
+///   writer()  -> w with w.get(i, j, k) -> the same and w.set(i, j, k, metric)
 ///   void add_to(Footprint&) const                 its bytes
 ///   void prune(double delta)                      optional: joins nodes within δ of each other;
 ///                                                 never makes a metric larger
@@ -80,13 +80,16 @@ public:
             throw std::invalid_argument("assign() takes one metric for each control node");
         }
         set_field(metrics);
+        if constexpr (requires { storage_.prune(prune_delta_); }) {
+            if (prune_delta_ > 0) storage_.prune(prune_delta_);
+        }
         asks_isotropic_ = std::all_of(metrics.begin(), metrics.end(), is_isotropic);
         asked_.reset();
         past_.reset();
     }
 
     GradationReport grade(const GradationOptions& options) override {
-        if (!takes_later_sources_) return grade_and_prune(options);
+        if (!takes_later_sources_) return ControlSpace::grade(options);
         require_valid(options);
         GradationReport report;
         if (may_regrade(past_, options) && asks_isotropic_ &&
@@ -142,14 +145,6 @@ private:
         return metrics;
     }
 
-    GradationReport grade_and_prune(const GradationOptions& options) {
-        const GradationReport report = ControlSpace::grade(options);
-        if constexpr (requires { storage_.prune(prune_delta_); }) {
-            if (prune_delta_ > 0) storage_.prune(prune_delta_);
-        }
-        return report;
-    }
-
     void set_field(std::span<const Metric> metrics) {
         auto nodes = storage_.writer();
         auto next = metrics.begin();
@@ -169,7 +164,7 @@ private:
     Insertion insert_through(Writer& field, Writer& asked, const PointSource& source) {
         const Metric held = stencil_.value(
             source.position,
-            [&](auto i, auto j, auto k) -> const Metric& { return asked.get(i, j, k); });
+            [&](auto i, auto j, auto k) -> decltype(auto) { return asked.get(i, j, k); });
         if (!calls_for_change(source.metric, held, tolerance_)) return Insertion::already_met;
         const auto lower = [&](Writer& nodes, auto i, auto j, auto k) {
             nodes.set(i, j, k, intersection(nodes.get(i, j, k), source.metric));

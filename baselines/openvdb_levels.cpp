@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "baselines/dense_tree.h"
 #include "baselines/level_nodes.h"
 #include "baselines/vdb_prune.h"
 #include "error.h"
@@ -16,8 +17,6 @@ namespace controlspace {
 namespace {
 
 using Coord = openvdb::Coord;
-
-constexpr std::size_t leaf_payload = VdbLevelTree::LeafNodeType::SIZE * sizeof(VdbMetric);
 
 /// The grids of a stack, the finest first, and their active voxels.
 struct Stack {
@@ -79,7 +78,8 @@ public:
     }
 
     void assign(std::span<const Metric> metrics) override {
-        numbered().assign(metrics, field_.trees);
+        set_field(metrics);
+        prune({.delta = options_.prune_delta});
         asked_.reset();
         past_.reset();
     }
@@ -134,7 +134,7 @@ public:
         int coarsest = 0;
         for (int level = 0; level <= cells_.top(); ++level) {
             const VdbLevelTree& tree = field_.trees[static_cast<std::size_t>(level)];
-            footprint.bytes_payload += tree.leafCount() * leaf_payload;
+            footprint.bytes_payload += tree.leafCount() * leaf_values_bytes<VdbLevelTree>;
             if (tree.activeVoxelCount() == 0) continue;
             finest = std::min(finest, level);
             coarsest = std::max(coarsest, level);

@@ -19,7 +19,8 @@ namespace controlspace {
 /// gradation, so it does not hand on what a large voxel had to be content with. No voxel is shorter
 /// than `voxel`, or, where that is 0, half of the shortest that l_min and voxel_factor ask for.
 ///
-/// Afterwards leaves of voxels that are within `prune_delta` of each other become tiles; a vertex
+/// Leaves of voxels that gradation, or an assignment, leaves within `prune_delta` of each other
+/// become tiles; a vertex
 /// that several grids have may then differ from grid to grid by as much.
 ///
 /// Nearest: a metric per voxel. Trilinear: one per vertex, also where it hangs on the side of a

@@ -16,8 +16,8 @@ namespace controlspace {
 ///   static constexpr Interpolation interpolation
 ///   Stencil(const Box& domain, const Vector& cells)
 ///   const Box& domain(), const Vector& cells(), Lattice lattice()
-///   Metric value(const Point& x, read)         from nodes, read(i, j, k) -> const Metric&
-///   void for_each_node(const Point& x, visit)  visit(i, j, k), the nodes that `value` reads
+///   Metric value(const Point& x, read)         from nodes, read(i, j, k) -> const Metric& or
+///   Metric void for_each_node(const Point& x, visit)  visit(i, j, k), the nodes that `value` reads
 ///
 /// Points outside the domain are taken as the nearest point of it, which clamping each coordinate
 /// gives; not-a-number counts as the low side.
@@ -108,7 +108,7 @@ public:
     Metric value(const Point& x, Read&& read) const {
         std::array<double, 3> high;
         const Cell cell = locate(x, high);
-        return blend_lengths(trilinear_weights(high), [&](std::size_t corner) -> const Metric& {
+        return blend_lengths(trilinear_weights(high), [&](std::size_t corner) -> decltype(auto) {
             return at_corner(cell, corner, read);
         });
     }

@@ -84,4 +84,15 @@ struct Lattice {
 
 using ControlGraph = std::variant<NodeGraph, Lattice>;
 
+/// Where the nodes of `graph` are, in their order.
+inline std::vector<Point> positions(const ControlGraph& graph) {
+    return std::visit(
+        [](const auto& nodes) {
+            std::vector<Point> x(nodes.size());
+            for (NodeIndex i = 0; i < x.size(); ++i) x[i] = nodes.position(i);
+            return x;
+        },
+        graph);
+}
+
 }  // namespace controlspace

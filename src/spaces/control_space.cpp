@@ -22,13 +22,7 @@ GradationReport ControlSpace::grade(const GradationOptions& options) {
 AdaptationReport ControlSpace::adapt(const AdaptationGoal& goal) {
     const GoalField field(goal, domain());
     ControlNodes nodes = control_nodes(Neighbourhood::faces);
-    std::vector<Point> x(nodes.metrics.size());
-    std::visit(
-        [&](const auto& graph) {
-            for (NodeIndex i = 0; i < x.size(); ++i) x[i] = graph.position(i);
-        },
-        nodes.graph);
-    field.evaluate(x, nodes.metrics);
+    field.evaluate(positions(nodes.graph), nodes.metrics);
     assign(nodes.metrics);
     AdaptationReport report;
     report.reached = field.largest_departure(*this);

@@ -19,7 +19,7 @@ struct SpaceOptions {
     double finest_length = 0;  ///< smallest length any source asks for; grids size voxels by it
     double voxel = 0;          ///< longest edge of a grid's finest voxels; 0: l_min * finest_length
     double voxel_factor = 1;   ///< grids in levels: longest edge of a voxel, in the metric it holds
-    double prune_delta = 0;    ///< δ up to which gradation may end in joined voxels; 0: none are
+    double prune_delta = 0;    ///< δ up to which voxels of a field that is set join; 0: none do
     double ratio = 1.25;       ///< g_r of the gradation to come, for structures that keep sources
     /// Sources may come after gradation. What they ask for is then kept beside the graded field:
     /// insertion goes by it, and grading again gives the field of all sources at once, to the bit.

@@ -33,6 +33,9 @@ std::string variant_label(const Case& c) {
     }
     if (c.prune_delta) label += fmt::format(", pruned at {:.4g}", *c.prune_delta);
     if (c.target_delta) label += fmt::format(", δ <= {:.4g}", *c.target_delta);
+    if (c.equal_delta) label += fmt::format(", for delta {:.4g}", *c.equal_delta);
+    if (c.equal_memory) label += fmt::format(", for {:.4g} MB", *c.equal_memory);
+    if (c.node_values == NodeValues::exact) label += ", exact at nodes";
     return label;
 }
 

@@ -23,6 +23,12 @@ enum class ReferenceKind {
     published_sphere,  ///< the analytic field behind the paper's Table 4; spheres only
 };
 
+/// What the control nodes of a graded structure hold.
+enum class NodeValues {
+    graded,  ///< what gradation made of them
+    exact,   ///< the reference at their places: what is left is the error of interpolation alone
+};
+
 /// The sources of one case: a sampled surface (paper §5.1), a file, an analytic field, or such a
 /// field with sources on top.
 struct SourcesChoice {
@@ -56,6 +62,10 @@ struct Case {
     std::optional<double> prune_delta = {};   ///< OpenVDB only; none: nothing is pruned
     /// Trees only: adapted to this δ in place of insertion and gradation; none: they are not.
     std::optional<double> target_delta = {};
+    /// Grids only: δ_R, or memory [MB], that voxels are chosen for (study/equal_setting.h).
+    std::optional<double> equal_delta = {};
+    std::optional<double> equal_memory = {};
+    NodeValues node_values = NodeValues::graded;  ///< structures that hold metrics only
     GradationLaw law = GradationLaw::cone;
     GradationSchedule schedule = GradationSchedule::queue;
     ReferenceKind reference = ReferenceKind::exact;
@@ -78,8 +88,8 @@ std::string sources_name(const SourcesChoice& s);
 /// reference.
 bool is_as_published(const Case& c);
 
-/// The structure's id and what its voxels were set to, where that is not the default: "K_oV",
-/// "openvdb-levels-nearest, c 0.5".
+/// The structure's id and what is its own among the settings, where that is not the default:
+/// "K_oV", "K_oV, exact at nodes", "openvdb-levels-nearest, c 0.5".
 std::string variant_label(const Case& c);
 
 /// "K_L s_L", "K_oV"; otherwise as variant_label.

@@ -56,6 +56,12 @@ struct Names<FieldKind> {
          {FieldKind::file, "file"}}};
 };
 
+template <>
+struct Names<NodeValues> {
+    static constexpr std::array<std::pair<NodeValues, std::string_view>, 2> table{
+        {{NodeValues::graded, "graded"}, {NodeValues::exact, "exact"}}};
+};
+
 template <class Enum>
 constexpr std::string_view name_of(Enum value) {
     for (const auto& [v, name] : Names<Enum>::table) {

@@ -38,6 +38,9 @@ void add_setting(Json& json, const Case& c) {
     json["voxel_factor"] = or_null(c.voxel_factor);
     json["prune_delta"] = or_null(c.prune_delta);
     json["target_delta"] = or_null(c.target_delta);
+    json["equal_delta"] = or_null(c.equal_delta);
+    json["equal_memory"] = or_null(c.equal_memory);
+    json["node_values"] = name_of(c.node_values);
     json["law"] = name_of(c.law);
     json["schedule"] = name_of(c.schedule);
     json["reference"] = name_of(c.reference);
@@ -132,6 +135,9 @@ Case setting_from(const Json& json, const SourcesChoice& sources) {
     c.voxel_factor = newer_from<double>(json, "voxel_factor");
     c.prune_delta = newer_from<double>(json, "prune_delta");
     c.target_delta = newer_from<double>(json, "target_delta");
+    c.equal_delta = newer_from<double>(json, "equal_delta");
+    c.equal_memory = newer_from<double>(json, "equal_memory");
+    if (json.contains("node_values")) c.node_values = named<NodeValues>(json, "node_values");
     c.law = named<GradationLaw>(json, "law");
     c.schedule = named<GradationSchedule>(json, "schedule");
     c.reference = named<ReferenceKind>(json, "reference");

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "error.h"
+#include "study/equal_setting.h"
 
 namespace controlspace {
 namespace {
@@ -70,6 +71,12 @@ void require_follows(const Case& c, const CatalogueEntry& entry) {
     throw InputError("an analytic field is followed by adaptation: set target_delta, for trees");
 }
 
+void follow_at_nodes(ControlSpace& space, const MetricField& field) {
+    ControlNodes nodes = space.control_nodes(Neighbourhood::faces);
+    field.evaluate(positions(nodes.graph), nodes.metrics);
+    space.assign(nodes.metrics);
+}
+
 }  // namespace
 
 const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> catalogue) {
@@ -109,7 +116,26 @@ std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
     start = std::chrono::steady_clock::now();
     m.gradation = space->grade({.law = c.law, .schedule = c.schedule, .ratio = c.g_r});
     m.gradation_s = seconds_since(start);
+    if (c.node_values == NodeValues::exact) {
+        follow_at_nodes(*space, *make_reference(study, c, workload));
+    }
     return space;
+}
+
+/// Chooses the voxels of a case that asks for it, and says in the row if they fall short.
+std::string choose_equal_setting(const Study& study, Case& c, const CatalogueEntry& entry,
+                                 const Workload& workload, const ReferenceProbes& probes) {
+    if (!c.equal_delta && !c.equal_memory) return "";
+    const double longest_edge = workload.domain.edges().maxCoeff();
+    const EqualSetting found =
+        find_equal_setting(c, entry, longest_edge, workload.finest_length, [&](const Case& trial) {
+            Measures ignored;
+            const auto space = make_and_fill(study, trial, entry, workload, ignored, {});
+            return Trial{accuracy(*space, probes.coarse).max,
+                         static_cast<double>(space->footprint().bytes_total())};
+        });
+    c = found.setting;
+    return found.shortfall;
 }
 
 Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry,
@@ -166,8 +192,12 @@ void PreparedStudy::run(const StudyObserver& observer) && {
                 tell(observer.phase_started, "reference field");
                 return make_reference_probes(study_, c, shared.workload);
             });
-            row.measures =
-                run_case(study_, c, entry_of(c, catalogue_), shared.workload, probes, observer);
+            const CatalogueEntry& entry = entry_of(c, catalogue_);
+            const std::string shortfall =
+                choose_equal_setting(study_, row.setting, entry, shared.workload, probes);
+            row.measures = run_case(study_, row.setting, entry, shared.workload, probes, observer);
+            std::string& remark = row.measures->footprint.remark;
+            remark += (remark.empty() || shortfall.empty() ? "" : "; ") + shortfall;
         } catch (const std::bad_alloc&) {
             row.error = "out of memory: lower max_memory, or raise tau";
         } catch (const std::exception& error) {

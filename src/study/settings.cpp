@@ -252,12 +252,24 @@ const Setting<Run> run_table[] = {
      "c of grids in levels: longest edge of a voxel [metric length of the metric it holds]",
      set_positive<&Run::voxel_factor>, get_numbers<&Run::voxel_factor>},
     {"prune_delta", number_type, 0, "",
-     "Non-conformity up to which OpenVDB grids join voxels after gradation; 0: they do not",
+     "Non-conformity up to which OpenVDB grids join voxels once they are graded; 0: they do not",
      set_not_negative<&Run::prune_delta>, get_numbers<&Run::prune_delta>},
     {"target_delta", number_type, 0, "",
      "Non-conformity to the exact field that trees are adapted to, in place of insertion and "
      "gradation; 0: they are not",
      set_not_negative<&Run::target_delta>, get_numbers<&Run::target_delta>},
+    {"equal_delta", number_type, 0, "",
+     "Largest delta_R that a grid's voxels (in levels voxel_factor too; and prune_delta, where "
+     "that "
+     "saves memory) are chosen for; 0: as they are set. Trees have target_delta",
+     set_not_negative<&Run::equal_delta>, get_numbers<&Run::equal_delta>},
+    {"equal_memory", number_type, 0, "",
+     "Memory of the finished grid that its voxels are chosen for [MB]; 0: as they are set",
+     set_not_negative<&Run::equal_memory>, get_numbers<&Run::equal_memory>},
+    {"node_values", text_type, 0, "",
+     "What control nodes hold: graded, as gradation leaves them; exact, the reference there, which "
+     "shows the error of interpolation alone",
+     set_names<&Run::node_values>, get_names<&Run::node_values>},
     {"law", text_type, 0, "", "Law of gradation: cone, mean-length", set_names<&Run::law>,
      get_names<&Run::law>},
     {"schedule", text_type, 0, "",

@@ -91,9 +91,21 @@ void require_reference(const SourcesChoice& sources, const Run& run) {
     }
 }
 
+bool is_set(const std::vector<double>& list) {
+    return std::any_of(list.begin(), list.end(), [](double x) { return x > 0; });
+}
+
 void require_sensible(const Study& study, const Run& run) {
     require_needed(study.sources, run);
     require_reference(study.sources, run);
+    if (is_set(run.equal_delta) && is_set(run.equal_memory)) {
+        throw InputError("equal_delta and equal_memory choose the same voxels: give one of them");
+    }
+    if ((is_set(run.equal_delta) || is_set(run.equal_memory)) &&
+        (is_set(run.voxel) || run.voxel_factor != Run{}.voxel_factor)) {
+        throw InputError(
+            "equal_delta and equal_memory choose voxel and voxel_factor: leave those out");
+    }
     if (study.sources.kind == SourcesKind::none && has(run.field, FieldKind::none)) {
         throw InputError("neither sources nor a field: give one of them");
     }
@@ -181,10 +193,19 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
         });
     }
     if (entry.has_voxels) {
+        multiply(cases, run.equal_delta,
+                 [](Case& c, double delta) { c.equal_delta = unless_zero(delta); });
+        multiply(cases, run.equal_memory,
+                 [](Case& c, double mb) { c.equal_memory = unless_zero(mb); });
         multiply(cases, run.voxel, [](Case& c, double edge) { c.voxel = unless_zero(edge); });
     }
     if (entry.has_levels) {
         multiply(cases, run.voxel_factor, [](Case& c, double factor) { c.voxel_factor = factor; });
+    }
+    if (entry.takes_metrics && !entry.graded_from_start) {
+        multiply(cases, run.node_values, [](Case& c, NodeValues v) {
+            if (!c.target_delta) c.node_values = v;  // an adapted tree is exact at nodes
+        });
     }
     if (entry.can_prune) {
         multiply(cases, run.prune_delta,

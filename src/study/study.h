@@ -33,6 +33,9 @@ struct Run {
     std::vector<double> voxel_factor{1};
     std::vector<double> prune_delta{0};   ///< 0: no pruning
     std::vector<double> target_delta{0};  ///< 0: no adaptation
+    std::vector<double> equal_delta{0};   ///< 0: voxels as they are set
+    std::vector<double> equal_memory{0};  ///< [MB]; 0: voxels as they are set
+    std::vector<NodeValues> node_values{NodeValues::graded};
     std::vector<GradationLaw> law{GradationLaw::cone};
     std::vector<GradationSchedule> schedule{GradationSchedule::queue};
     std::vector<ReferenceKind> reference{ReferenceKind::exact};

@@ -51,6 +51,7 @@ TEST_CASE("an export that cannot be made ends with one line, and leaves no file"
         {"-o out.vdb --structures K_L,K_oL", "2 cases"},
         {"-o out.vdb --structures K_L --splits s_L,s_G", "a file takes one"},
         {"-o out.vdb s.csv --tau 1,0.5", "2 cases"},
+        {"-o out.vdb s.csv --structures uniform-nearest --equal-delta 0.1", "give voxel"},
         {"-o out.vdb --structures K_X", "K_X"},
         {"-o out.vdb no.csv", "no.csv"},
         {"-o out.vdb no.toml", "no.toml"},

@@ -16,9 +16,10 @@ namespace controlspace {
 inline std::span<const CatalogueEntry> grids() {
     static const std::vector<CatalogueEntry> all = [] {
         std::vector<CatalogueEntry> lattices;
-        std::copy_if(
-            structures().begin(), structures().end(), std::back_inserter(lattices),
-            [](const CatalogueEntry& entry) { return entry.has_voxels && !entry.has_levels; });
+        std::copy_if(structures().begin(), structures().end(), std::back_inserter(lattices),
+                     [](const CatalogueEntry& entry) {
+                         return entry.has_voxels && !entry.has_levels && entry.rounding <= 1e-12;
+                     });
         return lattices;
     }();
     return all;

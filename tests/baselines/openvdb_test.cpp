@@ -5,7 +5,11 @@
 #include "baselines/fixtures.h"
 #include "baselines/openvdb_grid.h"
 #include "baselines/openvdb_value.h"
+#include "baselines/openvdb_vec3s.h"
 #include "baselines/uniform_grid.h"
+#include "counting_allocator.h"
+#include "error.h"
+#include "metric/nonconformity.h"
 
 namespace controlspace {
 
@@ -49,6 +53,37 @@ TEST_CASE("the trilinear grids answer as OpenVDB's own BoxSampler does") {
             tree, openvdb::Vec3R(place.x(), place.y(), place.z()));
         REQUIRE(difference(sample_at(*grid, x), expected.metric) <= 1e-13);
     }
+}
+
+TEST_CASE("two Vec3S trees answer as the grid of doubles does, up to the rounding of floats") {
+    const SpaceOptions options = small_grid();
+    const auto doubles = make_openvdb_grid(options, Interpolation::trilinear);
+    const auto floats = make_openvdb_vec3s(options);
+    const std::vector<PointSource> sources = random_sources(300, options);
+    CHECK(doubles->insert(sources).inserted == floats->insert(sources).inserted);
+    doubles->grade({});
+    floats->grade({});
+    std::mt19937_64 random(19);
+    double worst = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const Point x = random_point(random, options.domain);
+        worst = std::max(worst, nonconformity(sample_at(*doubles, x), sample_at(*floats, x)));
+    }
+    CHECK(worst < structure_with_id("openvdb-vec3s-trilinear").rounding);
+    CHECK(worst > 0);
+    CHECK(2 * floats->footprint().bytes_payload == doubles->footprint().bytes_payload);
+
+    SpaceOptions later = options;
+    later.takes_later_sources = true;
+    CHECK_THROWS_AS(make_openvdb_vec3s(later), InputError);
+}
+
+TEST_CASE("the footprint of two Vec3S trees is what they have allocated") {
+    const std::size_t before = live_bytes();
+    const auto space = make_openvdb_vec3s(small_grid());
+    const std::size_t allocated = live_bytes() - before;
+    CHECK(space->footprint().bytes_total() <= allocated);
+    CHECK(space->footprint().bytes_total() + 2048 >= allocated);
 }
 
 TEST_CASE("the arithmetic of OpenVDB's values is entry by entry") {

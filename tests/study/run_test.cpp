@@ -174,3 +174,24 @@ TEST_CASE("with a field, trees are adapted to it and the sources; without a targ
     study.sources.h = SourcesChoice{}.h;
     check(false);
 }
+
+TEST_CASE("with the reference at their nodes, structures err between nodes only") {
+    Study study = small_study({"K_oV", "K_LA"});
+    study.runs[0].node_values = {NodeValues::graded, NodeValues::exact};
+    const auto trees = tree_catalogue();
+    std::vector<CatalogueEntry> catalogue(trees.begin(), trees.end());
+    const auto anchored = anchored_catalogue();
+    catalogue.insert(catalogue.end(), anchored.begin(), anchored.end());
+    const auto rows = run(study, catalogue);
+    REQUIRE(rows.size() == 3);  // K_LA holds no metrics
+    const auto graded = std::find_if(rows.begin(), rows.end(), [](const Row& row) {
+        return structure_label(row.setting) == "K_oV";
+    });
+    const auto exact = std::find_if(rows.begin(), rows.end(), [](const Row& row) {
+        return structure_label(row.setting) == "K_oV, exact at nodes";
+    });
+    REQUIRE(graded != rows.end());
+    REQUIRE(exact != rows.end());
+    CHECK(exact->measures->accuracy.mean < 0.8 * graded->measures->accuracy.mean);
+    CHECK(exact->measures->footprint.bytes_total() == graded->measures->footprint.bytes_total());
+}

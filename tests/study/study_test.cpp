@@ -76,6 +76,21 @@ TEST_CASE("voxels, levels and pruning multiply the grids that have them") {
     CHECK(structure_label(cases.back()) == "levels, voxel 0.5, c 0.25, pruned at 0.1");
 }
 
+TEST_CASE("goals that voxels are chosen for multiply grids, node values what holds metrics") {
+    std::vector<CatalogueEntry> catalogue = catalogue_with_a_grid();
+    catalogue.push_back({.id = "flat", .description = "", .has_voxels = true});
+    catalogue.push_back({.id = "keeper", .description = "", .takes_metrics = false});
+    Study study = study_of({"K_oL", "flat", "keeper"});
+    study.runs[0].equal_delta = {0, 0.1};
+    study.runs[0].node_values = {NodeValues::graded, NodeValues::exact};
+    const auto cases = expand(study, catalogue);
+    REQUIRE(cases.size() == 2 + 4 + 1);
+    CHECK(structure_label(cases[1]) == "K_oL, exact at nodes");
+    CHECK(structure_label(cases[5]) == "flat, for delta 0.1, exact at nodes");
+    study.runs[0].equal_memory = {5};
+    CHECK_THROWS_WITH(expand(study, catalogue), Contains("give one of them"));
+}
+
 TEST_CASE("lists expand to their product, rho outermost and structures innermost") {
     Study study = study_of({"K_oL", "grid"});
     study.runs[0].rho = {1, 0.2};

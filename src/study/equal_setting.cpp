@@ -1,0 +1,131 @@
+#include "study/equal_setting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "error.h"
+
+namespace controlspace {
+namespace {
+
+constexpr double mb = 1e6;
+
+/// What a case asks for, in the two measures of a trial.
+struct Goal {
+    bool in_delta;
+    double value;
+
+    explicit Goal(const Case& c)
+        : in_delta(c.equal_delta.has_value()),
+          value(in_delta ? *c.equal_delta : *c.equal_memory * mb) {}
+    double aimed(const Trial& t) const { return in_delta ? t.delta : t.bytes; }
+    bool is_kept(const Trial& t) const { return aimed(t) <= value; }
+    /// Voxels as fine as the goal asks for, or finer than it allows.
+    bool is_passed(const Trial& t) const { return is_kept(t) == in_delta; }
+    bool is_better(const Trial& a, const Trial& b) const {
+        if (is_kept(a) != is_kept(b)) return is_kept(a);
+        if (!is_kept(a)) return aimed(a) < aimed(b);
+        return in_delta ? a.bytes < b.bytes : a.bytes > b.bytes;
+    }
+};
+
+/// All trials of one case, whose voxels alone vary.
+class Trials {
+public:
+    /// With `levels_unit`, voxel_factor is the voxels' length in this unit.
+    Trials(const Case& c, std::optional<double> levels_unit,
+           const std::function<Trial(const Case&)>& attempt)
+        : case_(c), levels_unit_(levels_unit), attempt_(attempt), goal_(c) {}
+
+    void halve_and_bisect(double coarsest) {
+        constexpr int most_halvings = 16;
+        constexpr int bisections = 5;
+        double fine = coarsest;
+        std::optional<double> coarse;  // not passed yet
+        int in_vain = 0;
+        for (int i = 0; !is_passed(fine); ++i, fine /= 2) {
+            in_vain = coarse && is_same_as_before() ? in_vain + 1 : 0;
+            if (i == most_halvings || in_vain == 2) return;
+            coarse = fine;
+        }
+        if (!coarse) return;
+        for (int i = 0; i < bisections; ++i) {
+            const double middle = std::sqrt(*coarse * fine);
+            (is_passed(middle) ? fine : *coarse) = middle;
+        }
+    }
+
+    std::vector<EqualSetting> tried() && { return std::move(tried_); }
+    const std::string& refusal() const { return refusal_; }
+
+private:
+    // Whether voxels of this length pass the goal, or ask for more than there is.
+    bool is_passed(double length) {
+        Case setting = case_;
+        setting.voxel = length;
+        if (levels_unit_) setting.voxel_factor = length / *levels_unit_;
+        try {
+            tried_.push_back({setting, attempt_(setting)});
+        } catch (const InputError& error) {
+            if (tried_.empty()) throw;
+            refusal_ = error.what();
+            return true;
+        }
+        return goal_.is_passed(tried_.back().trial);
+    }
+
+    bool is_same_as_before() const {
+        const double now = goal_.aimed(tried_.back().trial);
+        const double before = goal_.aimed(tried_[tried_.size() - 2].trial);
+        return std::max(now, before) < 1.05 * std::min(now, before);
+    }
+
+    Case case_;
+    std::optional<double> levels_unit_;
+    const std::function<Trial(const Case&)>& attempt_;
+    Goal goal_;
+    std::vector<EqualSetting> tried_;
+    std::string refusal_;
+};
+
+std::string shortfall(const Goal& goal, const Trial& trial, const std::string& refusal) {
+    std::string text = goal.in_delta
+                           ? fmt::format("delta_R of {:.4g} is out of reach: {:.4g} is the least",
+                                         goal.value, trial.delta)
+                           : fmt::format("{:.4g} MB hold no such grid: {:.4g} MB is the least",
+                                         goal.value / mb, trial.bytes / mb);
+    if (!refusal.empty()) text += fmt::format(" ({})", refusal);
+    return text;
+}
+
+}  // namespace
+
+EqualSetting find_equal_setting(const Case& c, const CatalogueEntry& entry, double longest_edge,
+                                double finest_length,
+                                const std::function<Trial(const Case&)>& attempt) {
+    const Goal goal(c);
+    std::vector<Case> variants{c};
+    if (goal.in_delta && entry.can_prune && !c.prune_delta) {
+        variants.push_back(c);
+        variants.back().prune_delta = 0.5 * goal.value;
+    }
+    const auto levels_unit = entry.has_levels ? std::optional(finest_length) : std::nullopt;
+    std::optional<EqualSetting> best;
+    std::string refusal;
+    for (const Case& variant : variants) {
+        Trials trials(variant, levels_unit, attempt);
+        trials.halve_and_bisect(longest_edge / 4);
+        refusal = trials.refusal();
+        for (EqualSetting& found : std::move(trials).tried()) {
+            if (!best || goal.is_better(found.trial, best->trial)) best = std::move(found);
+        }
+    }
+    if (!goal.is_kept(best->trial)) best->shortfall = shortfall(goal, best->trial, refusal);
+    return *best;
+}
+
+}  // namespace controlspace
