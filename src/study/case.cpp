@@ -45,8 +45,9 @@ std::string structure_label(const Case& c) {
     return by_rule ? fmt::format("{} {}", c.structure, name_of(*c.split)) : variant_label(c);
 }
 
-std::string setting_label(const Case& c) {
-    const SourcesChoice& s = c.sources;
+namespace {
+
+std::string sources_label(const SourcesChoice& s) {
     std::string sampling;
     if (has_field(s)) sampling = fmt::format("field {}, ", name_of(s.field.kind));
     if (is_sampled(s)) {
@@ -55,8 +56,20 @@ std::string setting_label(const Case& c) {
         }
         sampling += fmt::format("rho {}, s_a {}, s_n {}, ", s.rho, s.s_a, s.s_n);
     }
-    return fmt::format("{}tau {}, epsilon {}, g_r {}; {} law, {}, {} reference", sampling, c.tau,
-                       c.epsilon, c.g_r, name_of(c.law), name_of(c.schedule), name_of(c.reference));
+    return sampling;
+}
+
+}  // namespace
+
+std::string setting_label(const Case& c) {
+    return fmt::format("{}tau {}, epsilon {}, g_r {}; {} law, {}, {} reference",
+                       sources_label(c.sources), c.tau, c.epsilon, c.g_r, name_of(c.law),
+                       name_of(c.schedule), name_of(c.reference));
+}
+
+std::string work_label(const Case& c) {
+    return fmt::format("{}g_r {}; {} law, {} reference", sources_label(c.sources), c.g_r,
+                       name_of(c.law), name_of(c.reference));
 }
 
 }  // namespace controlspace

@@ -99,4 +99,7 @@ std::string structure_label(const Case& c);
 /// queue, exact reference", with "field ugawg-linear, " or "poisson sources, " first.
 std::string setting_label(const Case& c);
 
+/// What is asked for, however it is answered: the setting without tau, epsilon and schedule.
+std::string work_label(const Case& c);
+
 }  // namespace controlspace

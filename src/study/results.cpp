@@ -9,6 +9,7 @@
 #include "error.h"
 #include "sources/output_file.h"
 #include "study/paper_page.h"
+#include "study/pareto.h"
 #include "study/row_json.h"
 #include "study/settings.h"
 #include "study/tables.h"
@@ -167,6 +168,7 @@ void ResultsFolder::write(const Provenance& provenance, const Study& study,
     replace_file(folder_ / "results.json", results_json(provenance, study, rows, complete));
     replace_file(folder_ / "results.csv", results_csv(rows));
     replace_file(folder_ / "summary.md", results_summary(provenance, study, rows, complete));
+    replace_file(folder_ / "pareto.json", pareto_json(rows));
     const std::string page = complete ? results_paper_page(provenance, study, rows) : "";
     if (!page.empty()) write_paper_page(folder_, page);
 }

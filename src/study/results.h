@@ -54,8 +54,8 @@ public:
 
     const std::filesystem::path& path() const { return folder_; }
 
-    /// Writes results.json, results.csv, summary.md and, once complete, a paper.md that is not
-    /// empty. Throws InputError, naming the file, if it cannot be written.
+    /// Writes results.json, results.csv, summary.md, pareto.json (see pareto.h) and, once complete,
+    /// a paper.md that is not empty. Throws InputError, naming the file, if it cannot be written.
     void write(const Provenance& provenance, const Study& study, std::span<const Row> rows,
                bool complete) const;
 

@@ -8,6 +8,7 @@
 
 #include "study/names.h"
 #include "study/paper_evidence.h"
+#include "study/pareto.h"
 
 namespace controlspace {
 namespace {
@@ -216,6 +217,7 @@ std::string render_tables(const Study& study, std::span<const Row> rows, TableSt
     };
     add(paper_comparison(study, rows));
     add(measure_tables(rows));
+    add(pareto_tables(rows));
     return text;
 }
 

@@ -17,7 +17,7 @@ std::vector<TextTable> paper_comparison(const Study& study, std::span<const Row>
 /// All measures of all rows, one table for each setting and mode.
 std::vector<TextTable> measure_tables(std::span<const Row> rows);
 
-/// Both, one after the other.
+/// Both, one after the other, and the fronts (pareto_tables).
 std::string render_tables(const Study& study, std::span<const Row> rows, TableStyle style);
 
 }  // namespace controlspace

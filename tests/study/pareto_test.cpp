@@ -1,0 +1,77 @@
+#include "study/pareto.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "study/sample_rows.h"
+
+using namespace controlspace;
+
+namespace {
+
+Row row_at(const char* structure, std::size_t bytes, double ns, double worst, double mean) {
+    Row row = sample_row({.structure = structure});
+    row.measures->footprint.bytes_payload = bytes;
+    row.measures->footprint.bytes_topology = row.measures->footprint.bytes_auxiliary = 0;
+    row.measures->access_random.samples_ns = {ns};
+    row.measures->accuracy_fine.max = worst;
+    row.measures->accuracy_fine.mean = mean;
+    return row;
+}
+
+std::vector<bool> front(const ParetoPlot& plot) {
+    std::vector<bool> marks;
+    for (const ParetoPoint& p : plot.points) marks.push_back(p.on_front);
+    return marks;
+}
+
+}  // namespace
+
+TEST_CASE("a front holds what nothing else is at most as large as in both") {
+    std::vector<Row> rows{row_at("a", 10, 9, 0.5, 0.1), row_at("b", 20, 1, 0.5, 0.2),
+                          row_at("c", 30, 5, 0.1, 0.3), row_at("d", 40, 7, 0.1, 0.3),
+                          row_at("a", 10, 9, 0.5, 0.1)};
+    const auto plots = pareto_plots(rows);
+    REQUIRE(plots.size() == 4);
+    CHECK(plots[0].cost == ParetoCost::bytes);
+    CHECK(front(plots[0]) == std::vector{true, false, true, false, true});
+    CHECK(plots[1].error == ParetoError::mean);
+    CHECK(front(plots[1]) == std::vector{true, false, false, false, true});
+    CHECK(plots[2].cost == ParetoCost::access);
+    CHECK(front(plots[2]) == std::vector{false, true, true, false, false});
+    CHECK(plots[3].points[1].cost == 1);
+    CHECK(plots[3].points[1].error == 0.2);
+
+    const auto tables = pareto_tables(rows);
+    REQUIRE(tables.size() == 1);
+    REQUIRE(tables[0].rows.size() == 4);
+    CHECK(tables[0].rows[0].front() == "c");
+    CHECK(tables[0].rows[0].back() == "memory, access");
+    CHECK(tables[0].rows[1].back() == "memory");
+    CHECK(tables[0].rows[2].back() == "access");
+}
+
+TEST_CASE("rows are weighed against those of the same work, at any tau and target") {
+    std::vector<Row> rows(6, row_at("K_oL", 10, 9, 0.5, 0.1));
+    rows[1].setting.tau = 0.5;
+    rows[2].setting.target_delta = 0.1;
+    rows[3].setting.sources.rho = 0.2;
+    rows[4].setting.g_r = 1.5;
+    rows[5].measures->accuracy_fine.max = std::numeric_limits<double>::infinity();
+    rows.push_back({rows[0].setting, 5, std::nullopt, "failed"});
+    const auto plots = pareto_plots(rows);
+    REQUIRE(plots.size() == 4);  // densities and ratios that stand alone have none
+    for (const ParetoPlot& plot : plots) CHECK(plot.points.size() == 3);
+
+    const auto json = nlohmann::json::parse(pareto_json(rows));
+    REQUIRE(json.size() == 4);
+    CHECK(json[0]["work"] == plots[0].work);
+    CHECK(json[0]["cost"] == "bytes_total");
+    CHECK(json[3]["cost"] == "t_access_ns_random");
+    CHECK(json[3]["error"] == "delta_R_fine_mean");
+    CHECK(json[3]["points"][1]["label"] == "K_oL, tau 0.5");
+    CHECK(json[3]["points"][2]["label"] == "K_oL, δ <= 0.1");
+    CHECK(json[3]["points"][1]["cost"] == 9);
+    CHECK(json[3]["points"][1]["front"] == true);
+}
