@@ -22,7 +22,9 @@
 #include "mesh/mesh_rows.h"
 #include "mesh/mesh_settings.h"
 #include "mesh/mmg_mesher.h"
+#include "mesh/size_query.h"
 #include "mesh/write_medit.h"
+#include "mesh/write_msh.h"
 #include "mesh/write_vtu.h"
 #include "spaces/space_field.h"
 #include "study/results.h"
@@ -49,11 +51,8 @@ bool share_reference(const Case& a, const Case& b) {
 }
 
 bool is_anisotropic(std::span<const Metric> metrics) {
-    constexpr double isotropic_within = 1.01;
     return std::any_of(metrics.begin(), metrics.end(), [](const Metric& m) {
-        if (is_isotropic(m)) return false;
-        const auto lengths = eigen_frame(m).lengths;
-        return lengths[2] > isotropic_within * lengths[0];
+        return !is_isotropic(m) && lengths_differ(eigen_frame(m).lengths);
     });
 }
 
@@ -97,7 +96,9 @@ private:
     const Reference& reference_of(const Case& c);
     void mesh_case(const Case& c, const Reference& reference, bool exact,
                    Interruption& interruption);
+    GmshOptions gmsh_options(GmshAlgorithm algorithm) const;
     MmgOptions mmg_options() const;
+    GmshRun start_mesh(const Box& domain, const MetricField& field) const;
     TetMesh make_mesh(const Reference& reference, const MetricField& field, MeshRow& row) const;
     void write_files(const MeshRow& row, const TetMesh& mesh, const MetricField& field) const;
     void record(bool complete) const;
@@ -183,41 +184,54 @@ void MeshJob::mesh_case(const Case& c, const Reference& reference, bool exact,
     }
 }
 
+GmshOptions MeshJob::gmsh_options(GmshAlgorithm algorithm) const {
+    return {.algorithm = algorithm,
+            .factor = settings_.factor,
+            .optimize = settings_.optimize,
+            .threads = settings_.threads,
+            .max_tets = settings_.max_tets};
+}
+
 MmgOptions MeshJob::mmg_options() const {
     return {.program = settings_.mmg,
+            .factor = settings_.factor.value_or(mmg_factor),
             .rounds = settings_.rounds,
             .time_limit_s = settings_.time_limit_s,
             .folder = folder_};
 }
 
+GmshRun MeshJob::start_mesh(const Box& domain, const MetricField& field) const {
+    if (settings_.start == MeshStart::coarse) return mesh_with_gmsh(domain, coarse_field(domain));
+    const bool hxt = settings_.start == MeshStart::hxt;
+    GmshOptions options = gmsh_options(hxt ? GmshAlgorithm::hxt : GmshAlgorithm::delaunay);
+    options.factor.reset();
+    return mesh_with_gmsh(domain, field, options);
+}
+
 TetMesh MeshJob::make_mesh(const Reference& reference, const MetricField& field,
                            MeshRow& row) const {
     const Box& domain = reference.workload.domain;
-    GmshOptions gmsh{.algorithm = GmshAlgorithm::delaunay,
-                     .factor = settings_.factor,
-                     .optimize = settings_.optimize,
-                     .threads = settings_.threads,
-                     .max_tets = settings_.max_tets};
-    if (reference.mesher != Mesher::mmg) {
-        if (reference.mesher == Mesher::hxt) gmsh.algorithm = GmshAlgorithm::hxt;
-        GmshRun run = mesh_with_gmsh(domain, field, gmsh);
-        row.seconds = run.seconds;
-        row.queries = run.queries;
-        row.query_seconds = run.query_seconds;
-        if (run.anisotropic) {
-            spdlog::warn(
-                "{}: the field is anisotropic, and Gmsh takes its smallest lengths: "
-                "--mesher mmg follows it",
-                mesh_label(row));
-        }
+    if (reference.mesher == Mesher::mmg) {
+        const GmshRun start = start_mesh(domain, field);
+        MmgRun run = mesh_with_mmg(start.mesh, field, mmg_options());
+        row.seconds = start.seconds + run.seconds + run.query_seconds;
+        row.queries = start.queries + run.queries;
+        row.query_seconds = start.query_seconds + run.query_seconds;
+        row.peak_bytes = run.peak_bytes;
         return std::move(run.mesh);
     }
-    const GmshRun start = mesh_with_gmsh(domain, coarse_field(domain), gmsh);
-    MmgRun run = mesh_with_mmg(start.mesh, field, mmg_options());
-    row.seconds = start.seconds + run.seconds + run.query_seconds;
+    const bool hxt = reference.mesher == Mesher::hxt;
+    GmshRun run = mesh_with_gmsh(domain, field,
+                                 gmsh_options(hxt ? GmshAlgorithm::hxt : GmshAlgorithm::delaunay));
+    row.seconds = run.seconds;
     row.queries = run.queries;
     row.query_seconds = run.query_seconds;
-    row.peak_bytes = run.peak_bytes;
+    if (run.anisotropic) {
+        spdlog::warn(
+            "{}: the field is anisotropic, and Gmsh takes its smallest lengths: --mesher mmg "
+            "follows it",
+            mesh_label(row));
+    }
     return std::move(run.mesh);
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <optional>
 
 #include "geometry/box.h"
@@ -48,14 +47,10 @@ struct GmshRun {
 
 /// Fills `domain` with tetrahedra of the size that `field` asks for.
 ///
-/// Gmsh is one for the whole process: calls wait for each other, and what else a program has open
-/// in it is closed. Throws InputError for options out of range, a field that is not positive
-/// definite somewhere or asks for too many tetrahedra, and what Gmsh could not do, in its words.
-/// What the field throws passes through.
+/// Runs in a GmshSession: what else a program has open in Gmsh is closed. Throws InputError for
+/// options out of range, a field that is not positive definite somewhere or asks for too many
+/// tetrahedra, and what Gmsh could not do, in its words. What the field throws passes through.
 GmshRun mesh_with_gmsh(const Box& domain, const MetricField& field,
                        const GmshOptions& options = {});
-
-/// Writes `mesh` in Gmsh's own format. Throws InputError if that fails; no part of a file is left.
-void write_msh(const std::filesystem::path& path, const TetMesh& mesh);
 
 }  // namespace controlspace

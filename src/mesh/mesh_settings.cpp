@@ -1,6 +1,7 @@
 #include "mesh/mesh_settings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -12,17 +13,32 @@
 namespace controlspace {
 namespace {
 
-constexpr std::array<std::pair<Mesher, std::string_view>, 4> meshers{
-    {{Mesher::automatic, "auto"},
-     {Mesher::delaunay, "delaunay"},
-     {Mesher::hxt, "hxt"},
-     {Mesher::mmg, "mmg"}}};
+template <class Enum, std::size_t n>
+using Words = std::array<std::pair<Enum, std::string_view>, n>;
 
-Mesher mesher_of(const std::string& word) {
-    for (const auto& [mesher, name] : meshers) {
-        if (name == word) return mesher;
+constexpr Words<Mesher, 4> meshers{{{Mesher::automatic, "auto"},
+                                    {Mesher::delaunay, "delaunay"},
+                                    {Mesher::hxt, "hxt"},
+                                    {Mesher::mmg, "mmg"}}};
+constexpr Words<MeshStart, 3> starts{
+    {{MeshStart::coarse, "coarse"}, {MeshStart::delaunay, "delaunay"}, {MeshStart::hxt, "hxt"}}};
+
+template <class Enum, std::size_t n>
+Enum value_of(const Words<Enum, n>& words, const SettingValues& values) {
+    std::vector<std::string_view> known;
+    for (const auto& [value, word] : words) {
+        if (word == text(values.front())) return value;
+        known.push_back(word);
     }
-    throw InputError(fmt::format("unknown mesher '{}': give auto, delaunay, hxt, mmg", word));
+    throw InputError(
+        fmt::format("unknown value '{}': give {}", text(values.front()), fmt::join(known, ", ")));
+}
+
+template <class Enum, std::size_t n>
+std::string_view word_of(const Words<Enum, n>& words, Enum value) {
+    const auto found = std::find_if(words.begin(), words.end(),
+                                    [&](const auto& entry) { return entry.first == value; });
+    return found->second;
 }
 
 void set_files(MeshSettings& s, const SettingValues& values) {
@@ -50,11 +66,11 @@ const Setting<MeshSettings> table[] = {
     {"mesher", text_type, 1, "",
      "delaunay or hxt (Gmsh), mmg (MMG3D), or auto: delaunay where the field is isotropic, else "
      "mmg",
-     [](MeshSettings& s, const SettingValues& v) { s.mesher = mesher_of(text(v.front())); },
+     [](MeshSettings& s, const SettingValues& v) { s.mesher = value_of(meshers, v); },
      [](const MeshSettings& s) { return SettingValues{std::string(name_of(s.mesher))}; }},
     {"factor", number_type, 1, "",
-     "Gmsh: of the sizes it is given, which its edges exceed; left out: 0.77 for delaunay, 0.7 for "
-     "hxt",
+     "Of lengths, as meshers make longer edges than they are asked for; left out: 0.77 for "
+     "delaunay, 0.7 for hxt, 0.96 for mmg",
      [](MeshSettings& s, const SettingValues& v) {
          s.factor = within(positive(number(v.front())), 0, 100);
      },
@@ -77,6 +93,12 @@ const Setting<MeshSettings> table[] = {
     {"mmg", text_type, 1, "", "MMG's program mmg3d_O3; left out: as found in PATH",
      [](MeshSettings& s, const SettingValues& v) { s.mmg = text(v.front()); },
      [](const MeshSettings& s) { return s.mmg.empty() ? SettingValues{} : SettingValues{s.mmg}; }},
+    {"start", text_type, 1, "",
+     "MMG: the mesh it starts from: coarse; or one that Gmsh made for the field's smallest "
+     "lengths, "
+     "delaunay, hxt, which MMG only finishes",
+     [](MeshSettings& s, const SettingValues& v) { s.start = value_of(starts, v); },
+     [](const MeshSettings& s) { return SettingValues{std::string(word_of(starts, s.start))}; }},
     {"rounds", whole, 1, "",
      "MMG: how often the mesh is made anew, each time by the field at its "
      "vertices",
@@ -104,11 +126,7 @@ const Setting<MeshSettings> table[] = {
 
 }  // namespace
 
-std::string_view name_of(Mesher mesher) {
-    return std::find_if(meshers.begin(), meshers.end(),
-                        [&](const auto& entry) { return entry.first == mesher; })
-        ->second;
-}
+std::string_view name_of(Mesher mesher) { return word_of(meshers, mesher); }
 
 std::span<const Setting<MeshSettings>> mesh_settings() { return table; }
 

@@ -16,10 +16,14 @@ enum class Mesher {
     mmg,        ///< MMG3D, started from a mesh of Gmsh's
 };
 
+/// The mesh that MMG starts from.
+enum class MeshStart { coarse, delaunay, hxt };
+
 /// How `controlspace mesh` makes meshes; what is not said is the mesher's own.
 struct MeshSettings {
     Mesher mesher = Mesher::automatic;
-    std::optional<double> factor;    ///< Gmsh: of sizes
+    MeshStart start = MeshStart::coarse;
+    std::optional<double> factor;    ///< of lengths
     std::optional<double> optimize;  ///< Gmsh: quality to improve up to
     int threads = 1;                 ///< Gmsh
     double max_tets = 5e7;

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -126,6 +127,9 @@ MmgRun mesh_with_mmg(const TetMesh& start, const MetricField& field, const MmgOp
     if (options.rounds < 1) {
         throw InputError(fmt::format("{} rounds of MMG: give 1 or more", options.rounds));
     }
+    if (!(options.factor > 0 && std::isfinite(options.factor))) {
+        throw InputError(fmt::format("factor {} of lengths: give a positive one", options.factor));
+    }
     if (!(options.time_limit_s > 0)) {
         throw InputError(
             fmt::format("a time limit of {} s: give a positive one", options.time_limit_s));
@@ -135,8 +139,9 @@ MmgRun mesh_with_mmg(const TetMesh& start, const MetricField& field, const MmgOp
     run.mesh = start;
     for (int round = 0; round < options.rounds; ++round) {
         const auto before = std::chrono::steady_clock::now();
-        const std::vector<Metric> metrics = metrics_at(run.mesh, field);
+        std::vector<Metric> metrics = metrics_at(run.mesh, field);
         run.query_seconds += seconds_since(before);
+        for (Metric& m : metrics) m = options.factor * m;
         run.queries += metrics.size();
         run.mesh = remesh(run.mesh, metrics, program, options, run);
     }

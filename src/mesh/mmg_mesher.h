@@ -8,9 +8,15 @@
 
 namespace controlspace {
 
+/// MMG makes edges a little longer than it is asked to: what lengths are multiplied by, the same
+/// for every field, for a mean metric length of 1. On a thin layer around a sphere (0.015 across,
+/// 0.06 along, 200,000 tetrahedra), L_R is 0.755 in three rounds without it and 0.772 with it.
+constexpr double mmg_factor = 0.96;
+
 struct MmgOptions {
     /// MMG's executable mmg3d_O3; empty: as found by find_mmg.
     std::filesystem::path program;
+    double factor = mmg_factor;  ///< of lengths
     int rounds = 3;
     double time_limit_s = 900;  ///< of a round
     /// Where a folder for temporary files is made. It is removed, unless something fails.

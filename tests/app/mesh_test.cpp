@@ -91,7 +91,8 @@ TEST_CASE("a mesher that fails makes a row with its reason, and status 3") {
 TEST_CASE("what cannot be meshed ends with one line, and leaves no folder") {
     const Sandbox box("mesh-refused");
     const auto [arguments, expected] = GENERATE(table<std::string, std::string>({
-        {"--mesher netgen", "--mesher: unknown mesher 'netgen'"},
+        {"--mesher netgen", "--mesher: unknown value 'netgen'"},
+        {"--start fine", "--start: unknown value 'fine': give coarse, delaunay, hxt"},
         {"--factor 0", "--factor: 0 is not positive"},
         {"--optimize 1", "--optimize: 1 is out of range"},
         {"--files stl", "--files: unknown kind of file 'stl'"},

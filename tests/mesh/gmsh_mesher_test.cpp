@@ -8,6 +8,7 @@
 #include "fields/formula_field.h"
 #include "mesh/conformity.h"
 #include "mesh/fixtures.h"
+#include "mesh/write_msh.h"
 #include "sources/files.h"
 
 using namespace controlspace;
