@@ -215,6 +215,7 @@ TetMesh MeshJob::make_mesh(const Reference& reference, const MetricField& field,
         const GmshRun start = start_mesh(domain, field);
         MmgRun run = mesh_with_mmg(start.mesh, field, mmg_options());
         row.seconds = start.seconds + run.seconds + run.query_seconds;
+        row.processor_seconds = start.processor_seconds + run.processor_seconds + run.query_seconds;
         row.queries = start.queries + run.queries;
         row.query_seconds = start.query_seconds + run.query_seconds;
         row.peak_bytes = run.peak_bytes;
@@ -224,6 +225,7 @@ TetMesh MeshJob::make_mesh(const Reference& reference, const MetricField& field,
     GmshRun run = mesh_with_gmsh(domain, field,
                                  gmsh_options(hxt ? GmshAlgorithm::hxt : GmshAlgorithm::delaunay));
     row.seconds = run.seconds;
+    row.processor_seconds = run.processor_seconds;
     row.queries = run.queries;
     row.query_seconds = run.query_seconds;
     if (run.anisotropic) {

@@ -40,6 +40,10 @@ constexpr int could_not_start = 127;
     ::_exit(could_not_start);
 }
 
+double seconds_of(const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
 class Descriptor {
 public:
     Descriptor(const fs::path& path, int flags) : number_(::open(path.c_str(), flags, 0666)) {
@@ -96,6 +100,7 @@ ChildOutcome run_child(const std::vector<std::string>& arguments, const fs::path
     }
     if (WIFSIGNALED(state)) outcome.signal = WTERMSIG(state);
     if (WIFEXITED(state)) outcome.status = WEXITSTATUS(state);
+    outcome.processor_seconds = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
     outcome.peak_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;
     if (outcome.status == could_not_start && fs::is_empty(log)) {
         throw InputError(

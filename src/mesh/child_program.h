@@ -9,9 +9,10 @@ namespace controlspace {
 
 /// How a program that was run ended.
 struct ChildOutcome {
-    bool timed_out = false;      ///< and was killed
-    int signal = 0;              ///< that ended it; 0: none
-    int status = 0;              ///< where no signal ended it
+    bool timed_out = false;  ///< and was killed
+    int signal = 0;          ///< that ended it; 0: none
+    int status = 0;          ///< where no signal ended it
+    double processor_seconds = 0;
     std::size_t peak_bytes = 0;  ///< most memory that it held
 
     bool succeeded() const { return !timed_out && signal == 0 && status == 0; }

@@ -37,7 +37,8 @@ struct GmshOptions {
 /// A mesh, and what it took.
 struct GmshRun {
     TetMesh mesh;
-    double seconds = 0;  ///< meshing alone, by the clock
+    double seconds = 0;            ///< meshing alone, by the clock
+    double processor_seconds = 0;  ///< the same, of the program's processors
     std::size_t queries = 0;
     double query_seconds = 0;  ///< in the field, of all threads together; from a sample of queries
     /// The field asked for different lengths in different directions, of which Gmsh was given the

@@ -18,13 +18,14 @@ struct MeshRow {
     bool exact = false;  ///< the reference itself was meshed, by no structure
     Mesher mesher = Mesher::delaunay;
     std::string error;
-    Conformity conformity;       ///< to the reference
-    double creation_s = 0;       ///< of the structure
-    double seconds = 0;          ///< of meshing, by the clock
-    std::size_t queries = 0;     ///< of sizes
-    double query_seconds = 0;    ///< spent in them
-    std::size_t peak_bytes = 0;  ///< of the program and, if that is more, of MMG
-    double delta_r_max = 0;      ///< δ_R of the structure
+    Conformity conformity;         ///< to the reference
+    double creation_s = 0;         ///< of the structure
+    double seconds = 0;            ///< of meshing, by the clock
+    double processor_seconds = 0;  ///< the same, of processors
+    std::size_t queries = 0;       ///< of sizes
+    double query_seconds = 0;      ///< spent in them
+    std::size_t peak_bytes = 0;    ///< of the program and, if that is more, of MMG
+    double delta_r_max = 0;        ///< δ_R of the structure
     double delta_r_mean = 0;
 };
 

@@ -83,6 +83,7 @@ TetMesh remesh(const TetMesh& mesh, const std::vector<Metric>& metrics, const fs
     const auto start = std::chrono::steady_clock::now();
     const ChildOutcome outcome = run_child(words, folder.path(), log, options.time_limit_s);
     run.seconds += seconds_since(start);
+    run.processor_seconds += outcome.processor_seconds;
     run.peak_bytes = std::max(run.peak_bytes, outcome.peak_bytes);
     std::string unreadable;
     if (outcome.succeeded()) {

@@ -23,12 +23,13 @@ struct MmgOptions {
     std::filesystem::path folder = ".";
 };
 
-/// A mesh, and what it took; times by the clock.
+/// A mesh, and what it took.
 struct MmgRun {
     TetMesh mesh;
-    double seconds = 0;  ///< in MMG, its reading and writing of files included
+    double seconds = 0;  ///< in MMG, its reading and writing of files included, by the clock
+    double processor_seconds = 0;  ///< the same, of processors
     std::size_t queries = 0;
-    double query_seconds = 0;    ///< in the field
+    double query_seconds = 0;    ///< in the field, by the clock
     std::size_t peak_bytes = 0;  ///< most memory that MMG held
 };
 

@@ -16,7 +16,8 @@ MeshRow row_of(const std::string& structure, double l_r, double delta_r) {
     row.conformity.tets = 350000;
     row.conformity.edges = 400;
     row.conformity.histogram = {0, 0, 40, 0, 360};
-    row.seconds = 10;
+    row.seconds = 20;
+    row.processor_seconds = 10;
     row.query_seconds = 0.5;
     row.delta_r_max = delta_r;
     row.delta_r_mean = delta_r / 10;
