@@ -18,6 +18,7 @@
 #include "error.h"
 #include "fields/formula_field.h"
 #include "measure/accuracy.h"
+#include "mesh/estimate.h"
 #include "mesh/gmsh_mesher.h"
 #include "mesh/mesh_rows.h"
 #include "mesh/mesh_settings.h"
@@ -93,6 +94,7 @@ public:
     const std::vector<MeshRow>& rows() const { return rows_; }
 
 private:
+    void require_runnable();
     const Reference& reference_of(const Case& c);
     void mesh_case(const Case& c, const Reference& reference, bool exact,
                    Interruption& interruption);
@@ -122,23 +124,27 @@ const Reference& MeshJob::reference_of(const Case& c) {
 }
 
 void MeshJob::run(Interruption& interruption) {
-    const auto begin = [&](const Case& c) -> const Reference& {
-        const Reference& reference = reference_of(c);
-        if (reference.mesher == Mesher::mmg) require_mmg(mmg_options());
-        return reference;
-    };
-    begin(cases_.front());  // what cannot be run leaves no folder
+    require_runnable();
     make_results_folder(folder_, results_file);
     record(false);
     const Case* last = nullptr;
     for (const Case& c : cases_) {
-        const Reference& reference = begin(c);
+        const Reference& reference = reference_of(c);
         const bool new_field = last == nullptr || !share_reference(*last, c);
         if (settings_.exact && new_field) mesh_case(c, reference, true, interruption);
         mesh_case(c, reference, false, interruption);
         last = &c;
     }
     record(true);
+}
+
+/// What is wrong from the start leaves no folder; what is wrong with a later case makes a row.
+void MeshJob::require_runnable() {
+    const Reference& reference = reference_of(cases_.front());
+    for (const Case& c : cases_) {
+        if (c.sources == reference.first.sources) space_options(study_, c, reference.workload);
+    }
+    if (reference.mesher == Mesher::mmg) require_mmg(mmg_options());
 }
 
 void MeshJob::mesh_case(const Case& c, const Reference& reference, bool exact,
@@ -212,6 +218,7 @@ TetMesh MeshJob::make_mesh(const Reference& reference, const MetricField& field,
                            MeshRow& row) const {
     const Box& domain = reference.workload.domain;
     if (reference.mesher == Mesher::mmg) {
+        require_few_tets(domain, field, settings_.max_tets);
         const GmshRun start = start_mesh(domain, field);
         MmgRun run = mesh_with_mmg(start.mesh, field, mmg_options());
         row.seconds = start.seconds + run.seconds + run.query_seconds;

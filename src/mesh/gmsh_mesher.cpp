@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gmsh.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -13,7 +12,7 @@
 #include <vector>
 
 #include "error.h"
-#include "measure/accuracy.h"
+#include "mesh/estimate.h"
 #include "mesh/gmsh_session.h"
 #include "mesh/size_query.h"
 
@@ -101,20 +100,6 @@ TetMesh take_mesh(const UnitFrame& frame) {
     return mesh;
 }
 
-/// Tetrahedra of the lengths that `field` asks for, roughly: places between the samples may ask for
-/// more.
-double estimated_tets(const Box& domain, const MetricField& field) {
-    constexpr int samples = 24;
-    const std::vector<Point> places = cell_centres(domain, samples);
-    std::vector<Metric> metrics(places.size());
-    field.evaluate(places, metrics);
-    const double cell = domain.edges().prod() / static_cast<double>(places.size());
-    const double per_unit = 6 * std::sqrt(2.0);  // regular ones of edge 1 in a unit of volume
-    double sum = 0;
-    for (const Metric& m : metrics) sum += per_unit * cell / m.matrix().determinant();
-    return sum;
-}
-
 void require_valid(const Box& domain, const MetricField& field, const GmshOptions& options) {
     require_volume(domain);
     const double factor = options.factor.value_or(1);
@@ -128,13 +113,7 @@ void require_valid(const Box& domain, const MetricField& field, const GmshOption
                         "from 0.8 on it takes long",
                         optimize));
     }
-    const double tets = estimated_tets(domain, field);
-    if (!(tets <= options.max_tets)) {
-        throw InputError(
-            fmt::format("the field asks for some {:.2g} tetrahedra, more than {:.2g}: "
-                        "ask for larger lengths, or allow more",
-                        tets, options.max_tets));
-    }
+    require_few_tets(domain, field, options.max_tets);
 }
 
 }  // namespace
