@@ -123,7 +123,7 @@ double standard_factor(GmshAlgorithm algorithm) {
 }
 
 double standard_optimize(GmshAlgorithm algorithm) {
-    return algorithm == GmshAlgorithm::hxt ? 0.6 : 0.7;
+    return algorithm == GmshAlgorithm::hxt ? 0.6 : 0.75;
 }
 
 GmshRun mesh_with_gmsh(const Box& domain, const MetricField& field, const GmshOptions& options) {

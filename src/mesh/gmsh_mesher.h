@@ -21,8 +21,9 @@ enum class GmshAlgorithm {
 double standard_factor(GmshAlgorithm algorithm);
 
 /// Up to which quality tetrahedra are improved, unless something else is said: what is worth its
-/// time. On the paper's sphere (0.03, 400,000 tetrahedra), L_R is 0.803 in 16 s by Delaunay at 0.7;
-/// by HXT 0.676 in 0.9 s without improvement, 0.729 in 3 s at 0.6 and 0.772 in 13 s at 0.7.
+/// time. On the paper's sphere (0.03, 340,000 to 400,000 tetrahedra), L_R is 0.800 in 13 s by
+/// Delaunay at 0.7 and 0.806 in 19 s at 0.75; by HXT 0.676 in 0.9 s without improvement, 0.729 in
+/// 3 s at 0.6 and 0.772 in 13 s at 0.7.
 double standard_optimize(GmshAlgorithm algorithm);
 
 struct GmshOptions {

@@ -76,7 +76,7 @@ const Setting<MeshSettings> table[] = {
      },
      [](const MeshSettings& s) { return optional_number(s.factor); }},
     {"optimize", number_type, 1, "",
-     "Gmsh: quality below which tetrahedra are improved, 0 to 0.95; left out: 0.7 for delaunay, "
+     "Gmsh: quality below which tetrahedra are improved, 0 to 0.95; left out: 0.75 for delaunay, "
      "0.6 for hxt",
      [](MeshSettings& s, const SettingValues& v) {
          s.optimize = within(number(v.front()), 0, 0.95);
