@@ -4,9 +4,7 @@
 #include <gmsh.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,13 +13,10 @@
 #include "mesh/estimate.h"
 #include "mesh/gmsh_session.h"
 #include "mesh/size_query.h"
+#include "mesh/stopwatch.h"
 
 namespace controlspace {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 void set_size_callback(SizeQuery& query) {
 #if GMSH_API_VERSION_MAJOR > 4 || (GMSH_API_VERSION_MAJOR == 4 && GMSH_API_VERSION_MINOR >= 9)
@@ -135,8 +130,7 @@ GmshRun mesh_with_gmsh(const Box& domain, const MetricField& field, const GmshOp
         set_options(options);
         set_size_callback(query);
         GmshRun run;
-        const auto start = std::chrono::steady_clock::now();
-        const std::clock_t processor_start = std::clock();
+        const Stopwatch watch;
         try {
             generate(options.algorithm,
                      options.optimize.value_or(standard_optimize(options.algorithm)));
@@ -144,9 +138,8 @@ GmshRun mesh_with_gmsh(const Box& domain, const MetricField& field, const GmshOp
             query.rethrow_failure();  // the cause, if it is ours
             throw;
         }
-        run.seconds = seconds_since(start);
-        run.processor_seconds =
-            static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
+        run.seconds = watch.seconds();
+        run.processor_seconds = watch.processor_seconds();
         query.rethrow_failure();
         run.queries = query.count();
         run.query_seconds = query.seconds();

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include <cerrno>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -14,16 +13,14 @@
 #include "error.h"
 #include "mesh/child_program.h"
 #include "mesh/read_medit_mesh.h"
+#include "mesh/size_query.h"
+#include "mesh/stopwatch.h"
 #include "mesh/write_medit.h"
 
 namespace controlspace {
 namespace {
 
 namespace fs = std::filesystem;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// A new folder, removed with all that is in it unless it is to be kept.
 class TemporaryFolder {
@@ -54,12 +51,7 @@ private:
 std::vector<Metric> metrics_at(const TetMesh& mesh, const MetricField& field) {
     std::vector<Metric> metrics(mesh.vertices.size());
     field.evaluate(mesh.vertices, metrics);
-    for (std::size_t i = 0; i < metrics.size(); ++i) {
-        if (is_positive_definite(metrics[i])) continue;
-        const Point& p = mesh.vertices[i];
-        throw InputError(fmt::format("the field at ({}, {}, {}) is no metric: {}", p.x(), p.y(),
-                                     p.z(), to_string(metrics[i])));
-    }
+    for (std::size_t i = 0; i < metrics.size(); ++i) require_metric(metrics[i], mesh.vertices[i]);
     return metrics;
 }
 
@@ -80,9 +72,9 @@ TetMesh remesh(const TetMesh& mesh, const std::vector<Metric>& metrics, const fs
     const std::vector<std::string> words{
         program.string(), "-v",   "1",      "-hgrad", "-1",      "-in",
         "in.mesh",        "-sol", "in.sol", "-out",   "out.mesh"};
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const ChildOutcome outcome = run_child(words, folder.path(), log, options.time_limit_s);
-    run.seconds += seconds_since(start);
+    run.seconds += watch.seconds();
     run.processor_seconds += outcome.processor_seconds;
     run.peak_bytes = std::max(run.peak_bytes, outcome.peak_bytes);
     std::string unreadable;
@@ -139,9 +131,9 @@ MmgRun mesh_with_mmg(const TetMesh& start, const MetricField& field, const MmgOp
     MmgRun run;
     run.mesh = start;
     for (int round = 0; round < options.rounds; ++round) {
-        const auto before = std::chrono::steady_clock::now();
+        const Stopwatch watch;
         std::vector<Metric> metrics = metrics_at(run.mesh, field);
-        run.query_seconds += seconds_since(before);
+        run.query_seconds += watch.seconds();
         for (Metric& m : metrics) m = options.factor * m;
         run.queries += metrics.size();
         run.mesh = remesh(run.mesh, metrics, program, options, run);

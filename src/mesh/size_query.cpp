@@ -29,6 +29,12 @@ std::int64_t cost_of_clock() {
 
 }  // namespace
 
+void require_metric(const Metric& m, const Point& p) {
+    if (is_positive_definite(m)) return;
+    throw InputError(fmt::format("the field at ({}, {}, {}) is no metric: {}", p.x(), p.y(), p.z(),
+                                 to_string(m)));
+}
+
 SizeQuery::SizeQuery(const MetricField& field, const UnitFrame& frame, double factor)
     : field_(field), frame_(frame), factor_(factor), clock_cost_(cost_of_clock()) {}
 
@@ -63,10 +69,7 @@ double SizeQuery::scaled_length(double x, double y, double z) noexcept {
 
 double SizeQuery::smallest_length(const Point& p) {
     const Metric m = metric_at(field_, p);
-    if (!is_positive_definite(m)) {
-        throw InputError(fmt::format("the field at ({}, {}, {}) is no metric: {}", p.x(), p.y(),
-                                     p.z(), to_string(m)));
-    }
+    require_metric(m, p);
     if (is_isotropic(m)) return m.xx;
     const auto lengths = eigen_frame(m).lengths;
     if (lengths_differ(lengths)) anisotropic_ = true;

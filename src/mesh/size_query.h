@@ -35,6 +35,9 @@ inline bool lengths_differ(const std::array<double, 3>& lengths) {
     return lengths[2] > 1.01 * lengths[0];
 }
 
+/// Throws InputError unless `m`, a field's answer at `p`, is positive definite.
+void require_metric(const Metric& m, const Point& p);
+
 /// Answers a mesher's question for the size at a place, in a frame: the smallest length that a
 /// field asks for there, times a factor. It may be asked by several threads, and never throws, as
 /// meshers do not expect that: the first exception, that of the field or InputError where the field
