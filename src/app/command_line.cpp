@@ -222,6 +222,17 @@ Command parse_command_line(int argc, const char* const* argv) {
     paper->add_flag("--quiet", paper_options.quiet, "No progress on standard error");
     paper->footer(statuses);
 
+    ReportOptions report_options;
+    CLI::App* report = app.add_subcommand(
+        "report", "Write a page with pictures of results (drawn by gnuplot): report.html");
+    report->add_option("RESULTS", report_options.inputs, "Folders of results")
+        ->option_text("FOLDER ...")
+        ->required();
+    report
+        ->add_option("--output", report_options.output,
+                     "Folder for the page and its pictures; left out: the first one with results")
+        ->option_text("TEXT");
+
 #ifdef CONTROLSPACE_OPENVDB
     ExportOptions export_options;
     WordsByKey given_to_export;
@@ -247,6 +258,7 @@ Command parse_command_line(int argc, const char* const* argv) {
         throw InputError(fmt::format("{} (see controlspace --help)", error.what()));
     }
     if (list->parsed()) return ListCommand{};
+    if (report->parsed()) return report_options;
     if (paper->parsed()) {
         paper_options.command_line = command_line_text(argc, argv);
         return paper_options;

@@ -7,6 +7,7 @@
 #include "app/export.h"
 #include "app/mesh.h"
 #include "app/paper.h"
+#include "app/report.h"
 
 namespace controlspace {
 
@@ -17,7 +18,7 @@ struct TextCommand {
 struct ListCommand {};
 
 using Command = std::variant<TextCommand, ListCommand, CompareOptions, ExportOptions, MeshOptions,
-                             PaperOptions>;
+                             PaperOptions, ReportOptions>;
 
 /// Throws InputError for what is no valid command line.
 Command parse_command_line(int argc, const char* const* argv);

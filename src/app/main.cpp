@@ -37,6 +37,8 @@ int main(int argc, char** argv) {
             print(list_text());
         } else if (const auto* paper_options = std::get_if<PaperOptions>(&command)) {
             return paper(*paper_options) ? 0 : 3;
+        } else if (const auto* report_options = std::get_if<ReportOptions>(&command)) {
+            report(*report_options);
 #ifdef CONTROLSPACE_OPENVDB
         } else if (const auto* export_options = std::get_if<ExportOptions>(&command)) {
             export_vdb(*export_options);

@@ -130,10 +130,7 @@ Findings read_cells(const PaperOptions& options) {
     findings.folder = options.inputs.front();
     for (const fs::path& folder : options.inputs) {
         read(findings, folder);
-        for (const Experiments& experiments : all_experiments) {
-            const fs::path nested = folder / experiments.folder;
-            if (fs::exists(nested / "results.json")) read(findings, nested);
-        }
+        for (const fs::path& nested : experiments_in(folder)) read(findings, nested);
     }
     if (findings.evidence.cells().empty()) {
         throw InputError(
@@ -152,6 +149,15 @@ bool are_folders(const PaperOptions& options) {
 }
 
 }  // namespace
+
+std::vector<fs::path> experiments_in(const fs::path& folder) {
+    std::vector<fs::path> found;
+    for (const Experiments& experiments : all_experiments) {
+        const fs::path nested = folder / experiments.folder;
+        if (fs::exists(nested / "results.json")) found.push_back(nested);
+    }
+    return found;
+}
 
 bool paper(const PaperOptions& options) {
     const bool read_only = are_folders(options);

@@ -17,6 +17,9 @@ struct PaperOptions {
     std::string command_line;
 };
 
+/// Folders with results of experiments that lie in the folder of the cells.
+std::vector<std::filesystem::path> experiments_in(const std::filesystem::path& folder);
+
 /// Sets our values beside the paper's: runs what it needs, or reads results that are there. Prints
 /// the summary and writes paper.md into the folder of results, the first one if there are several.
 /// Experiments are run at the settings of that folder's cells, into folders in it. Returns whether

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "error.h"
-#include "mesh/child_program.h"
 #include "mesh/read_medit_mesh.h"
 #include "mesh/size_query.h"
 #include "mesh/stopwatch.h"
 #include "mesh/write_medit.h"
+#include "study/child_program.h"
 
 namespace controlspace {
 namespace {

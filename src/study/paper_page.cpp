@@ -42,28 +42,6 @@ TextTable claims_table(std::span<const JudgedClaim> claims, ClaimVerdict verdict
     return table;
 }
 
-/// "Of the paper's conclusions 5 stand, 4 do not. Of ..."
-std::string headline(const PaperEvidence& evidence, std::span<const JudgedClaim> claims) {
-    const auto claims_that = [&](ClaimVerdict verdict) {
-        return std::count_if(claims.begin(), claims.end(),
-                             [&](const JudgedClaim& c) { return c.verdict == verdict; });
-    };
-    std::vector<CellVerdict> cells = judge(evidence, PaperTable::size);
-    const auto more = judge(evidence, PaperTable::delta_r);
-    cells.insert(cells.end(), more.begin(), more.end());
-    const auto cells_that = [&](Verdict verdict) {
-        return std::count_if(cells.begin(), cells.end(),
-                             [&](const CellVerdict& cell) { return cell.verdict == verdict; });
-    };
-    return fmt::format(
-        "Of the conclusions that the paper's tables suggest {} stand and {} do not. Of the {} "
-        "cells of Tables 1 and 4 {} are equal to the printed digit, {} differ "
-        "for a reason that an experiment shows, {} differ and are not explained.\n",
-        claims_that(ClaimVerdict::stands), claims_that(ClaimVerdict::does_not_stand), cells.size(),
-        cells_that(Verdict::equal), cells_that(Verdict::explained),
-        cells_that(Verdict::unexplained));
-}
-
 TextTable counts_table(const PaperEvidence& evidence) {
     TextTable table{"Verdicts on the paper's cells",
                     "Equal: to the printed digit. Explained: differs, and an experiment shows why.",
@@ -134,20 +112,60 @@ TextTable open_table(const PaperEvidence& evidence) {
 
 }  // namespace
 
-std::string paper_summary(const PaperEvidence& evidence, TableStyle style) {
+std::string paper_headline(const PaperEvidence& evidence) {
     const std::vector<JudgedClaim> claims = judge_claims(evidence);
-    std::string text = headline(evidence, claims);
-    const auto add = [&](const TextTable& table) { text += '\n' + render(table, style); };
+    const auto claims_that = [&](ClaimVerdict verdict) {
+        return std::count_if(claims.begin(), claims.end(),
+                             [&](const JudgedClaim& c) { return c.verdict == verdict; });
+    };
+    std::vector<CellVerdict> cells = judge(evidence, PaperTable::size);
+    const auto more = judge(evidence, PaperTable::delta_r);
+    cells.insert(cells.end(), more.begin(), more.end());
+    const auto cells_that = [&](Verdict verdict) {
+        return std::count_if(cells.begin(), cells.end(),
+                             [&](const CellVerdict& cell) { return cell.verdict == verdict; });
+    };
+    return fmt::format(
+        "Of the conclusions that the paper's tables suggest {} stand and {} do not. Of the {} "
+        "cells of Tables 1 and 4 {} are equal to the printed digit, {} differ "
+        "for a reason that an experiment shows, {} differ and are not explained.",
+        claims_that(ClaimVerdict::stands), claims_that(ClaimVerdict::does_not_stand), cells.size(),
+        cells_that(Verdict::equal), cells_that(Verdict::explained),
+        cells_that(Verdict::unexplained));
+}
+
+std::vector<TextTable> paper_summary_tables(const PaperEvidence& evidence) {
+    const std::vector<JudgedClaim> claims = judge_claims(evidence);
+    std::vector<TextTable> tables;
     const auto add_claims = [&](ClaimVerdict verdict, std::string heading) {
-        const TextTable table = claims_table(claims, verdict, std::move(heading));
-        if (!table.rows.empty()) add(table);
+        TextTable table = claims_table(claims, verdict, std::move(heading));
+        if (!table.rows.empty()) tables.push_back(std::move(table));
     };
     add_claims(ClaimVerdict::stands, "Conclusions that stand");
     add_claims(ClaimVerdict::does_not_stand, "Conclusions that do not stand");
     add_claims(ClaimVerdict::not_measured, "Conclusions that were not measured");
-    add(rank_table(evidence));
-    add(counts_table(evidence));
-    add(open_table(evidence));
+    tables.push_back(rank_table(evidence));
+    tables.push_back(counts_table(evidence));
+    tables.push_back(open_table(evidence));
+    return tables;
+}
+
+std::vector<TextTable> paper_detail_tables(const PaperEvidence& evidence) {
+    std::vector<TextTable> tables = paper_experiments(evidence);
+    for (const PaperTable t : paper_tables) {
+        TextTable& table = tables.emplace_back(cells_table(std::string(title(t)), ""));
+        for (const CellVerdict& judged : judge(evidence, t)) {
+            table.rows.push_back(cells_row(t, judged));
+        }
+    }
+    return tables;
+}
+
+std::string paper_summary(const PaperEvidence& evidence, TableStyle style) {
+    std::string text = paper_headline(evidence) + '\n';
+    for (const TextTable& table : paper_summary_tables(evidence)) {
+        text += '\n' + render(table, style);
+    }
     return text;
 }
 
@@ -158,16 +176,8 @@ std::string paper_page(const PaperEvidence& evidence, std::span<const std::strin
         "meshing\", Tables 1-4, beside rows that were run in the same way.\n\n";
     for (const std::string& origin : origins) text += fmt::format("- {}\n", origin);
     text += fmt::format("\n{}", paper_summary(evidence, TableStyle::markdown));
-    const auto add = [&](const TextTable& table) {
+    for (const TextTable& table : paper_detail_tables(evidence)) {
         text += fmt::format("\n{}", render(table, TableStyle::markdown));
-    };
-    for (const TextTable& table : paper_experiments(evidence)) add(table);
-    for (const PaperTable t : paper_tables) {
-        TextTable table = cells_table(std::string(title(t)), "");
-        for (const CellVerdict& judged : judge(evidence, t)) {
-            table.rows.push_back(cells_row(t, judged));
-        }
-        add(table);
     }
     return text;
 }

@@ -9,6 +9,15 @@
 
 namespace controlspace {
 
+/// How many conclusions of the paper stand, and how many cells are equal: two sentences.
+std::string paper_headline(const PaperEvidence& evidence);
+
+/// The tables of paper_summary.
+std::vector<TextTable> paper_summary_tables(const PaperEvidence& evidence);
+
+/// The experiments, and every cell with its verdict.
+std::vector<TextTable> paper_detail_tables(const PaperEvidence& evidence);
+
 /// What to see in a minute: which conclusions of the paper stand, the ranks, how many cells of each
 /// table are equal, explained or not, and every cell that is not explained.
 std::string paper_summary(const PaperEvidence& evidence, TableStyle style);

@@ -30,12 +30,6 @@ double error_of(ParetoError error, const Measures& m) {
     return error == ParetoError::max ? m.accuracy_fine.max : m.accuracy_fine.mean;
 }
 
-std::string point_label(const Case& c) {
-    std::string label = structure_label(c);
-    if (!c.target_delta && c.tau != Case().tau) label += fmt::format(", tau {}", c.tau);
-    return label;
-}
-
 void mark_front(std::vector<ParetoPoint>& points) {
     for (ParetoPoint& p : points) {
         p.on_front = std::none_of(points.begin(), points.end(), [&](const ParetoPoint& q) {
@@ -61,6 +55,12 @@ std::vector<std::pair<std::string, std::vector<std::size_t>>> works(std::span<co
 
 }  // namespace
 
+std::string pareto_label(const Case& c) {
+    std::string label = structure_label(c);
+    if (!c.target_delta && c.tau != Case().tau) label += fmt::format(", tau {}", c.tau);
+    return label;
+}
+
 std::vector<ParetoPlot> pareto_plots(std::span<const Row> rows) {
     std::vector<ParetoPlot> plots;
     for (const auto& [work, members] : works(rows)) {
@@ -84,7 +84,7 @@ std::string pareto_json(std::span<const Row> rows) {
     for (const ParetoPlot& plot : pareto_plots(rows)) {
         Json points = Json::array();
         for (const ParetoPoint& p : plot.points) {
-            points.push_back({{"label", point_label(rows[p.row].setting)},
+            points.push_back({{"label", pareto_label(rows[p.row].setting)},
                               {"cost", p.cost},
                               {"error", p.error},
                               {"front", p.on_front}});
@@ -123,7 +123,7 @@ std::vector<TextTable> pareto_tables(std::span<const Row> rows) {
         });
         for (const std::size_t i : order) {
             const bool both = by_bytes[i].on_front && by_access[i].on_front;
-            table.rows.push_back({point_label(rows[by_bytes[i].row].setting),
+            table.rows.push_back({pareto_label(rows[by_bytes[i].row].setting),
                                   fmt::format("{:.2f}", by_bytes[i].cost / 1e6),
                                   fmt::format("{:.1f}", by_access[i].cost),
                                   fmt::format("{:.4f}", by_bytes[i].error),

@@ -33,6 +33,9 @@ struct ParetoPlot {
     std::vector<ParetoPoint> points;  ///< in the order of the rows
 };
 
+/// What tells rows of one plot apart: "K_L s_L, tau 0.5".
+std::string pareto_label(const Case& c);
+
 /// Every combination of cost and error for every work with two measured rows or more.
 std::vector<ParetoPlot> pareto_plots(std::span<const Row> rows);
 

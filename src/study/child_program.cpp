@@ -1,4 +1,4 @@
-#include "mesh/child_program.h"
+#include "study/child_program.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

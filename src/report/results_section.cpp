@@ -1,0 +1,70 @@
+#include "report/results_section.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "report/pareto_figures.h"
+#include "report/time_figures.h"
+#include "study/paper_page.h"
+#include "study/pareto.h"
+#include "study/results.h"
+#include "study/tables.h"
+
+namespace controlspace {
+namespace {
+
+TextTable origin_table(const StoredResults& results) {
+    const Provenance& p = results.provenance;
+    const auto failed = std::count_if(results.rows.begin(), results.rows.end(),
+                                      [](const Row& row) { return !row.measures; });
+    TextTable table{"Where it is from", "", {{"what", Align::left}, {"value", Align::left}}, {}};
+    table.rows = {
+        {"program", version_text(p)},
+        {"commit", p.commit},
+        {"compiler", p.compiler},
+        {"flags", p.flags},
+        {"processor", p.cpu},
+        {"cores, threads", fmt::format("{}, {}", p.cores, p.threads)},
+        {"date (UTC)", p.date},
+        {"command", p.command_line},
+        {"sources, seed",
+         fmt::format("{}, {}", sources_name(results.study.sources), results.study.seed)},
+        {"rows", fmt::format("{}, {} failed{}", results.rows.size(), failed,
+                             results.complete ? "" : "; not complete: cases are missing")}};
+    return table;
+}
+
+void add_paper(Report& report, const ReportedResults& reported, const Styles& styles,
+               const std::string& made_by) {
+    if (reported.evidence.cells().empty()) return;
+    report.add_subheading("The paper's tables");
+    report.add_paragraph(paper_headline(reported.evidence));
+    report.add_figures(paper_figures(reported.evidence, styles, reported.prefix, made_by));
+    report.add_tables(paper_summary_tables(reported.evidence));
+    report.add_tables(paper_comparison(reported.results.study, reported.results.rows));
+    report.add_tables(paper_detail_tables(reported.evidence));
+}
+
+}  // namespace
+
+void add_results(Report& report, const ReportedResults& reported, const Styles& styles) {
+    const auto& [provenance, study, rows, complete] = reported.results;
+    const std::string& prefix = reported.prefix;
+    const std::string& made_by = provenance.command_line;
+    const auto add = [&](std::string_view title, const std::vector<Figure>& figures) {
+        if (figures.empty()) return;
+        report.add_subheading(title);
+        report.add_figures(figures);
+    };
+    report.add_heading(fmt::format("{} ({})", study.name, reported.folder.string()));
+    report.add_tables(std::vector{origin_table(reported.results)});
+    add("Error against memory and access time", pareto_figures(rows, styles, prefix, made_by));
+    report.add_tables(pareto_tables(rows));
+    add_paper(report, reported, styles, made_by);
+    add("Creation time", creation_figures(rows, styles, prefix, made_by));
+    add("Access time", access_figures(rows, prefix, made_by));
+    report.add_tables(measure_tables(rows));
+}
+
+}  // namespace controlspace
