@@ -113,3 +113,19 @@ TEST_CASE("what cannot be meshed ends with one line, and leaves no folder") {
     check_refused(box.run(coarse + arguments, "export PATH=/nowhere; "), expected);
     CHECK_FALSE(fs::exists(box / "out"));
 }
+
+TEST_CASE("Ctrl-C in the midst of a mesh leaves whole files and status 130") {
+    const Sandbox box("mesh-interrupt");
+    // A million tetrahedra, so that the signal comes before they are made.
+    const Outcome outcome =
+        box.run("mesh --h 0.01 --probe-grid 5 --output out",
+                "(for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do sleep 0.5; "
+                "[ -e out/meshes.json ] && break; done; kill -INT $(cat pid)) & "
+                "exec sh -c 'echo $$ >pid; exec \"$@\"' sh ");
+    INFO(outcome.err);
+    CHECK(outcome.status == 130);
+    CHECK_THAT(outcome.err, Contains("interrupted: 0 meshes are in out"));
+    const auto json = nlohmann::json::parse(file_text(box / "out" / "meshes.json"));
+    CHECK(json["complete"] == false);
+    CHECK(std::distance(fs::directory_iterator(box / "out"), fs::directory_iterator()) == 1);
+}
