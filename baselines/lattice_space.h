@@ -71,8 +71,8 @@ public:
         return report;
     }
 
-    ControlNodes control_nodes(Neighbourhood) const override {
-        return {stencil_.lattice(), metrics_of(storage_)};
+    ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
+        return {lattice(neighbourhood), metrics_of(storage_)};
     }
 
     void assign(std::span<const Metric> metrics) override {
@@ -97,7 +97,7 @@ public:
             report = regrade();
         } else {
             std::vector<Metric> metrics = metrics_of(asked_ ? *asked_ : storage_);
-            report = controlspace::grade(stencil_.lattice(), metrics, options);
+            report = controlspace::grade(lattice(neighbourhood_of(options)), metrics, options);
             if (!asked_) asked_ = std::make_unique<Storage>(storage_);
             set_field(metrics);
         }
@@ -135,6 +135,12 @@ private:
         if (takes_later_sources_ && prune_delta_ > 0) {
             throw InputError("a grid that takes later sources cannot be pruned: set prune_delta 0");
         }
+    }
+
+    Lattice lattice(Neighbourhood neighbourhood) const {
+        Lattice lattice = stencil_.lattice();
+        lattice.neighbourhood = neighbourhood;
+        return lattice;
     }
 
     std::vector<Metric> metrics_of(const Storage& storage) const {
@@ -180,7 +186,8 @@ private:
     }
 
     GradationReport regrade() {
-        LatticeNodes nodes(stencil_.lattice(), asked_->reader(), storage_.writer());
+        LatticeNodes nodes(lattice(neighbourhood_of(past_->options)), asked_->reader(),
+                           storage_.writer());
         Regradation regradation(nodes, past_->options.ratio);
         std::sort(lowered_.begin(), lowered_.end());
         lowered_.erase(std::unique(lowered_.begin(), lowered_.end()), lowered_.end());

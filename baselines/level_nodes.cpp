@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "spaces/adjacency.h"
+#include "spaces/corners.h"
 
 namespace controlspace {
 
@@ -126,7 +127,8 @@ void LevelNodes::assign(std::span<const Metric> metrics, std::span<VdbLevelTree>
 }
 
 NodeGraph LevelNodes::graph(Neighbourhood neighbourhood) const {
-    NodeGraph graph = interpolation_ == Interpolation::trilinear ? graph_of_edges()
+    NodeGraph graph = interpolation_ == Interpolation::trilinear ? graph_of_vertices(neighbourhood)
+                      : neighbourhood == Neighbourhood::all      ? graph_of_touching()
                       : neighbourhood == Neighbourhood::faces    ? graph_of_faces()
                                                                  : graph_of_nearest();
     graph.positions = positions();
@@ -161,25 +163,48 @@ std::vector<Pair> LevelNodes::pairs(Links&& links) const {
 }
 
 NodeGraph LevelNodes::graph_of_faces() const {
-    return graph_from_pairs(
+    return graph_from_pairs(size_, pairs([&](std::vector<Pair>& found, const NumberReader& numbers,
+                                             const LevelReader&, int level, const Coord& c) {
+                                for (int face = 0; face < 6; ++face) {
+                                    enter_pair(found, numbers, level, c, across(c, face),
+                                               face % 2 == 1);
+                                }
+                            }));
+}
+
+// A large cell is beyond several of a small one's sides at once.
+NodeGraph LevelNodes::graph_of_touching() const {
+    NodeGraph graph = graph_from_pairs(
         size_, pairs([&](std::vector<Pair>& found, const NumberReader& numbers, const LevelReader&,
                          int level, const Coord& c) {
-            const NodeIndex own = node(numbers[level].getValue(c));
-            for (int face = 0; face < 6; ++face) {
-                const Coord neighbour = across(c, face);
-                if (!cells_.contains(level, neighbour)) continue;
-                // The finer of two cells enters the pair, the low one where they are alike.
-                if (face % 2 == 1 && numbers[level].isValueOn(neighbour)) {
-                    found.emplace_back(own, node(numbers[level].getValue(neighbour)));
-                }
-                for (int l = level + 1; l < cells_.levels(); ++l) {
-                    const Coord coarser = neighbour >> static_cast<std::size_t>(l - level);
-                    if (!numbers[l].isValueOn(coarser)) continue;
-                    found.emplace_back(own, node(numbers[l].getValue(coarser)));
-                    break;
+            for (int step = 0; step < 27; ++step) {
+                const Coord neighbour = c + Coord(step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1);
+                if (neighbour != c) {
+                    enter_pair(found, numbers, level, c, neighbour, neighbour > c);
                 }
             }
         }));
+    sort_rows_uniquely(graph);
+    return graph;
+}
+
+// The active cell c and the one at `neighbour`, unless that is finer: the finer of two enters the
+// pair, and of two alike the one that is low.
+void LevelNodes::enter_pair(std::vector<std::pair<NodeIndex, NodeIndex>>& pairs,
+                            const NumberReader& numbers, int level, const Coord& c,
+                            const Coord& neighbour, bool is_low) const {
+    if (!cells_.contains(level, neighbour)) return;
+    const NodeIndex own = node(numbers[level].getValue(c));
+    if (numbers[level].isValueOn(neighbour)) {
+        if (is_low) pairs.emplace_back(own, node(numbers[level].getValue(neighbour)));
+        return;
+    }
+    for (int l = level + 1; l < cells_.levels(); ++l) {
+        const Coord coarser = neighbour >> static_cast<std::size_t>(l - level);
+        if (!numbers[l].isValueOn(coarser)) continue;
+        pairs.emplace_back(own, node(numbers[l].getValue(coarser)));
+        return;
+    }
 }
 
 // The cell across a face, opposite to its middle; the low one where several meet there.
@@ -225,22 +250,18 @@ NodeGraph LevelNodes::graph_of_nearest() const {
     return graph;
 }
 
-NodeGraph LevelNodes::graph_of_edges() const {
-    NodeGraph graph =
-        graph_from_pairs(size_, pairs([&](std::vector<Pair>& found, const NumberReader& numbers,
-                                          const LevelReader&, int level, const Coord& c) {
-                             std::array<NodeIndex, 8> corners;
-                             for (int i = 0; i < 8; ++i) {
-                                 corners[static_cast<std::size_t>(i)] =
-                                     node(numbers[level].getValue(c + corner_step(i)));
-                             }
-                             for (std::size_t i = 0; i < 8; ++i) {
-                                 for (const std::size_t bit : {1u, 2u, 4u}) {
-                                     if ((i & bit) == 0)
-                                         found.emplace_back(corners[i], corners[i | bit]);
-                                 }
-                             }
-                         }));
+NodeGraph LevelNodes::graph_of_vertices(Neighbourhood neighbourhood) const {
+    NodeGraph graph = graph_from_pairs(
+        size_, pairs([&](std::vector<Pair>& found, const NumberReader& numbers, const LevelReader&,
+                         int level, const Coord& c) {
+            Corners corners;
+            for (int i = 0; i < 8; ++i) {
+                corners[static_cast<std::size_t>(i)] =
+                    node(numbers[level].getValue(c + corner_step(i)));
+            }
+            for_each_pair(corners, neighbourhood,
+                          [&](NodeIndex a, NodeIndex b) { found.emplace_back(a, b); });
+        }));
     sort_rows_uniquely(graph);
     return graph;
 }

@@ -99,8 +99,8 @@ public:
         GradationReport report;
         std::uint64_t operations = 0;
         while (true) {
-            require_memory();
-            ControlNodes nodes = control_nodes(neighbourhood_of(options.schedule));
+            require_memory(options.neighbourhood);
+            ControlNodes nodes = control_nodes(neighbourhood_of(options));
             const std::vector<Metric> before = nodes.metrics;
             report = controlspace::grade(nodes.graph, nodes.metrics, options);
             operations += report.operations;
@@ -178,9 +178,9 @@ private:
     }
 
     // Stops a structure that outgrows the cap, long before the system stops the program.
-    void require_memory() {
+    void require_memory(Neighbourhood neighbourhood = Neighbourhood::faces) {
         const std::size_t bytes = field_.bytes() + (asked_ ? asked_->bytes() : 0) +
-                                  field_.voxels * gradation_bytes_per_voxel;
+                                  field_.voxels * gradation_bytes_per_voxel(neighbourhood);
         if (bytes > options_.max_bytes) {
             throw InputError(
                 fmt::format("a grid in levels would take more than {:.3g} GiB, gradation included: "
@@ -214,10 +214,13 @@ private:
         for (VdbLevelTree& tree : field_.trees) prune_metrics(tree, rule);
     }
 
-    // Numbers, graph and copies of metrics, as counted on spheres: 180 bytes for a voxel; for its
-    // vertices 330, and up to 500 where few of them are shared.
-    static constexpr std::size_t gradation_bytes_per_voxel =
-        Values::interpolation == Interpolation::nearest ? 250 : 600;
+    // Numbers, graph and copies of metrics, as counted on spheres: 180 bytes for a voxel, 320 with
+    // all neighbours; for its vertices 330 and 700, and half as much again where few are shared.
+    static constexpr std::size_t gradation_bytes_per_voxel(Neighbourhood neighbourhood) {
+        const bool all = neighbourhood == Neighbourhood::all;
+        if (Values::interpolation == Interpolation::nearest) return all ? 450 : 250;
+        return all ? 1100 : 600;
+    }
 
     SpaceOptions options_;
     LevelCells cells_;

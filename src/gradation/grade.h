@@ -23,6 +23,9 @@ struct GradationOptions {
     GradationLaw law = GradationLaw::cone;
     GradationSchedule schedule = GradationSchedule::queue;
     double ratio = 1.25;  ///< g_r of the paper, >= 1
+    /// `faces`, as in the paper, which for the passes of its tables means `nearest_per_face`; or
+    /// `all`.
+    Neighbourhood neighbourhood = Neighbourhood::faces;
 
     bool operator==(const GradationOptions&) const = default;
 };
@@ -37,10 +40,11 @@ struct GradationReport {
     std::optional<std::uint64_t> visits = std::nullopt;
 };
 
-/// The neighbours that a schedule compares.
-inline Neighbourhood neighbourhood_of(GradationSchedule schedule) {
-    return schedule == GradationSchedule::queue ? Neighbourhood::faces
-                                                : Neighbourhood::nearest_per_face;
+/// The neighbours that are compared.
+inline Neighbourhood neighbourhood_of(const GradationOptions& options) {
+    if (options.neighbourhood == Neighbourhood::all) return Neighbourhood::all;
+    return options.schedule == GradationSchedule::queue ? Neighbourhood::faces
+                                                        : Neighbourhood::nearest_per_face;
 }
 
 /// Throws InputError for a ratio below 1 or not finite.

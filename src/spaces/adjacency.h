@@ -8,6 +8,7 @@
 
 #include "gradation/node_graph.h"
 #include "spaces/topology.h"
+#include "spaces/touching_pairs.h"
 
 namespace controlspace {
 
@@ -135,12 +136,15 @@ LeafGraph leaf_graph(const Topology<Node>& tree, Neighbourhood neighbourhood) {
     });
 
     NodeGraph& graph = leaves.graph;
-    if (neighbourhood == Neighbourhood::faces) {
+    if (neighbourhood != Neighbourhood::nearest_per_face) {
         std::vector<std::pair<NodeIndex, NodeIndex>> pairs;
-        pairs.reserve(3 * tree.leaves());
-        for_each_face_pair(tree, [&](LeafIndex low, LeafIndex high) {
-            pairs.emplace_back(rank[low], rank[high]);
-        });
+        const auto enter = [&](LeafIndex a, LeafIndex b) { pairs.emplace_back(rank[a], rank[b]); };
+        if (neighbourhood == Neighbourhood::faces) {
+            pairs.reserve(3 * tree.leaves());
+            for_each_face_pair(tree, enter);
+        } else {
+            for_each_touching_pair(tree, enter);
+        }
         graph = graph_from_pairs(centres.size(), pairs);
     } else {
         graph.first.reserve(centres.size() + 1);

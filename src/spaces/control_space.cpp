@@ -13,7 +13,7 @@ Metric sample_at(const ControlSpace& space, const Point& x) {
 }
 
 GradationReport ControlSpace::grade(const GradationOptions& options) {
-    ControlNodes nodes = control_nodes(neighbourhood_of(options.schedule));
+    ControlNodes nodes = control_nodes(neighbourhood_of(options));
     const GradationReport report = controlspace::grade(nodes.graph, nodes.metrics, options);
     assign(nodes.metrics);
     return report;

@@ -67,9 +67,9 @@ public:
     virtual void assign(std::span<const Metric> metrics) = 0;
 
     /// Makes the field grow smoothly (paper §3.2). Structures whose control nodes carry metrics are
-    /// graded alike, over the neighbourhood that belongs to the schedule: `faces` for the queue,
-    /// `nearest_per_face` for the passes of the paper's tables. Throws InputError for a ratio below
-    /// 1 or not finite.
+    /// graded alike, over the neighbours that neighbourhood_of(options) names; those that keep
+    /// sources hand nothing on. Throws InputError for a ratio below 1 or not finite, and where so
+    /// many neighbours would outgrow the cap on memory.
     virtual GradationReport grade(const GradationOptions& options);
 
     /// Replaces all that was held by the field of `goal`, with few elements that keep within its

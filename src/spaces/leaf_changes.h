@@ -51,7 +51,8 @@ class LeafChanges::Nodes {
 public:
     using Node = Leaf;
 
-    Nodes(const Topology<TreeNode>& tree, NodeMetrics& metrics) : tree_(tree), metrics_(metrics) {}
+    Nodes(const Topology<TreeNode>& tree, NodeMetrics& metrics, Neighbourhood neighbourhood)
+        : tree_(tree), metrics_(metrics), neighbourhood_(neighbourhood) {}
 
     double asked(const Leaf& node) const { return metrics_.asked()[node.leaf].xx; }
     double field(const Leaf& node) const { return metrics_[node.leaf].xx; }
@@ -60,29 +61,37 @@ public:
     template <class Visit>
     void for_each_link(const Leaf& node, Visit&& visit) const {
         const Point centre = node.box.centre();
-        for_each_leaf_around(tree_, node.box, [&](LeafIndex leaf, const Box& box) {
-            if (leaf != node.leaf) visit(Leaf{leaf, box}, Vector(box.centre() - centre));
+        for_each_around(node.box, [&](const Leaf& other) {
+            if (other.leaf != node.leaf) visit(other, Vector(other.box.centre() - centre));
+        });
+    }
+    /// visit(leaf) for those in the box, and their neighbours.
+    template <class Visit>
+    void for_each_around(const Box& box, Visit&& visit) const {
+        for_each_leaf_around(tree_, box, neighbourhood_, [&](LeafIndex leaf, const Box& own) {
+            visit(Leaf{leaf, own});
         });
     }
 
 private:
     const Topology<TreeNode>& tree_;
     NodeMetrics& metrics_;
+    Neighbourhood neighbourhood_;
 };
 
 template <class Node>
 GradationReport LeafChanges::regrade(const Topology<Node>& tree, NodeMetrics& metrics,
                                      const PastGradation& past) const {
-    Nodes<Node> nodes(tree, metrics);
+    Nodes<Node> nodes(tree, metrics, neighbourhood_of(past.options));
     Regradation regradation(nodes, past.options.ratio);
     std::vector<Leaf> doubtful;
     for (const Cut& cut : cuts_) {
         const Point centre = cut.box.centre();
-        for_each_leaf_around(tree, cut.box, [&](LeafIndex leaf, const Box& box) {
-            const Leaf node{leaf, box};
-            if (cut.box.contains(box.centre())) {
+        nodes.for_each_around(cut.box, [&](const Leaf& node) {
+            const Point x = node.box.centre();
+            if (cut.box.contains(x)) {
                 regradation.renew(node);
-            } else if (regradation.may_hang_on(node, cut.held, Vector(box.centre() - centre))) {
+            } else if (regradation.may_hang_on(node, cut.held, Vector(x - centre))) {
                 doubtful.push_back(node);
             }
         });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/box.h"
+#include "gradation/node_graph.h"
 #include "spaces/topology.h"
 
 namespace controlspace {
@@ -41,16 +42,19 @@ void for_each_leaf_at(const Topology<Node>& tree, const Point& x, Visit&& visit)
     LeavesWhere(tree, keep, visit);
 }
 
-/// Leaves that overlap `box` or share a part of a face with it that has an area.
+/// Leaves that overlap `box` or share a part of a face with it that has an area; with the
+/// neighbourhood `all`, also those that touch it elsewhere.
 template <class Node, class Visit>
-void for_each_leaf_around(const Topology<Node>& tree, const Box& box, Visit&& visit) {
+void for_each_leaf_around(const Topology<Node>& tree, const Box& box, Neighbourhood neighbourhood,
+                          Visit&& visit) {
+    const int least = neighbourhood == Neighbourhood::all ? 0 : 2;
     const auto keep = [&](const Box& other) {
         int overlaps = 0;
         for (Axis a = 0; a < 3; ++a) {
             if (other.low[a] > box.high[a] || other.high[a] < box.low[a]) return false;
             overlaps += other.low[a] < box.high[a] && other.high[a] > box.low[a] ? 1 : 0;
         }
-        return overlaps >= 2;
+        return overlaps >= least;
     };
     LeavesWhere(tree, keep, visit);
 }

@@ -67,6 +67,8 @@ public:
         if constexpr (keeps_sources) {
             return grade_sources(options);
         } else {
+            require_valid(options);
+            if (options.neighbourhood == Neighbourhood::all) require_memory(options.neighbourhood);
             return options_.takes_later_sources ? grade_beside_asked(options)
                                                 : ControlSpace::grade(options);
         }
@@ -241,9 +243,11 @@ private:
     }
 
     // Stops a tree that outgrows the cap, long before the system stops the program.
-    void require_memory() {
-        // Gradation copies the nodes and links them: 145 bytes for a leaf, 290 for its vertices.
-        constexpr std::size_t gradation_bytes_per_leaf = 300;
+    void require_memory(Neighbourhood neighbourhood = Neighbourhood::faces) {
+        // Gradation copies the nodes and links them: over faces 145 bytes for a leaf, 290 for its
+        // vertices; with all neighbours up to 640.
+        const std::size_t gradation_bytes_per_leaf =
+            neighbourhood == Neighbourhood::all ? 700 : 300;
         const std::size_t bytes =
             footprint().bytes_total() + topology_.leaves() * gradation_bytes_per_leaf;
         if (bytes > options_.max_bytes) {

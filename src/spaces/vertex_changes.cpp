@@ -7,16 +7,16 @@ namespace controlspace {
 void VertexChanges::begin(std::size_t leaves, std::size_t vertices) {
     cut_.begin(leaves);
     vertices_ = vertices;
-    lost_links_.clear();
+    cut_corners_.clear();
     touched_.clear();
 }
 
-// An edge that is not cut, or belongs to another leaf too, is still a link; then its ends may be
+// Neighbours along an edge that is not cut, or in another leaf too, still are; then they may be
 // doubted more than need be.
 void VertexChanges::cut(LeafIndex leaf, const Corners& corners) {
     if (!cut_.is_old(leaf)) return;
     cut_.enter(leaf);
-    for_each_edge(corners, [&](NodeIndex a, NodeIndex b) { lost_links_.emplace_back(a, b); });
+    cut_corners_.push_back(corners);
 }
 
 std::size_t VertexChanges::count() {

@@ -1,31 +1,17 @@
 #pragma once
 
-#include <array>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "gradation/node_graph.h"
 #include "gradation/regrade.h"
+#include "spaces/corners.h"
 #include "spaces/cut_leaves.h"
 #include "spaces/leaves_where.h"
 #include "spaces/node_metrics.h"
 #include "spaces/topology.h"
 
 namespace controlspace {
-
-/// Control nodes at the eight vertices of a leaf, in the order of controlspace::corner.
-using Corners = std::array<NodeIndex, 8>;
-
-/// visit(a, b) for the twelve edges of a leaf.
-template <class Visit>
-void for_each_edge(const Corners& corners, Visit&& visit) {
-    for (std::size_t i = 0; i < 8; ++i) {
-        for (const std::size_t bit : {1u, 2u, 4u}) {
-            if ((i & bit) == 0) visit(corners[i], corners[i | bit]);
-        }
-    }
-}
 
 /// What has happened to the leaves of a tree since it was graded, for metrics at their vertices;
 /// and the gradation of that alone.
@@ -51,7 +37,7 @@ private:
 
     CutLeaves cut_;
     std::size_t vertices_ = 0;
-    std::vector<std::pair<NodeIndex, NodeIndex>> lost_links_;
+    std::vector<Corners> cut_corners_;
     std::vector<NodeIndex> touched_;  // with repetitions, until they are counted
 };
 
@@ -62,8 +48,12 @@ public:
     using Node = NodeIndex;
 
     Nodes(const Topology<TreeNode>& tree, std::span<const Corners> corners,
-          std::span<const Point> positions, NodeMetrics& metrics)
-        : tree_(tree), corners_(corners), positions_(positions), metrics_(metrics) {}
+          std::span<const Point> positions, NodeMetrics& metrics, Neighbourhood neighbourhood)
+        : tree_(tree),
+          corners_(corners),
+          positions_(positions),
+          metrics_(metrics),
+          neighbourhood_(neighbourhood) {}
 
     double asked(NodeIndex node) const { return metrics_.asked()[node].xx; }
     double field(NodeIndex node) const { return metrics_[node].xx; }
@@ -77,8 +67,9 @@ public:
             const Corners& corners = corners_[leaf];
             for (std::size_t i = 0; i < 8; ++i) {
                 if (corners[i] != node) continue;
-                for (const std::size_t bit : {1u, 2u, 4u}) {
-                    visit(corners[i ^ bit], way(node, corners[i ^ bit]));
+                for (std::size_t j = 0; j < 8; ++j) {
+                    if (j == i || !are_neighbours(i, j, neighbourhood_)) continue;
+                    visit(corners[j], way(node, corners[j]));
                 }
             }
         });
@@ -89,13 +80,15 @@ private:
     std::span<const Corners> corners_;
     std::span<const Point> positions_;
     NodeMetrics& metrics_;
+    Neighbourhood neighbourhood_;
 };
 
 template <class Node>
 GradationReport VertexChanges::regrade(const Topology<Node>& tree, std::span<const Corners> corners,
                                        std::span<const Point> positions, NodeMetrics& metrics,
                                        const PastGradation& past) {
-    Nodes<Node> nodes(tree, corners, positions, metrics);
+    const Neighbourhood neighbourhood = neighbourhood_of(past.options);
+    Nodes<Node> nodes(tree, corners, positions, metrics, neighbourhood);
     Regradation regradation(nodes, past.options.ratio);
     std::vector<NodeIndex> doubtful;
     const auto doubt = [&](NodeIndex held, NodeIndex by) {
@@ -103,9 +96,11 @@ GradationReport VertexChanges::regrade(const Topology<Node>& tree, std::span<con
             doubtful.push_back(held);
         }
     };
-    for (const auto& [a, b] : lost_links_) {
-        doubt(a, b);
-        doubt(b, a);
+    for (const Corners& cut : cut_corners_) {
+        for_each_pair(cut, neighbourhood, [&](NodeIndex a, NodeIndex b) {
+            doubt(a, b);
+            doubt(b, a);
+        });
     }
     for (const NodeIndex node : touched_) {
         if (node >= vertices_)

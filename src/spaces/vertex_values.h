@@ -52,8 +52,8 @@ public:
     void lower(const LeafPlace& place, const PointSource& source);
 
     template <class Node>
-    ControlNodes control_nodes(const Topology<Node>&, Neighbourhood) const {
-        return {graph_of_edges(), {metrics_.field().begin(), metrics_.field().end()}};
+    ControlNodes control_nodes(const Topology<Node>&, Neighbourhood neighbourhood) const {
+        return {graph(neighbourhood), {metrics_.field().begin(), metrics_.field().end()}};
     }
     template <class Node>
     void assign(const Topology<Node>&, std::span<const Metric> metrics) {
@@ -104,7 +104,7 @@ private:
     }
     void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field);
     NodeIndex vertex_at(const Point& x, const Box& box, const Corners& corners);
-    NodeGraph graph_of_edges() const;
+    NodeGraph graph(Neighbourhood neighbourhood) const;
 
     std::vector<Corners> corners_;  // of a leaf, in the order of controlspace::corner
     NodeMetrics metrics_;

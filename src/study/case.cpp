@@ -8,7 +8,8 @@ namespace controlspace {
 
 bool is_as_published(const Case& c) {
     return c.law == GradationLaw::mean_length && c.schedule == GradationSchedule::passes &&
-           c.reference == ReferenceKind::published_sphere;
+           c.reference == ReferenceKind::published_sphere &&
+           c.neighbourhood == Neighbourhood::faces && c.node_values == NodeValues::graded;
 }
 
 std::string sources_name(const SourcesChoice& s) {
@@ -25,8 +26,10 @@ std::string sources_name(const SourcesChoice& s) {
     return s.file.string();
 }
 
-std::string variant_label(const Case& c) {
-    std::string label = c.structure;
+namespace {
+
+std::string variant_of(const Case& c) {
+    std::string label;
     if (c.voxel) label += fmt::format(", voxel {:.4g}", *c.voxel);
     if (c.voxel_factor && *c.voxel_factor != SpaceOptions().voxel_factor) {
         label += fmt::format(", c {:.4g}", *c.voxel_factor);
@@ -35,14 +38,19 @@ std::string variant_label(const Case& c) {
     if (c.target_delta) label += fmt::format(", δ <= {:.4g}", *c.target_delta);
     if (c.equal_delta) label += fmt::format(", for delta {:.4g}", *c.equal_delta);
     if (c.equal_memory) label += fmt::format(", for {:.4g} MB", *c.equal_memory);
+    if (c.neighbourhood == Neighbourhood::all) label += ", all neighbours";
     if (c.node_values == NodeValues::exact) label += ", exact at nodes";
     return label;
 }
 
+}  // namespace
+
+std::string variant_label(const Case& c) { return c.structure + variant_of(c); }
+
 std::string structure_label(const Case& c) {
     // An adapted tree is cut by no rule.
     const bool by_rule = c.split && !c.target_delta;
-    return by_rule ? fmt::format("{} {}", c.structure, name_of(*c.split)) : variant_label(c);
+    return c.structure + (by_rule ? fmt::format(" {}", name_of(*c.split)) : "") + variant_of(c);
 }
 
 namespace {

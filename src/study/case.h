@@ -68,6 +68,7 @@ struct Case {
     NodeValues node_values = NodeValues::graded;  ///< structures that hold metrics only
     GradationLaw law = GradationLaw::cone;
     GradationSchedule schedule = GradationSchedule::queue;
+    Neighbourhood neighbourhood = Neighbourhood::faces;  ///< structures that hold metrics only
     ReferenceKind reference = ReferenceKind::exact;
 
     bool operator==(const Case&) const = default;
@@ -89,10 +90,10 @@ std::string sources_name(const SourcesChoice& s);
 bool is_as_published(const Case& c);
 
 /// The structure's id and what is its own among the settings, where that is not the default:
-/// "K_oV", "K_oV, exact at nodes", "openvdb-levels-nearest, c 0.5".
+/// "K_oV", "K_oV, all neighbours", "openvdb-levels-nearest, c 0.5".
 std::string variant_label(const Case& c);
 
-/// "K_L s_L", "K_oV"; otherwise as variant_label.
+/// The same with the split rule: "K_L s_L", "K_L s_L, all neighbours".
 std::string structure_label(const Case& c);
 
 /// What rows of one table share: "rho 1, s_a 2, s_n 1, tau 0.5, epsilon 0.2, g_r 1.25; cone law,

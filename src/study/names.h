@@ -32,6 +32,11 @@ struct Names<GradationSchedule> {
         {{GradationSchedule::queue, "queue"}, {GradationSchedule::passes, "passes"}}};
 };
 template <>
+struct Names<Neighbourhood> {
+    static constexpr std::array<std::pair<Neighbourhood, std::string_view>, 2> table{
+        {{Neighbourhood::faces, "faces"}, {Neighbourhood::all, "all"}}};
+};
+template <>
 struct Names<ReferenceKind> {
     static constexpr std::array<std::pair<ReferenceKind, std::string_view>, 2> table{
         {{ReferenceKind::exact, "exact"}, {ReferenceKind::published_sphere, "published-sphere"}}};

@@ -43,6 +43,7 @@ void add_setting(Json& json, const Case& c) {
     json["node_values"] = name_of(c.node_values);
     json["law"] = name_of(c.law);
     json["schedule"] = name_of(c.schedule);
+    json["neighbourhood"] = name_of(c.neighbourhood);
     json["reference"] = name_of(c.reference);
 }
 
@@ -140,6 +141,9 @@ Case setting_from(const Json& json, const SourcesChoice& sources) {
     if (json.contains("node_values")) c.node_values = named<NodeValues>(json, "node_values");
     c.law = named<GradationLaw>(json, "law");
     c.schedule = named<GradationSchedule>(json, "schedule");
+    if (json.contains("neighbourhood")) {
+        c.neighbourhood = named<Neighbourhood>(json, "neighbourhood");
+    }
     c.reference = named<ReferenceKind>(json, "reference");
     return c;
 }

@@ -114,7 +114,8 @@ std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
 
     tell(observer.phase_started, "gradation");
     start = std::chrono::steady_clock::now();
-    m.gradation = space->grade({.law = c.law, .schedule = c.schedule, .ratio = c.g_r});
+    m.gradation = space->grade(
+        {.law = c.law, .schedule = c.schedule, .ratio = c.g_r, .neighbourhood = c.neighbourhood});
     m.gradation_s = seconds_since(start);
     if (c.node_values == NodeValues::exact) {
         follow_at_nodes(*space, *make_reference(study, c, workload));

@@ -275,6 +275,12 @@ const Setting<Run> run_table[] = {
     {"schedule", text_type, 0, "",
      "Order of gradation: queue, until nothing changes; passes, as in the paper's tables",
      set_names<&Run::schedule>, get_names<&Run::schedule>},
+    {"neighbourhood", text_type, 0, "",
+     "Nodes that gradation compares: faces, those across faces (at vertices: along edges) as in "
+     "the "
+     "paper; all, those across edges and corners too (at vertices: of the same leaf or voxel). "
+     "K_LA, K_oLA, direct and adapted trees compare none",
+     set_names<&Run::neighbourhood>, get_names<&Run::neighbourhood>},
     {"reference", text_type, 0, "", "Field to compare with: exact, published-sphere",
      set_names<&Run::reference>, get_names<&Run::reference>},
 };

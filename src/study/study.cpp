@@ -203,6 +203,9 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
         multiply(cases, run.voxel_factor, [](Case& c, double factor) { c.voxel_factor = factor; });
     }
     if (entry.takes_metrics && !entry.graded_from_start) {
+        multiply(cases, run.neighbourhood, [](Case& c, Neighbourhood n) {
+            if (!c.target_delta) c.neighbourhood = n;  // an adapted tree is not graded
+        });
         multiply(cases, run.node_values, [](Case& c, NodeValues v) {
             if (!c.target_delta) c.node_values = v;  // an adapted tree is exact at nodes
         });

@@ -38,6 +38,7 @@ struct Run {
     std::vector<NodeValues> node_values{NodeValues::graded};
     std::vector<GradationLaw> law{GradationLaw::cone};
     std::vector<GradationSchedule> schedule{GradationSchedule::queue};
+    std::vector<Neighbourhood> neighbourhood{Neighbourhood::faces};
     std::vector<ReferenceKind> reference{ReferenceKind::exact};
 };
 

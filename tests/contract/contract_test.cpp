@@ -113,6 +113,38 @@ TEST_CASE("gradation only makes smaller, and holds afterwards") {
     });
 }
 
+TEST_CASE("with all neighbours, no node is larger than with those across faces alone") {
+    const Work work = isotropic_sphere();
+    for_each_structure(work, [&](const Structure& structure) {
+        SpaceOptions options = work.options(structure.split);
+        options.voxel_factor = 1000;  // no voxel is refined because its neighbours are smaller
+        const auto graded = [&](Neighbourhood neighbourhood) {
+            auto space = structure.entry->make(options);
+            space->insert(work.sources);
+            const auto report = space->grade({.ratio = g, .neighbourhood = neighbourhood});
+            CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
+            return space;
+        };
+        const ControlNodes few = graded(Neighbourhood::faces)->control_nodes(Neighbourhood::all);
+        const ControlNodes all = graded(Neighbourhood::all)->control_nodes(Neighbourhood::all);
+        REQUIRE(few.metrics.size() == all.metrics.size());
+        if (!structure.entry->takes_metrics || structure.entry->graded_from_start) {
+            CHECK(few.metrics == all.metrics);
+            return;
+        }
+        CHECK(largest_gradation(few.graph, few.metrics, GradationLaw::cone) > 1.01 * g);
+        CHECK(largest_gradation(all.graph, all.metrics, GradationLaw::cone) <= g * (1 + 1e-4));
+        std::size_t larger = 0;
+        std::size_t smaller = 0;
+        for (std::size_t i = 0; i < all.metrics.size(); ++i) {
+            larger += all.metrics[i].xx > few.metrics[i].xx;
+            smaller += all.metrics[i].xx < 0.99 * few.metrics[i].xx;
+        }
+        CHECK(larger == 0);
+        CHECK(smaller > 0);
+    });
+}
+
 // Not so for tensors: a node that is thin along the way lets all its lengths grow fast, those too
 // that a source further back holds down. The cone of that source is lost in the intersection.
 TEST_CASE("under the cone law, no larger than the cones of the sources allow along a path") {

@@ -15,6 +15,7 @@ namespace {
 using Batch = std::vector<PointSource>;
 
 const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
+constexpr auto either = {Neighbourhood::faces, Neighbourhood::all};
 
 // Sources that neighbour each other in size and place only by chance: some fine, most coarser than
 // what gradation makes of the fine ones, some in the same place, some on faces of leaves.
@@ -100,12 +101,13 @@ void require_same(const ControlSpace& a, const ControlSpace& b) {
 TEST_CASE("later sources, graded again: to the bit the field of all at once") {
     const double g = GENERATE(1.0, 1.1, 1.25, 2.0);
     const unsigned seed = GENERATE(1u, 2u);
+    const GradationOptions gradation{.ratio = g, .neighbourhood = GENERATE(values(either))};
     const std::vector<Batch> batches{scattered(150, seed), scattered(8, seed + 10),
                                      scattered(1, seed + 20), scattered(60, seed + 30)};
     for_each_exact_structure([&](const Structure& structure) {
         CAPTURE(g, seed);
-        require_same(*in_turn(structure, batches, {.ratio = g}),
-                     *all_at_once(structure, batches, {.ratio = g}));
+        require_same(*in_turn(structure, batches, gradation),
+                     *all_at_once(structure, batches, gradation));
     });
 }
 
@@ -113,6 +115,7 @@ TEST_CASE("later sources, graded again: to the bit the field of all at once") {
 // must grow.
 TEST_CASE("later sources that are coarser than the field cut leaves, and sizes grow") {
     const double g = GENERATE(1.1, 1.25, 1.6);
+    const GradationOptions gradation{.ratio = g, .neighbourhood = GENERATE(values(either))};
     Batch fine = scattered(6, 3);
     for (PointSource& source : fine) source.metric = Metric::isotropic(0.05);
     for_each_exact_structure([&](const Structure& structure) {
@@ -124,8 +127,8 @@ TEST_CASE("later sources that are coarser than the field cut leaves, and sizes g
             }
         }
         CAPTURE(g);
-        require_same(*in_turn(structure, batches, {.ratio = g}),
-                     *all_at_once(structure, batches, {.ratio = g}));
+        require_same(*in_turn(structure, batches, gradation),
+                     *all_at_once(structure, batches, gradation));
     });
 }
 
@@ -169,6 +172,15 @@ TEST_CASE("tensors, other laws, passes: all graded anew, with the bits of all at
     for_each_exact_structure([&](const Structure& structure) {
         require_same(*in_turn(structure, batches, gradation),
                      *all_at_once(structure, batches, gradation));
+    });
+}
+
+TEST_CASE("another neighbourhood grades what the sources ask for, not what was graded") {
+    const std::vector<Batch> batches{scattered(100, 12)};
+    for_each_exact_structure([&](const Structure& structure) {
+        const auto space = all_at_once(structure, batches, {.neighbourhood = Neighbourhood::all});
+        space->grade({});
+        require_same(*space, *all_at_once(structure, batches, {}));
     });
 }
 

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <set>
 
 #include "error.h"
 #include "metric/draw.h"
@@ -76,10 +77,53 @@ TEST_CASE("one small node: sizes grow with the length of the path along the latt
     CHECK(report.operations >= lattice.size() - 1);
 }
 
+// The shortest way from node to node goes along as many diagonals as it can. It is longest, against
+// the straight line, in the direction (1, √2 - 1, √3 - √2): √(9 - 2 √2 - 2 √6) = 1.128 times.
+TEST_CASE("one small node and all neighbours: the path has diagonals, and is 1.13 times too long") {
+    Lattice lattice = cube(25);
+    lattice.neighbourhood = Neighbourhood::all;
+    std::vector<Metric> metrics(lattice.size(), Metric::isotropic(10));
+    const NodeIndex corner = lattice.index(0, 0, 0);
+    metrics[corner] = Metric::isotropic(0.1);
+    grade(lattice, metrics, {.ratio = 1.5});
+    double longest = 0;
+    for (NodeIndex i = 1; i < lattice.size(); ++i) {
+        const Vector v = lattice.position(i) - lattice.position(corner);
+        std::array<double, 3> d{v.x(), v.y(), v.z()};
+        std::sort(d.begin(), d.end());
+        const double path = std::sqrt(3) * d[0] + std::sqrt(2) * (d[1] - d[0]) + (d[2] - d[1]);
+        CHECK(metrics[i].xx == Approx(0.1 + 0.5 * path));
+        longest = std::max(longest, path / v.norm());
+    }
+    CHECK(longest == Approx(std::sqrt(9 - 2 * std::sqrt(2) - 2 * std::sqrt(6))).epsilon(1e-3));
+}
+
+TEST_CASE("a node of a lattice has all neighbours around it once, and is one of theirs") {
+    const Lattice lattice{Point(1, 2, 3), Vector(0.1, 0.2, 0.4), {4, 3, 2}, Neighbourhood::all};
+    const auto neighbours = [&](NodeIndex i) {
+        std::set<NodeIndex> found;
+        lattice.for_each_link(i, [&](NodeIndex j, const Vector& v) {
+            CHECK(found.insert(j).second);
+            CHECK((lattice.position(i) + v - lattice.position(j)).norm() < 1e-15);
+        });
+        return found;
+    };
+    for (NodeIndex i = 0; i < lattice.size(); ++i) {
+        std::set<NodeIndex> expected;
+        for (NodeIndex j = 0; j < lattice.size(); ++j) {
+            const Vector steps =
+                (lattice.position(j) - lattice.position(i)).cwiseQuotient(lattice.spacing);
+            if (j != i && steps.cwiseAbs().maxCoeff() < 1.5) expected.insert(j);
+        }
+        CHECK(neighbours(i) == expected);
+    }
+}
+
 TEST_CASE("the queue leaves no pair above the ratio") {
     const auto law = GENERATE(GradationLaw::cone, GradationLaw::mean_length);
     const double g = GENERATE(1.1, 1.25, 2.0);
-    const Lattice lattice = cube(8);
+    Lattice lattice = cube(8);
+    lattice.neighbourhood = GENERATE(Neighbourhood::faces, Neighbourhood::all);
 
     SECTION("isotropic") {
         std::vector<Metric> metrics = random_isotropic(lattice.size(), 1);

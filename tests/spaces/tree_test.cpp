@@ -152,6 +152,37 @@ TEST_CASE("vertex neighbours are joined by an edge of a leaf: along one axis") {
     }
 }
 
+TEMPLATE_TEST_CASE("with all neighbours, any two vertices of a leaf are neighbours", "", KdNode,
+                   OctreeNode) {
+    Topology<TestType> tree(domain);
+    VertexValues storage({.domain = domain});
+    for (const Point& x : places(60, 8)) {
+        const LeafPlace place = tree.locate(x);
+        const auto first_new = static_cast<LeafIndex>(tree.leaves());
+        const Subdivision s = TestType::even_subdivision(place.box);
+        tree.split(place, s);
+        storage.split(s, place.leaf, first_new);
+    }
+    using Place = std::array<double, 3>;
+    const auto key = [](const Point& p) { return Place{p.x(), p.y(), p.z()}; };
+    std::set<std::pair<Place, Place>> expected, found;
+    tree.for_each_leaf([&](LeafIndex, const Box& leaf) {
+        for (int i = 0; i < 8; ++i) {
+            for (int j = 0; j < 8; ++j) {
+                if (i != j) expected.insert({key(corner(leaf, i)), key(corner(leaf, j))});
+            }
+        }
+    });
+    const ControlNodes nodes = storage.control_nodes(tree, Neighbourhood::all);
+    const auto& graph = std::get<NodeGraph>(nodes.graph);
+    for (NodeIndex i = 0; i < graph.size(); ++i) {
+        graph.for_each_neighbour(i, [&](NodeIndex j) {
+            CHECK(found.insert({key(graph.position(i)), key(graph.position(j))}).second);
+        });
+    }
+    CHECK(found == expected);
+}
+
 TEST_CASE("leaf neighbours: all across the faces, or the nearest across each") {
     const auto space = tree_catalogue()[0].make({.domain = domain});
     space->insert(scattered(200, 7));
