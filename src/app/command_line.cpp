@@ -232,6 +232,8 @@ Command parse_command_line(int argc, const char* const* argv) {
         ->add_option("--output", report_options.output,
                      "Folder for the page and its pictures; left out: the first one with results")
         ->option_text("TEXT");
+    report->add_flag("--without-fields", report_options.without_fields,
+                     "No slices, histograms or cross-validation: no structure is made again");
 
 #ifdef CONTROLSPACE_OPENVDB
     ExportOptions export_options;

@@ -1,11 +1,16 @@
 #include "app/report.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
+#include <optional>
 #include <string>
 
 #include "app/paper.h"
 #include "app/standard_output.h"
+#include "app/vdb_readers.h"
+#include "baselines/catalogue.h"
+#include "error.h"
 #include "report/results_section.h"
 
 namespace controlspace {
@@ -23,6 +28,20 @@ ReportedResults read_reported(const fs::path& folder, std::string prefix) {
     return reported;
 }
 
+/// The sources may be gone since, or lie elsewhere; the rest of the report stands without them.
+void add_fields_or_warn(Report& page, const ReportedResults& reported) {
+    const StoredResults& results = reported.results;
+    std::optional<SampledFields> fields;
+    try {
+        fields =
+            sample_fields(results.study, first_setting(results.rows), structures(), vdb_readers());
+    } catch (const InputError& error) {
+        page.add_paragraph(fmt::format("Fields are not shown: {}.", error.what()));
+        spdlog::warn("{}: fields are not shown: {}", reported.folder.string(), error.what());
+    }
+    if (fields) add_fields(page, reported, *fields);
+}
+
 }  // namespace
 
 void report(const ReportOptions& options) {
@@ -38,7 +57,10 @@ void report(const ReportOptions& options) {
     }
     const Styles styles(rows);
     Report page(options.output.empty() ? options.inputs.front() : options.output);
-    for (const ReportedResults& reported : all) add_results(page, reported, styles);
+    for (const ReportedResults& reported : all) {
+        add_results(page, reported, styles);
+        if (!options.without_fields) add_fields_or_warn(page, reported);
+    }
     page.commit("Control spaces: " + names);
     print(fmt::format("Report: {}\n", page.page().string()));
 }

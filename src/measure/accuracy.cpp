@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "error.h"
+#include "measure/percentile.h"
 #include "metric/intersection.h"
 #include "metric/nonconformity.h"
 
@@ -30,14 +31,6 @@ void for_each_block(std::size_t n, Block&& block) {
         const std::size_t begin = b * block_size;
         block(b, begin, std::min(begin + block_size, n));
     });
-}
-
-// The least of `values` that at least `percent` per cent of them do not exceed; reorders them.
-double percentile(std::vector<double>& values, std::size_t percent) {
-    const std::size_t rank = (values.size() * percent + 99) / 100;
-    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(rank - 1);
-    std::nth_element(values.begin(), nth, values.end());
-    return *nth;
 }
 
 }  // namespace

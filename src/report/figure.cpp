@@ -54,6 +54,13 @@ std::string gnuplot_string(std::string_view text) {
     return quoted + '\'';
 }
 
+std::string gnuplot_title(std::string_view title) {
+    const auto colon = title.find(": ");
+    if (colon == title.npos) return gnuplot_string(title);
+    return gnuplot_string(title.substr(0, colon + 1)) + ".\"\\n\"." +
+           gnuplot_string(title.substr(colon + 2));
+}
+
 std::string gnuplot_cell(std::string_view text) {
     std::string quoted = "\"";
     for (const char c : text) quoted += is_control(c) ? ' ' : c == '"' || c == '\\' ? '\'' : c;
@@ -69,7 +76,7 @@ std::string gnuplot_script(const Figure& figure) {
             "set label 999 {} at screen 0.01, screen 0.02 left font ',8' "
             "textcolor rgb '#606060'\n",
             gnuplot_string(shortened(figure.made_by)));
-        script += fmt::format("set title {}\n", gnuplot_string(figure.title));
+        script += fmt::format("set title {}\n", gnuplot_title(figure.title));
         script += figure.commands + "unset output\nreset\n";
     };
     add(fmt::format("svg size {},{} font 'sans-serif,12' background '#ffffff' noenhanced",

@@ -14,13 +14,17 @@ struct Figure {
     std::string made_by;  ///< the command that its numbers are from
     int width = 760;      ///< pixels
     int height = 520;
-    std::string data;  ///< gnuplot's datablocks: the numbers, as they were measured
+    bool raster = false;  ///< the page shows the PNG: the SVG would be larger
+    std::string data;     ///< gnuplot's datablocks: the numbers, as they were measured
     /// Axes and plots, in gnuplot's language; neither terminal nor output.
     std::string commands;
 };
 
 /// `text` as a string of gnuplot's in which nothing is special; control characters become blanks.
 std::string gnuplot_string(std::string_view text);
+
+/// The same of a title, in two lines where it has a colon.
+std::string gnuplot_title(std::string_view title);
 
 /// The same for a column of a datablock.
 std::string gnuplot_cell(std::string_view text);

@@ -12,8 +12,9 @@ namespace controlspace {
 /// page must not hold, become blanks.
 std::string html_text(std::string_view text);
 
-/// A picture that lies in the page itself, with its words.
-std::string html_figure(const Figure& figure, std::string_view svg);
+/// A picture that lies in the page itself, with its words: `bytes` are those of its SVG or, where
+/// it is a raster, of its PNG.
+std::string html_figure(const Figure& figure, std::string_view bytes);
 
 /// A table with its title and note; a click on a column's head sorts by it.
 std::string html_table(const TextTable& table);

@@ -11,9 +11,6 @@
 
 namespace controlspace {
 
-/// Errors below it are drawn at the lower edge: on a logarithmic axis 0 has no place.
-constexpr double smallest_drawn_error = 1e-4;
-
 /// The plots of study/pareto.h, error over cost, with their fronts. Names begin with `prefix`.
 std::vector<Figure> pareto_figures(std::span<const Row> rows, const Styles& styles,
                                    const std::string& prefix, const std::string& made_by);

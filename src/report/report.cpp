@@ -55,7 +55,8 @@ void Report::add_figures(std::span<const Figure> figures) {
     body_ += "<div class=\"figures\">\n";
     for (const Figure& figure : figures) {
         gnuplot_.draw(figure, drawn_);
-        body_ += html_figure(figure, file_bytes(drawn_ / (figure.name + ".svg")));
+        body_ += html_figure(
+            figure, file_bytes(drawn_ / (figure.name + (figure.raster ? ".png" : ".svg"))));
     }
     body_ += "</div>\n";
 }

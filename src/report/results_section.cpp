@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "report/delta_figures.h"
 #include "report/pareto_figures.h"
+#include "report/slice_figures.h"
 #include "report/time_figures.h"
 #include "study/paper_page.h"
 #include "study/pareto.h"
@@ -65,6 +67,20 @@ void add_results(Report& report, const ReportedResults& reported, const Styles& 
     add("Creation time", creation_figures(rows, styles, prefix, made_by));
     add("Access time", access_figures(rows, prefix, made_by));
     report.add_tables(measure_tables(rows));
+}
+
+void add_fields(Report& report, const ReportedResults& reported, const SampledFields& fields) {
+    const std::string& made_by = reported.results.provenance.command_line;
+    report.add_heading("Fields of " + reported.results.study.name);
+    report.add_paragraph(
+        "Structures of the first setting, each with its first split, made anew for this report.");
+    for (const std::string& why : fields.left_out) report.add_paragraph("Left out: " + why + ".");
+    if (fields.structures.empty()) return;
+    report.add_figures(
+        std::vector{delta_histograms(fields, reported.prefix + "delta", made_by),
+                    cross_validation(fields, reported.prefix + "cross-validation", made_by)});
+    report.add_tables(std::vector{delta_table(fields)});
+    report.add_figures(slice_figures(fields, reported.prefix, made_by));
 }
 
 }  // namespace controlspace

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "report/report.h"
+#include "report/sampled_fields.h"
 #include "report/style.h"
 #include "study/paper_evidence.h"
 #include "study/read_results.h"
@@ -21,5 +22,8 @@ struct ReportedResults {
 /// All that its rows say: where they are from, fronts, the paper's tables with verdicts, creation
 /// and access times, and every measure.
 void add_results(Report& report, const ReportedResults& reported, const Styles& styles);
+
+/// What `fields` look like: slices, δ over the domain, and the structures against each other.
+void add_fields(Report& report, const ReportedResults& reported, const SampledFields& fields);
 
 }  // namespace controlspace

@@ -55,10 +55,7 @@ void Range::add(double x) {
     high = first ? x : std::max(high, x);
 }
 
-std::string log_axis(std::string_view axis, const Range& range, std::string_view label) {
-    const double room = std::max(1.3, std::pow(range.high / range.low, 0.06));
-    const double low = range.low / room;
-    const double high = range.high * room;
+std::string log_tics(double low, double high) {
     const bool few = high / low < 1000;
     std::string tics;
     for (int power = static_cast<int>(std::floor(std::log10(low))); std::pow(10, power) <= high;
@@ -69,10 +66,17 @@ std::string log_axis(std::string_view axis, const Range& range, std::string_view
             tics += fmt::format("{}'{:.7g}' {:.7g}", tics.empty() ? "" : ", ", tic, tic);
         }
     }
+    return "(" + tics + ")";
+}
+
+std::string log_axis(std::string_view axis, const Range& range, std::string_view label) {
+    const double room = std::max(1.3, std::pow(range.high / range.low, 0.06));
+    const double low = range.low / room;
+    const double high = range.high * room;
     return fmt::format(
-        "set logscale {0}\nset {0}range [{1:.6g}:{2:.6g}]\nset {0}tics ({3})\n"
+        "set logscale {0}\nset {0}range [{1:.6g}:{2:.6g}]\nset {0}tics {3}\n"
         "set {0}label {4}\n",
-        axis, low, high, tics, gnuplot_string(label));
+        axis, low, high, log_tics(low, high), gnuplot_string(label));
 }
 
 }  // namespace controlspace

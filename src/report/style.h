@@ -9,6 +9,9 @@
 
 namespace controlspace {
 
+/// Errors below it are drawn at the lower edge: on a logarithmic axis 0 has no place.
+constexpr double smallest_drawn_error = 1e-4;
+
 /// How the structures of a report are told apart: each has one colour and one mark in all its
 /// pictures.
 class Styles {
@@ -38,8 +41,11 @@ struct Range {
     void add(double x);
 };
 
-/// gnuplot's commands for a logarithmic axis ("x", "y") over `range` with some room beside it,
-/// marked at every power of ten or, where these are few, at 1, 2 and 5 times them.
+/// gnuplot's list of tics for a logarithmic axis from `low` to `high`: every power of ten or, where
+/// these are few, 1, 2 and 5 times them.
+std::string log_tics(double low, double high);
+
+/// gnuplot's commands for a logarithmic axis ("x", "y") over `range` with some room beside it.
 std::string log_axis(std::string_view axis, const Range& range, std::string_view label);
 
 }  // namespace controlspace

@@ -26,12 +26,15 @@ TEST_CASE("a report of results: one page that needs nothing else, and its pictur
     const std::string page = file_text(box / "out" / "report.html");
     CHECK(markup_fault(page).empty());
     CHECK(page.find("http") == page.npos);
-    CHECK(page.find(" src=\"") == page.find(" src=\"data:image/svg+xml;base64,"));
+    for (auto at = page.find(" src="); at != page.npos; at = page.find(" src=", at + 1)) {
+        CHECK(page.compare(at, 17, " src=\"data:image/") == 0);
+    }
     // Where it is from, a verdict, a measure.
     CHECK_THAT(page, Contains("compare --as-published --structures K_L,K_oL --splits s_M"));
     CHECK_THAT(page, Contains("Of the conclusions that the paper's tables suggest"));
     CHECK_THAT(page, Contains("All measures: rho 1"));
-    for (const char* name : {"pareto-01", "pareto-04", "paper-01", "access-01"}) {
+    for (const char* name : {"pareto-01", "pareto-04", "paper-01", "access-01", "slice-01", "delta",
+                             "cross-validation"}) {
         CAPTURE(name);
         for (const char* ending : {".svg", ".png", ".gp"}) {
             CHECK(fs::exists(box / "out" / "report-pictures" / (std::string(name) + ending)));
@@ -44,6 +47,18 @@ TEST_CASE("a report of results: one page that needs nothing else, and its pictur
         const std::string name = entry.path().filename().string();
         CHECK((name == "report.html" || name == "report-pictures"));
     }
+}
+
+TEST_CASE("a report whose sources are gone has all but the fields, and says so") {
+    const Sandbox box("report-moved");
+    box.write("s.csv", "x,y,z,h\n0,0,0,0.1\n1,1,1,0.2\n");
+    REQUIRE(box.run("compare --sources s.csv --structures K_oL --output out" + quick).status == 0);
+    fs::remove(box / "s.csv");
+    const Outcome outcome = box.run("report out");
+    CHECK(outcome.status == 0);
+    CHECK_THAT(outcome.err, Contains("fields are not shown: s.csv: no such file"));
+    CHECK_THAT(file_text(box / "out" / "report.html"), Contains("Fields are not shown"));
+    CHECK(box.run("report out --without-fields").err.empty());
 }
 
 TEST_CASE("a report that cannot be written is refused, and leaves nothing behind") {
