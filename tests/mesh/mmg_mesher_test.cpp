@@ -161,7 +161,6 @@ TEST_CASE("MMG follows an anisotropic field") {
     const Conformity c = conformity(run.mesh, thin);
     CHECK(c.l_r > 0.55);
     CHECK(c.unit_share > 0.75);
-    CHECK(c.mean_length == Approx(1).epsilon(0.1));
     CHECK(c.quality_mean > 0.7);
     CHECK(left_folders(folder).empty());
 }
