@@ -4,8 +4,7 @@
 
 namespace controlspace {
 
-// A program that links counting_allocator.cpp counts what operator new gives out, but for the
-// over-aligned forms.
+// A program that links counting_allocator.cpp counts what operator new gives out.
 
 /// Bytes allocated and not yet freed.
 std::size_t live_bytes();

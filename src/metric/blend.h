@@ -10,15 +10,15 @@ namespace controlspace {
 
 /// How metrics are interpolated. With weights that sum to 1, all of them reproduce a constant.
 ///
-/// | blend          | linear in   | positive definite for | what it does badly |
-/// |----------------|-------------|-----------------------|----------------------------------------|
-/// | lengths        | M           | weights >= 0          | lets the large metric win; swells the |
-/// |                |             |                       | thin side of crossing anisotropies | |
-/// riemannian     | M^-2        | weights >= 0          | lets the small metric win: too many    |
-/// |                |             |                       | elements; two powers per query | |
-/// inverse        | M^2         | weights >= 0          | as lengths, and stronger               |
-/// | log_euclidean  | log M       | any weights           | costs an eigen-decomposition a metric;
-/// | |                |             |                       | otherwise the best behaved |
+/// | blend          | linear in | positive definite for | what it does badly                    |
+/// |----------------|-----------|-----------------------|---------------------------------------|
+/// | lengths        | M         | weights >= 0          | lets the large metric win, swells the |
+/// |                |           |                       | thin side of crossing anisotropies    |
+/// | riemannian     | M^-2      | weights >= 0          | lets the small metric win: too many   |
+/// |                |           |                       | elements; two powers per query        |
+/// | inverse        | M^2       | weights >= 0          | as lengths, and stronger              |
+/// | log_euclidean  | log M     | any weights           | costs an eigen-decomposition a        |
+/// |                |           |                       | metric; otherwise the best behaved    |
 ///
 /// With other weights than those, "positive definite for" fails in the open: the result of the
 /// first three is then not positive definite, or not a number. M^-2 and M^2 keep half the digits of

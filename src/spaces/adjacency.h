@@ -92,19 +92,23 @@ void for_each_face_pair(const Topology<Node>& tree, Visit&& visit) {
     FacePairs<Node, Visit>(tree, visit);
 }
 
-/// The leaf across face `face` of `box`, opposite to `x`: the one that touches the face where `x`
-/// projects onto it (the low side on ties). Faces: 2 axis for the low face, 2 axis + 1 for the
-/// high one. False at the domain's border.
+/// Moves `x` across face `face` of a leaf with this box, to where the leaf that touches the face
+/// opposite to `x` holds it (the low side on ties). Faces: 2 axis for the low face, 2 axis + 1 for
+/// the high one. False, and nothing moves, at the domain's border.
+inline bool step_across(const Box& domain, const Box& box, int face, Point& x) {
+    const Axis a = face / 2;
+    const bool high = face % 2 == 1;
+    if (high ? box.high[a] >= domain.high[a] : box.low[a] <= domain.low[a]) return false;
+    // A place on a plane belongs to the low side: the next number above is on the high side.
+    x[a] = high ? std::nextafter(box.high[a], std::numeric_limits<double>::infinity()) : box.low[a];
+    return true;
+}
+
+/// The leaf on the other side (see step_across); false at the domain's border.
 template <class Node>
 bool locate_across(const Topology<Node>& tree, const Box& box, int face, Point x,
                    LeafPlace& place) {
-    const Axis a = face / 2;
-    const bool high = face % 2 == 1;
-    if (high ? box.high[a] >= tree.domain().high[a] : box.low[a] <= tree.domain().low[a]) {
-        return false;
-    }
-    // A place on a plane belongs to the low side: the next number above is on the high side.
-    x[a] = high ? std::nextafter(box.high[a], std::numeric_limits<double>::infinity()) : box.low[a];
+    if (!step_across(tree.domain(), box, face, x)) return false;
     place = tree.locate(x);
     return true;
 }

@@ -34,10 +34,15 @@ public:
 
     template <class Node>
     Metric value(const Topology<Node>& tree, const Point& place) const {
+        return value_in(tree, tree.find(place), place);
+    }
+    template <class Node>
+    Metric value_in(const Topology<Node>& tree, LeafIndex leaf, const Point& place) const {
         const Point x = place.cwiseMax(tree.domain().low).cwiseMin(tree.domain().high);
-        const Metric m = cones_at(x, anchors_.of(tree.find(x)));
+        const Metric m = cones_at(x, anchors_.of(leaf));
         return continuous_ ? intersection(m, metric_at(*continuous_, x)) : m;
     }
+    void prefetch(LeafIndex leaf) const { anchors_.prefetch(leaf); }
     template <class Node>
     Metric asked(const Topology<Node>& tree, const Point& place) const {
         return value(tree, place);

@@ -19,6 +19,7 @@ public:
         const List& list = lists_[leaf];
         return {sources_.data() + list.first, list.count};
     }
+    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&lists_[leaf]); }
     void add(LeafIndex leaf, SourceIndex source);
     void set(LeafIndex leaf, std::span<const SourceIndex> sources);
     /// Appends `n` leaves with the list of `leaf`, which they share until it is changed.

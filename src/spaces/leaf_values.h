@@ -17,6 +17,8 @@ namespace controlspace {
 // A storage says where the control nodes of a tree are and how the metric between them is made.
 // What Tree asks of one:
 //   value(tree, x)                       metric at x
+//   value_in(tree, leaf, x)              the same where the leaf that holds x is known
+//   prefetch(leaf)                       what value_in will read first
 //   asked(tree, x)                       the same before gradation (see NodeMetrics)
 //   split(subdivision, leaf, first_new)  a leaf was cut; the field stays as it was
 //   lower(place, source)                 intersects what governs the leaf with the source
@@ -43,6 +45,11 @@ public:
     Metric value(const Topology<Node>& tree, const Point& x) const {
         return metrics_[tree.find(x)];
     }
+    template <class Node>
+    const Metric& value_in(const Topology<Node>&, LeafIndex leaf, const Point&) const {
+        return metrics_[leaf];
+    }
+    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&metrics_[leaf]); }
     template <class Node>
     Metric asked(const Topology<Node>& tree, const Point& x) const {
         return metrics_.asked()[tree.find(x)];

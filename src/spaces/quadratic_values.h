@@ -34,36 +34,61 @@ public:
     static constexpr CutBy cut_by = CutBy::faces;
 
     explicit QuadraticValues(const SpaceOptions& options)
-        : LeafValues(options), slope_(options.ratio - 1) {}
+        : LeafValues(options), boxes_(1, options.domain), slope_(options.ratio - 1) {}
 
     template <class Node>
     Metric value(const Topology<Node>& tree, const Point& x) const {
-        return interpolate(tree, x, metrics_.field());
+        return interpolate(tree, tree.find(x), x, metrics_.field());
     }
     template <class Node>
+    Metric value_in(const Topology<Node>& tree, LeafIndex leaf, const Point& x) const {
+        return interpolate(tree, leaf, x, metrics_.field());
+    }
+    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&boxes_[leaf]); }
+    template <class Node>
     Metric asked(const Topology<Node>& tree, const Point& x) const {
-        return interpolate(tree, x, metrics_.asked());
+        return interpolate(tree, tree.find(x), x, metrics_.asked());
+    }
+
+    void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new) {
+        LeafValues::split(subdivision, leaf, first_new);
+        boxes_[leaf] = subdivision.child(0);
+        for (int c = 1; c < subdivision.children(); ++c) boxes_.push_back(subdivision.child(c));
+    }
+
+    void describe(Footprint& footprint) const {
+        LeafValues::describe(footprint);
+        footprint.bytes_auxiliary += boxes_.capacity() * sizeof(Box);
+    }
+    void shrink_to_fit() {
+        LeafValues::shrink_to_fit();
+        boxes_.shrink_to_fit();
     }
 
 private:
     template <class Node>
-    Metric interpolate(const Topology<Node>& tree, const Point& place,
+    Metric interpolate(const Topology<Node>& tree, LeafIndex leaf, const Point& place,
                        std::span<const Metric> metrics) const {
-        const Point x = place.cwiseMax(tree.domain().low).cwiseMin(tree.domain().high);
-        const LeafPlace here = tree.locate(x);
-        const Metric& own = metrics[here.leaf];
-        std::array<Metric, 6> across;
+        const Box& box = boxes_[leaf];
+        const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
+        std::array<Point, 6> beyond;
+        std::array<LeafIndex, 6> neighbours;
         for (int face = 0; face < 6; ++face) {
-            LeafPlace neighbour;
-            const bool inside = locate_across(tree, here.box, face, x, neighbour);
-            across[static_cast<std::size_t>(face)] = inside ? metrics[neighbour.leaf] : own;
+            Point& y = beyond[static_cast<std::size_t>(face)];
+            y = x;
+            step_across(tree.domain(), box, face, y);
         }
-        const Vector v = x - here.box.centre();
-        const Vector t = 2 * v.cwiseQuotient(here.box.edges());
+        tree.find(beyond, neighbours);
+        std::array<Metric, 6> across;
+        for (std::size_t face = 0; face < 6; ++face) across[face] = metrics[neighbours[face]];
+        const Metric& own = metrics[leaf];
+        const Vector v = x - box.centre();
+        const Vector t = 2 * v.cwiseQuotient(box.edges());
         return triquadratic(own, across, t, 1 + slope_ * metric_length(own, v));
     }
 
-    double slope_;  ///< g_r - 1
+    std::vector<Box> boxes_;  // of the leaves
+    double slope_;            // g_r - 1
 };
 
 }  // namespace controlspace

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "geometry/box.h"
+#include "spaces/jump_table.h"
 #include "spaces/subdivision.h"
 
 namespace controlspace {
@@ -78,27 +81,31 @@ struct KdNode {
     }
 };
 
-/// Inner node of an octree: eight children, 32 bytes; the planes go through the middle of the box.
-struct OctreeNode {
+/// Inner node of an octree: eight children and the planes, which go through the middle of the box;
+/// one line of a cache.
+struct alignas(64) OctreeNode {
     static constexpr int arity = 8;
     std::array<Ref, 8> children;
+    std::array<double, 3> at{};
 
     OctreeNode() = default;
-    OctreeNode(const Subdivision&) {}
+    OctreeNode(const Subdivision& s) : at{s.at.x(), s.at.y(), s.at.z()} {}
     void set_child(int c, Ref ref) { children[static_cast<std::size_t>(c)] = ref; }
-    Subdivision subdivision(const Box& box) const { return octants(box); }
+    Subdivision subdivision(const Box& box) const {
+        return {box, {at[0], at[1], at[2]}, {true, true, true}};
+    }
     static Subdivision even_subdivision(const Box& box) { return octants(box); }
     static Subdivision subdivision_across(const Box& box, const std::array<double, 3>&) {
         return octants(box);
     }
 
+    int child_with(const Point& x) const {
+        return (x.x() > at[0] ? 1 : 0) | (x.y() > at[1] ? 2 : 0) | (x.z() > at[2] ? 4 : 0);
+    }
     int descend(const Point& x, Box& box) const {
-        int c = 0;
+        const int c = child_with(x);
         for (Axis a = 0; a < 3; ++a) {
-            const double middle = 0.5 * (box.low[a] + box.high[a]);
-            const bool high = x[a] > middle;
-            (high ? box.low : box.high)[a] = middle;
-            c |= (high ? 1 : 0) << a;
+            ((c >> a & 1) != 0 ? box.low : box.high)[a] = at[static_cast<std::size_t>(a)];
         }
         return c;
     }
@@ -111,7 +118,7 @@ class Topology {
 public:
     static constexpr int arity = Node::arity;
 
-    explicit Topology(const Box& domain) : domain_(domain) {}
+    explicit Topology(const Box& domain) : domain_(domain), jumps_(domain) {}
 
     const Box& domain() const { return domain_; }
     Ref root() const { return root_; }
@@ -121,7 +128,17 @@ public:
     /// Deepest level of any leaf; the root is level 0.
     int deepest_level() const { return deepest_; }
     std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
+    std::size_t bytes_of_jumps() const { return jumps_.bytes(); }
+
     void shrink_to_fit() { nodes_.shrink_to_fit(); }
+    /// Fits the start of descents to the number of leaves.
+    void fit_jumps() {
+        const int halvings =
+            std::min(static_cast<int>(std::bit_width(leaves_)) - 1, largest_jump_table);
+        if (jumps_.cells() == std::size_t{1} << halvings) return;
+        jumps_.resize(halvings);
+        enter_jumps(root_, domain_);
+    }
 
     /// The leaf that holds `x`; a place outside the domain is taken for the nearest one inside.
     LeafPlace locate(const Point& x) const { return descend(root_, {0, root_slot, 0, domain_}, x); }
@@ -136,16 +153,41 @@ public:
 
     /// The number alone of the leaf that holds `x`.
     LeafIndex find(const Point& x) const {
-        if constexpr (requires(const Node& n) { n.child_with(x); }) {
-            Ref ref = root_;
-            while (!ref.is_leaf()) {
-                const Node& inner = nodes_[ref.index()];
-                ref = inner.children[static_cast<std::size_t>(inner.child_with(x))];
-            }
-            return ref.index();
-        } else {
-            return locate(x).leaf;
+        Ref ref = jumps_.at(x);
+        while (!ref.is_leaf()) ref = child_with(ref, x);
+        return ref.index();
+    }
+
+    /// The same for at most `most_found` places at a time, whose descents go side by side: while
+    /// one waits for memory, others compare.
+    static constexpr std::size_t most_found = 32;
+    void find(std::span<const Point> x, std::span<LeafIndex> leaves) const {
+        std::array<Ref, most_found> refs;
+        std::array<std::uint8_t, most_found> going;
+        std::array<const Ref*, most_found> starts;
+        std::size_t left = 0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            starts[i] = &jumps_.at(x[i]);
+            __builtin_prefetch(starts[i]);
         }
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            refs[i] = *starts[i];
+            going[left] = static_cast<std::uint8_t>(i);
+            left += refs[i].is_leaf() ? 0 : 1;
+            __builtin_prefetch(nodes_.data() + refs[i].index());
+        }
+        while (left > 0) {
+            std::size_t still = 0;
+            for (std::size_t k = 0; k < left; ++k) {
+                const std::uint8_t i = going[k];
+                refs[i] = child_with(refs[i], x[i]);
+                going[still] = i;
+                still += refs[i].is_leaf() ? 0 : 1;
+                __builtin_prefetch(nodes_.data() + refs[i].index());
+            }
+            left = still;
+        }
+        for (std::size_t i = 0; i < x.size(); ++i) leaves[i] = refs[i].index();
     }
 
     /// Cuts a leaf. Child 0 keeps the leaf's number, the others get the next ones:
@@ -162,6 +204,7 @@ public:
             nodes_[place.slot / arity].set_child(static_cast<int>(place.slot % arity), inner);
         }
         deepest_ = std::max(deepest_, place.level + 1);
+        enter_jumps(inner, place.box);
     }
 
     /// Whether one more split would outgrow the references.
@@ -175,6 +218,16 @@ public:
 
 private:
     static constexpr std::size_t root_slot = ~std::size_t{0};
+    static constexpr int largest_jump_table = 24;
+
+    Ref child_with(Ref inner, const Point& x) const {
+        const Node& node = nodes_[inner.index()];
+        return node.children[static_cast<std::size_t>(node.child_with(x))];
+    }
+
+    void enter_jumps(Ref ref, const Box& box) {
+        jumps_.enter(ref, box, [this](Ref inner) -> const Node& { return node(inner); });
+    }
 
     LeafPlace descend(Ref ref, LeafPlace place, const Point& x) const {
         while (!ref.is_leaf()) {
@@ -203,6 +256,7 @@ private:
 
     Box domain_;
     std::vector<Node> nodes_;
+    JumpTable<Ref> jumps_;
     Ref root_;
     LeafIndex leaves_ = 1;
     int deepest_ = 0;

@@ -32,7 +32,15 @@ public:
         : options_(options), balanced_(balanced), topology_(options.domain), storage_(options) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
-        for (std::size_t i = 0; i < x.size(); ++i) out[i] = storage_.value(topology_, x[i]);
+        std::array<LeafIndex, Topology<Node>::most_found> leaves;
+        for (std::size_t first = 0; first < x.size(); first += leaves.size()) {
+            const auto part = x.subspan(first, std::min(leaves.size(), x.size() - first));
+            topology_.find(part, leaves);
+            for (std::size_t i = 0; i < part.size(); ++i) storage_.prefetch(leaves[i]);
+            for (std::size_t i = 0; i < part.size(); ++i) {
+                out[first + i] = storage_.value_in(topology_, leaves[i], part[i]);
+            }
+        }
     }
 
     Insertion insert(const PointSource& source) override {
@@ -69,6 +77,7 @@ public:
         } else {
             require_valid(options);
             if (options.neighbourhood == Neighbourhood::all) require_memory(options.neighbourhood);
+            topology_.fit_jumps();
             return options_.takes_later_sources ? grade_beside_asked(options)
                                                 : ControlSpace::grade(options);
         }
@@ -115,6 +124,7 @@ public:
         footprint.elements = topology_.leaves() + topology_.inner_nodes();
         footprint.depth = topology_.deepest_level() + 1;
         footprint.bytes_topology = topology_.bytes();
+        footprint.bytes_auxiliary = topology_.bytes_of_jumps();
         storage_.describe(footprint);
         footprint.bytes_published =
             published_bytes({is_octree, !std::is_base_of_v<LeafValues, Storage>, topology_.leaves(),
@@ -239,6 +249,7 @@ private:
     void settle() {
         if constexpr (keeps_sources) storage_.drop_idle_sources();
         topology_.shrink_to_fit();
+        topology_.fit_jumps();
         storage_.shrink_to_fit();
     }
 

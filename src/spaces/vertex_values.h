@@ -41,11 +41,16 @@ public:
 
     template <class Node>
     Metric value(const Topology<Node>& tree, const Point& place) const {
-        return interpolate(tree, place, metrics_.field());
+        return interpolate(tree.find(place), place, metrics_.field());
     }
     template <class Node>
+    Metric value_in(const Topology<Node>&, LeafIndex leaf, const Point& place) const {
+        return interpolate(leaf, place, metrics_.field());
+    }
+    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&corners_[leaf]); }
+    template <class Node>
     Metric asked(const Topology<Node>& tree, const Point& place) const {
-        return interpolate(tree, place, metrics_.asked());
+        return interpolate(tree.find(place), place, metrics_.asked());
     }
 
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new);
@@ -95,12 +100,12 @@ private:
         return blend_lengths(weights,
                              [&](std::size_t i) -> const Metric& { return metrics[corners[i]]; });
     }
-    template <class Node>
-    Metric interpolate(const Topology<Node>& tree, const Point& place,
-                       std::span<const Metric> metrics) const {
-        const Point x = place.cwiseMax(tree.domain().low).cwiseMin(tree.domain().high);
-        const LeafPlace here = tree.locate(x);
-        return interpolate(corners_[here.leaf], corner_weights(here.box, x), metrics);
+    // At the nearest place of the leaf.
+    Metric interpolate(LeafIndex leaf, const Point& place, std::span<const Metric> metrics) const {
+        const Corners& corners = corners_[leaf];
+        const Box box{positions_[corners.front()], positions_[corners.back()]};
+        const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
+        return interpolate(corners, corner_weights(box, x), metrics);
     }
     void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field);
     NodeIndex vertex_at(const Point& x, const Box& box, const Corners& corners);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
 #include <random>
 #include <set>
 
@@ -43,6 +45,57 @@ struct RandomTree {
 };
 
 }  // namespace
+
+TEMPLATE_TEST_CASE("descents that start in the middle end at the same leaves", "", KdNode,
+                   OctreeNode) {
+    RandomTree<TestType> random(200);
+    auto& tree = random.tree;
+    std::vector<Point> x;
+    const auto check = [&] {
+        x.clear();
+        const double beyond = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < 300; ++i) x.push_back(random.place());
+        for (const Box& box : random.boxes()) {
+            for (const Point& p : {box.low, box.high, box.centre()}) {
+                x.push_back(p);
+                for (Axis a = 0; a < 3; ++a) {
+                    Point above = p;
+                    above[a] = std::nextafter(p[a], beyond);
+                    x.push_back(above);
+                }
+            }
+        }
+        x.emplace_back(-1e30, 0.5, beyond);
+        x.emplace_back(2, -beyond, 0.5);
+        x.emplace_back(0.1, std::numeric_limits<double>::quiet_NaN(), 0.5);
+        for (const Point& p : x) REQUIRE(tree.find(p) == tree.locate(p).leaf);
+        for (std::size_t first = 0; first < x.size(); first += 7) {
+            const auto part =
+                std::span(x).subspan(first, std::min<std::size_t>(7, x.size() - first));
+            std::array<LeafIndex, Topology<TestType>::most_found> leaves;
+            tree.find(part, leaves);
+            for (std::size_t i = 0; i < part.size(); ++i) {
+                REQUIRE(leaves[i] == tree.locate(part[i]).leaf);
+            }
+        }
+    };
+    check();
+    CHECK(tree.bytes_of_jumps() < 200);  // one cell so far
+    tree.fit_jumps();
+    CHECK(tree.bytes_of_jumps() > 4 * tree.leaves() / 2);
+    check();
+    const std::size_t before = tree.bytes_of_jumps();
+    // Later leaves are known as well, before the table is fitted again.
+    for (int i = 0; i < 400; ++i) {
+        const LeafPlace leaf = tree.locate(random.place());
+        tree.split(leaf, TestType::even_subdivision(leaf.box));
+    }
+    CHECK(tree.bytes_of_jumps() == before);
+    check();
+    tree.fit_jumps();
+    CHECK(tree.bytes_of_jumps() > before);
+    check();
+}
 
 TEMPLATE_TEST_CASE("leaves fill the domain, and every place finds the one that holds it", "",
                    KdNode, OctreeNode) {

@@ -1,0 +1,185 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "geometry/box.h"
+#include "spaces/subdivision.h"
+
+namespace controlspace {
+
+/// A coarse uniform grid over a tree that starts descents near their end: each cell holds the
+/// deepest part of the tree (a `Ref`) that contains all of it.
+///
+/// As in a tree, a place on a plane belongs to the low side. The planes come of the same halving as
+/// a tree's, bit for bit, so that the cells of trees that are cut in the middle lie in one leaf, or
+/// contain whole ones.
+template <class Ref>
+class JumpTable {
+public:
+    /// One cell: the root.
+    explicit JumpTable(const Box& domain) : domain_(domain) {
+        for (Axis a = 0; a < 3; ++a) axes_[index(a)].cut(domain.low[a], domain.high[a], 1);
+    }
+
+    /// 2^halvings cells, as cubic as may be.
+    void resize(int halvings) {
+        std::array<int, 3> cells{1, 1, 1};
+        Box cell = domain_;
+        for (int i = 0; i < halvings; ++i) {
+            const Subdivision subdivision = longest_edge_halves(cell);
+            cell = subdivision.child(0);
+            for (Axis a = 0; a < 3; ++a) cells[index(a)] *= subdivision.cuts[index(a)] ? 2 : 1;
+        }
+        for (Axis a = 0; a < 3; ++a) {
+            axes_[index(a)].cut(domain_.low[a], domain_.high[a], cells[index(a)]);
+        }
+        refs_.assign(std::size_t{1} << halvings, Ref());
+        refs_.shrink_to_fit();
+    }
+
+    std::size_t cells() const { return refs_.size(); }
+    std::size_t bytes() const {
+        std::size_t sum = refs_.capacity() * sizeof(Ref);
+        for (const AxisCells& axis : axes_) sum += axis.planes.capacity() * sizeof(double);
+        return sum;
+    }
+
+    /// Where a descent to `x` may start.
+    const Ref& at(const Point& x) const {
+        return refs_[cell(axes_[0].find(x.x()), axes_[1].find(x.y()), axes_[2].find(x.z()))];
+    }
+
+    /// Enters `ref`, which stands for `box`, for all cells inside; or what is deeper down.
+    /// `node_of(ref)` is the inner node of a reference.
+    template <class NodeOf>
+    void enter(Ref ref, const Box& box, NodeOf&& node_of) {
+        Range range;
+        for (Axis a = 0; a < 3; ++a) {
+            const AxisCells& axis = axes_[index(a)];
+            range.first[index(a)] = box.low[a] <= domain_.low[a] ? 0 : axis.first_from(box.low[a]);
+            range.last[index(a)] =
+                box.high[a] >= domain_.high[a] ? axis.count() : axis.last_to(box.high[a]);
+        }
+        enter_range(ref, box, range, node_of);
+    }
+
+private:
+    static std::size_t index(Axis a) { return static_cast<std::size_t>(a); }
+
+    /// The cells along one axis. The outermost planes are no numbers: nothing lies beyond them.
+    struct AxisCells {
+        double low = 0;
+        double per_length = 0;
+        std::vector<double> planes;
+
+        int count() const { return static_cast<int>(planes.size()) - 1; }
+
+        void cut(double from, double to, int cells) {
+            low = from;
+            per_length = cells / (to - from);
+            planes.resize(static_cast<std::size_t>(cells) + 1);
+            planes.front() = from;
+            planes.back() = to;
+            for (int step = cells; step > 1; step /= 2) {
+                for (int i = 0; i < cells; i += step) {
+                    const double sum = planes[at(i)] + planes[at(i + step)];
+                    planes[at(i + step / 2)] = 0.5 * sum;
+                }
+            }
+            planes.front() = planes.back() = std::numeric_limits<double>::quiet_NaN();
+        }
+
+        // The quotient is off by rounding at most, and brought to the planes' own order.
+        int find(double x) const {
+            double guess = (x - low) * per_length;
+            const double most = count() - 1;
+            guess = guess > 0 ? guess : 0;
+            guess = guess < most ? guess : most;
+            const int i = static_cast<int>(guess);
+            return i + (x > planes[at(i + 1)] ? 1 : 0) - (x <= planes[at(i)] ? 1 : 0);
+        }
+
+        /// First cell that begins at `x` or above; the end of the last that ends at `x` or below.
+        int first_from(double x) const {
+            const auto found = std::lower_bound(planes.begin() + 1, planes.end() - 1, x);
+            return static_cast<int>(found - planes.begin());
+        }
+        int last_to(double x) const {
+            const auto found = std::upper_bound(planes.begin() + 1, planes.end() - 1, x);
+            return static_cast<int>(found - planes.begin()) - 1;
+        }
+
+        static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+    };
+
+    struct Range {
+        std::array<int, 3> first{};
+        std::array<int, 3> last{};
+        bool is_empty() const {
+            return first[0] >= last[0] || first[1] >= last[1] || first[2] >= last[2];
+        }
+    };
+
+    std::size_t cell(int i, int j, int k) const {
+        const auto row = static_cast<std::size_t>(k) * static_cast<std::size_t>(axes_[1].count()) +
+                         static_cast<std::size_t>(j);
+        return row * static_cast<std::size_t>(axes_[0].count()) + static_cast<std::size_t>(i);
+    }
+
+    void set(const Range& range, Ref ref) {
+        for (int k = range.first[2]; k < range.last[2]; ++k) {
+            for (int j = range.first[1]; j < range.last[1]; ++j) {
+                for (int i = range.first[0]; i < range.last[0]; ++i) refs_[cell(i, j, k)] = ref;
+            }
+        }
+    }
+
+    template <class NodeOf>
+    void enter_range(Ref ref, const Box& box, const Range& range, NodeOf& node_of) {
+        if (range.is_empty()) return;
+        if (ref.is_leaf()) {
+            set(range, ref);
+            return;
+        }
+        const auto& node = node_of(ref);
+        const Subdivision subdivision = node.subdivision(box);
+        std::array<int, 3> low_end = range.last;
+        std::array<int, 3> high_begin = range.last;
+        for (Axis a = 0; a < 3; ++a) {
+            if (!subdivision.cuts[index(a)]) continue;
+            const double plane = subdivision.at[a];
+            low_end[index(a)] = std::max(axes_[index(a)].last_to(plane), range.first[index(a)]);
+            high_begin[index(a)] =
+                std::min(axes_[index(a)].first_from(plane), range.last[index(a)]);
+            if (low_end[index(a)] >= high_begin[index(a)]) continue;
+            Range cut_through = range;  // cells on both sides of the plane
+            cut_through.first[index(a)] = low_end[index(a)];
+            cut_through.last[index(a)] = high_begin[index(a)];
+            set(cut_through, ref);
+        }
+        for (int c = 0; c < subdivision.children(); ++c) {
+            Range part = range;
+            for (Axis a = 0; a < 3; ++a) {
+                if (!subdivision.cuts[index(a)]) continue;
+                if (subdivision.side(c, a) == 0) {
+                    part.last[index(a)] = low_end[index(a)];
+                } else {
+                    part.first[index(a)] = high_begin[index(a)];
+                }
+            }
+            enter_range(node.children[static_cast<std::size_t>(c)], subdivision.child(c), part,
+                        node_of);
+        }
+    }
+
+    Box domain_;
+    std::array<AxisCells, 3> axes_;
+    std::vector<Ref> refs_{Ref()};
+};
+
+}  // namespace controlspace
