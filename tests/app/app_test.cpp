@@ -227,5 +227,5 @@ TEST_CASE("Ctrl-C leaves whole files and status 130") {
     CHECK_THAT(outcome.err, Contains("interrupted: 0 of 12 cases are in out"));
     const auto json = nlohmann::json::parse(file_text(box / "out" / "results.json"));
     CHECK(json["complete"] == false);
-    CHECK(std::distance(fs::directory_iterator(box / "out"), fs::directory_iterator()) == 3);
+    CHECK(std::distance(fs::directory_iterator(box / "out"), fs::directory_iterator()) == 4);
 }

@@ -131,8 +131,10 @@ TEST_CASE("a continuous source: vertices carry a linear field, anchored trees th
         CAPTURE(entry.id);
         const auto space = entry.make({.domain = domain, .finest_length = 0.05});
         const AdaptationReport report = space->adapt({{}, ramp, g, 0.05});
-        CHECK(report.met);
-        CHECK(share_beyond(0.05, *space, *ramp) == 0);
+        const bool keeps_it = share_beyond(0.05, *space, *ramp) == 0;
+        CHECK(report.met == keeps_it);
+        // Sources alone make grids in levels finer.
+        CHECK((keeps_it || entry.has_levels));
         if (entry.id == "K_V" || entry.id == "K_oV" || entry.group == "anchored") {
             CHECK(space->footprint().leaves == 1);
             CHECK(report.reached < 1e-12);

@@ -82,7 +82,7 @@ TEMPLATE_TEST_CASE("descents that start in the middle end at the same leaves", "
     check();
     CHECK(tree.bytes_of_jumps() < 200);  // one cell so far
     tree.fit_jumps();
-    CHECK(tree.bytes_of_jumps() > 4 * tree.leaves() / 2);
+    CHECK(tree.bytes_of_jumps() > tree.leaves());
     check();
     const std::size_t before = tree.bytes_of_jumps();
     // Later leaves are known as well, before the table is fitted again.
