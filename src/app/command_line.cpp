@@ -225,7 +225,9 @@ Command parse_command_line(int argc, const char* const* argv) {
     ReportOptions report_options;
     CLI::App* report = app.add_subcommand(
         "report", "Write a page with pictures of results (drawn by gnuplot): report.html");
-    report->add_option("RESULTS", report_options.inputs, "Folders of results")
+    report
+        ->add_option("RESULTS", report_options.inputs,
+                     "Folders of results; those after the first are compared with it")
         ->option_text("FOLDER ...")
         ->required();
     report

@@ -57,6 +57,7 @@ void report(const ReportOptions& options) {
     }
     const Styles styles(rows);
     Report page(options.output.empty() ? options.inputs.front() : options.output);
+    for (std::size_t i = 1; i < all.size(); ++i) add_comparison(page, all.front(), all[i]);
     for (const ReportedResults& reported : all) {
         add_results(page, reported, styles);
         if (!options.without_fields) add_fields_or_warn(page, reported);

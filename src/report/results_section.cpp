@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "report/comparison.h"
 #include "report/delta_figures.h"
 #include "report/pareto_figures.h"
 #include "report/slice_figures.h"
@@ -67,6 +68,28 @@ void add_results(Report& report, const ReportedResults& reported, const Styles& 
     add("Creation time", creation_figures(rows, styles, prefix, made_by));
     add("Access time", access_figures(rows, prefix, made_by));
     report.add_tables(measure_tables(rows));
+}
+
+void add_comparison(Report& report, const ReportedResults& before, const ReportedResults& after) {
+    const auto pairs = row_pairs(before.results.rows, after.results.rows);
+    report.add_heading(fmt::format("{} after {}", after.folder.string(), before.folder.string()));
+    const Provenance& a = before.results.provenance;
+    const Provenance& b = after.results.provenance;
+    report.add_paragraph(
+        fmt::format("{} rows of {} have the same setting as one of {}. Before: {}, {}, {}. After: "
+                    "{}, {}, {}.{}",
+                    pairs.size(), before.results.rows.size(), after.results.rows.size(),
+                    version_text(a), a.cpu, a.date, version_text(b), b.cpu, b.date,
+                    a.cpu == b.cpu ? "" : " The machines differ: so do times."));
+    const std::string differing = differing_settings(before.results.study, after.results.study);
+    if (!differing.empty()) {
+        report.add_paragraph("The studies differ: " + differing +
+                             ". What depends on these cannot be compared.");
+    }
+    if (pairs.empty()) return;
+    report.add_tables(std::vector{change_counts(pairs)});
+    report.add_figures(change_figures(pairs, after.prefix, a.command_line + "; " + b.command_line));
+    report.add_tables(change_tables(pairs));
 }
 
 void add_fields(Report& report, const ReportedResults& reported, const SampledFields& fields) {

@@ -23,6 +23,9 @@ struct ReportedResults {
 /// and access times, and every measure.
 void add_results(Report& report, const ReportedResults& reported, const Styles& styles);
 
+/// What changed from the one to the other: rows of the same setting, after over before.
+void add_comparison(Report& report, const ReportedResults& before, const ReportedResults& after);
+
 /// What `fields` look like: slices, δ over the domain, and the structures against each other.
 void add_fields(Report& report, const ReportedResults& reported, const SampledFields& fields);
 

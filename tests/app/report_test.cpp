@@ -61,6 +61,26 @@ TEST_CASE("a report whose sources are gone has all but the fields, and says so")
     CHECK(box.run("report out --without-fields").err.empty());
 }
 
+TEST_CASE("a report of two runs says what changed") {
+    const Sandbox box("report-two");
+    for (const char* folder : {"before", "after"}) {
+        REQUIRE(box.run("compare --structures K_oL,direct --sources sphere --output " +
+                        std::string(folder) + quick)
+                    .status == 0);
+    }
+    const Outcome outcome = box.run("report before after --output both --without-fields");
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    const std::string page = file_text(box / "both" / "report.html");
+    CHECK(markup_fault(page).empty());
+    CHECK_THAT(page, Contains("2 rows of 2 have the same setting as one of 2"));
+    // Memory and errors are the same each time.
+    CHECK_THAT(page, Contains("<td class=\"left\">memory</td><td>0 smaller</td><td>2</td>"));
+    for (const char* name : {"2-change-01.svg", "1-access-01.png", "2-access-01.png"}) {
+        CHECK(fs::exists(box / "both" / "report-pictures" / name));
+    }
+}
+
 TEST_CASE("a report that cannot be written is refused, and leaves nothing behind") {
     const Sandbox box("report-refused");
     REQUIRE(box.run("compare --structures K_oL --sources sphere --output out" + quick).status == 0);
