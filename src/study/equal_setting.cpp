@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -36,10 +37,15 @@ struct Goal {
 /// All trials of one case, whose voxels alone vary.
 class Trials {
 public:
-    /// With `levels_unit`, voxel_factor is the voxels' length in this unit.
-    Trials(const Case& c, std::optional<double> levels_unit,
+    /// With `levels_unit`, voxel_factor is the voxels' length in this unit. Voxels that take
+    /// `too_many_bytes` end the search.
+    Trials(const Case& c, std::optional<double> levels_unit, double too_many_bytes,
            const std::function<Trial(const Case&)>& attempt)
-        : case_(c), levels_unit_(levels_unit), attempt_(attempt), goal_(c) {}
+        : case_(c),
+          levels_unit_(levels_unit),
+          too_many_bytes_(too_many_bytes),
+          attempt_(attempt),
+          goal_(c) {}
 
     void halve_and_bisect(double coarsest) {
         constexpr int most_halvings = 16;
@@ -75,7 +81,8 @@ private:
             refusal_ = error.what();
             return true;
         }
-        return goal_.is_passed(tried_.back().trial);
+        const Trial& trial = tried_.back().trial;
+        return goal_.is_passed(trial) || trial.bytes >= too_many_bytes_;
     }
 
     bool is_same_as_before() const {
@@ -86,6 +93,7 @@ private:
 
     Case case_;
     std::optional<double> levels_unit_;
+    double too_many_bytes_;
     const std::function<Trial(const Case&)>& attempt_;
     Goal goal_;
     std::vector<EqualSetting> tried_;
@@ -108,21 +116,23 @@ EqualSetting find_equal_setting(const Case& c, const CatalogueEntry& entry, doub
                                 double finest_length,
                                 const std::function<Trial(const Case&)>& attempt) {
     const Goal goal(c);
-    std::vector<Case> variants{c};
-    if (goal.in_delta && entry.can_prune && !c.prune_delta) {
-        variants.push_back(c);
-        variants.back().prune_delta = 0.5 * goal.value;
-    }
     const auto levels_unit = entry.has_levels ? std::optional(finest_length) : std::nullopt;
     std::optional<EqualSetting> best;
     std::string refusal;
-    for (const Case& variant : variants) {
-        Trials trials(variant, levels_unit, attempt);
-        trials.halve_and_bisect(longest_edge / 4);
+    const auto search = [&](const Case& variant, double coarsest, double too_many_bytes) {
+        Trials trials(variant, levels_unit, too_many_bytes, attempt);
+        trials.halve_and_bisect(coarsest);
         refusal = trials.refusal();
         for (EqualSetting& found : std::move(trials).tried()) {
             if (!best || goal.is_better(found.trial, best->trial)) best = std::move(found);
         }
+    };
+    search(c, longest_edge / 4, std::numeric_limits<double>::infinity());
+    if (goal.in_delta && goal.is_kept(best->trial) && entry.can_prune && !c.prune_delta) {
+        // Pruned voxels err more: they are no larger, and must save memory at that size.
+        Case pruned = c;
+        pruned.prune_delta = 0.5 * goal.value;
+        search(pruned, *best->setting.voxel, best->trial.bytes);
     }
     if (!goal.is_kept(best->trial)) best->shortfall = shortfall(goal, best->trial, refusal);
     return *best;
