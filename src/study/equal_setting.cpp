@@ -129,10 +129,10 @@ EqualSetting find_equal_setting(const Case& c, const CatalogueEntry& entry, doub
     };
     search(c, longest_edge / 4, std::numeric_limits<double>::infinity());
     if (goal.in_delta && goal.is_kept(best->trial) && entry.can_prune && !c.prune_delta) {
-        // Pruned voxels err more: they are no larger, and must save memory at that size.
+        // Pruned voxels err more, as a rule: hardly larger ones will do, and must save memory.
         Case pruned = c;
         pruned.prune_delta = 0.5 * goal.value;
-        search(pruned, *best->setting.voxel, best->trial.bytes);
+        search(pruned, 2 * *best->setting.voxel, best->trial.bytes);
     }
     if (!goal.is_kept(best->trial)) best->shortfall = shortfall(goal, best->trial, refusal);
     return *best;
