@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/paper.h"
+#include "app/signals.h"
 #include "app/standard_output.h"
 #include "app/vdb_readers.h"
 #include "baselines/catalogue.h"
@@ -45,6 +46,7 @@ void add_fields_or_warn(Report& page, const ReportedResults& reported) {
 }  // namespace
 
 void report(const ReportOptions& options) {
+    Interruption interruption;
     std::vector<ReportedResults> all;
     std::vector<Row> rows;
     std::string names;
@@ -57,12 +59,16 @@ void report(const ReportOptions& options) {
     }
     const Styles styles(rows);
     Report page(options.output.empty() ? options.inputs.front() : options.output);
+    const Interruption::Watch watch(interruption, nullptr, [&] { page.abandon(); });
     for (std::size_t i = 1; i < all.size(); ++i) add_comparison(page, all.front(), all[i]);
     for (const ReportedResults& reported : all) {
         add_results(page, reported, styles);
         if (!options.without_fields) add_fields_or_warn(page, reported);
     }
-    page.commit("Control spaces: " + names);
+    {
+        const auto whole = interruption.postpone();
+        page.commit("Control spaces: " + names);
+    }
     print(fmt::format("Report: {}\n", page.page().string()));
 }
 

@@ -81,7 +81,7 @@ Figure change_figure(const std::string& setting, const std::vector<RowPair>& pai
         "Left of 1: faster, smaller, more accurate. Bars of access times reach from the lower "
         "quartile of the later samples over the upper one of the earlier to the reverse: what "
         "crosses 1 may be noise. Creation times are of one run each.";
-    figure.height = 150 + 34 * static_cast<int>(pairs.size());
+    figure.height = height_of(pairs.size(), 34);
     Range x;
     x.add(1);
     std::string names, plots;

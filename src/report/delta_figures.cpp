@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "measure/percentile.h"
 #include "metric/nonconformity.h"
@@ -16,7 +17,9 @@ namespace {
 std::vector<double> deltas(const FieldSample& a, const FieldSample& b) {
     std::vector<double> values;
     for (std::size_t i = 0; i < a.probes.size(); ++i) {
-        values.push_back(nonconformity(a.probes[i], b.probes[i]));
+        const double delta = nonconformity(a.probes[i], b.probes[i]);
+        // What is no metric is as wrong as can be.
+        values.push_back(std::isnan(delta) ? std::numeric_limits<double>::infinity() : delta);
     }
     return values;
 }
@@ -44,7 +47,8 @@ struct Histogram {
 
     explicit Histogram(const std::vector<double>& values) {
         for (const double value : values) {
-            const double place = std::log(std::max(value, low) / low) / std::log(high / low);
+            const double place =
+                std::log(std::clamp(value, low, high) / low) / std::log(high / low);
             const int bin = std::clamp(static_cast<int>(place * bins), 0, bins - 1);
             shares[static_cast<std::size_t>(bin)] += 1.0 / static_cast<double>(values.size());
         }
@@ -68,7 +72,7 @@ Figure delta_histograms(const SampledFields& fields, const std::string& name,
         "and maximum (cross). Errors below {} stand at the left edge.",
         Histogram::bins, smallest_drawn_error);
     figure.made_by = made_by;
-    figure.height = 130 + 40 * static_cast<int>(n);
+    figure.height = height_of(n, 40);
     figure.data = "$marks << EOD\n";
     std::string histograms, plots, names;
     for (std::size_t i = 0; i < n; ++i) {
@@ -150,7 +154,7 @@ Figure cross_validation(const SampledFields& fields, const std::string& name,
         "nothing but the sources agree where both are right. Left: 95th percentile; right: "
         "maximum.";
     figure.made_by = made_by;
-    const int side = 150 + 46 * static_cast<int>(all.size());
+    const int side = height_of(all.size(), 46);
     figure.width = 2 * side;
     figure.height = side;
     figure.data = "$pairs << EOD\n";

@@ -106,9 +106,8 @@ void Gnuplot::draw(const Figure& figure, const fs::path& folder) const {
                        ends_with(folder / (figure.name + ".png"), "IEND");
     if (!outcome.succeeded() || !whole) {
         const std::string words = last_lines(log, 3);
-        throw InputError(fmt::format("gnuplot could not draw {} ({}): is the disk full?",
-                                     (folder / script).string(),
-                                     words.empty() ? "without a word" : words));
+        throw InputError(fmt::format("gnuplot could not draw {}: {}", (folder / script).string(),
+                                     words.empty() ? "is the disk full?" : words));
     }
     std::error_code ignored;
     fs::remove(log, ignored);

@@ -65,10 +65,9 @@ Figure pareto_figure(const ParetoPlot& plot, std::span<const Row> rows, const St
     figure.title = fmt::format("{} error against {}: {}", largest ? "Largest" : "Mean",
                                by_bytes ? "memory" : "access time", plot.work);
     figure.caption = fmt::format(
-        "Below and to the left is better. The line is the front: for rows on it, no "
-        "other is at most as large in both. Where labels would lie over each other, one is left "
-        "out: "
-        "the table below has all. Rows with an error below {} stand at the lower edge.",
+        "Below and to the left is better. The line is the front: for rows on it, no other is at "
+        "most as large in both. Where labels would lie over each other, one is left out: the table "
+        "below has all. Rows with an error below {} stand at the lower edge.",
         smallest_drawn_error);
     Range x, y;
     for (const ParetoPoint& p : plot.points) {

@@ -32,7 +32,9 @@ Report::Report(fs::path folder)
     make_folder(drawn_);
 }
 
-Report::~Report() {
+Report::~Report() { abandon(); }
+
+void Report::abandon() const {
     std::error_code ignored;
     fs::remove_all(drawn_, ignored);
 }

@@ -31,6 +31,9 @@ public:
     /// replaced. Throws InputError, naming the file. To be called once, last.
     void commit(std::string_view title);
 
+    /// Removes what was drawn: for a program that is ended before `commit`.
+    void abandon() const;
+
     /// The page that `commit` writes.
     std::filesystem::path page() const { return folder_ / "report.html"; }
 

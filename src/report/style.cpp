@@ -50,26 +50,37 @@ std::string Styles::dashes(const Case& c) {
 }
 
 void Range::add(double x) {
-    const bool first = low == 0 && high == 0;
+    if (!(x > 0) || !std::isfinite(x)) return;
+    const bool first = low == 0;
     low = first ? x : std::min(low, x);
     high = first ? x : std::max(high, x);
 }
 
 std::string log_tics(double low, double high) {
-    const bool few = high / low < 1000;
+    const double ratio = high / low;
+    const std::vector<double> digits =
+        ratio > 1000 ? std::vector<double>{1}
+        : ratio > 4  ? std::vector<double>{1, 2, 5}
+                     : std::vector<double>{1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8};
     std::string tics;
     for (int power = static_cast<int>(std::floor(std::log10(low))); std::pow(10, power) <= high;
          ++power) {
-        for (const int digit : {1, 2, 5}) {
+        for (const double digit : digits) {
             const double tic = digit * std::pow(10, power);
-            if (tic < low || tic > high || (digit != 1 && !few)) continue;
+            if (tic < low || tic > high) continue;
             tics += fmt::format("{}'{:.7g}' {:.7g}", tics.empty() ? "" : ", ", tic, tic);
         }
     }
     return "(" + tics + ")";
 }
 
-std::string log_axis(std::string_view axis, const Range& range, std::string_view label) {
+int height_of(std::size_t lines, int line) {
+    constexpr std::size_t most = 12000;  // the PNG is larger, and cairo ends at 32767
+    return static_cast<int>(std::min(most, 150 + lines * static_cast<std::size_t>(line)));
+}
+
+std::string log_axis(std::string_view axis, const Range& given, std::string_view label) {
+    const Range range = given.low > 0 ? given : Range{1, 1};
     const double room = std::max(1.3, std::pow(range.high / range.low, 0.06));
     const double low = range.low / room;
     const double high = range.high * room;

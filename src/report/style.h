@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,20 +33,26 @@ private:
     std::vector<std::string> structures_;
 };
 
-/// Smallest and largest value of an axis.
+/// Smallest and largest value of a logarithmic axis.
 struct Range {
     double low = 0;
     double high = 0;
 
-    /// Widens it so that it holds `x`; the first one makes it.
+    /// Widens it so that it holds `x`, and passes over what has no place on such an axis: what is
+    /// not positive or not finite. The first one makes it.
     void add(double x);
 };
 
-/// gnuplot's list of tics for a logarithmic axis from `low` to `high`: every power of ten or, where
-/// these are few, 1, 2 and 5 times them.
+/// gnuplot's list of tics for a logarithmic axis from `low` to `high`: every power of ten and, the
+/// fewer these are, the more places between them.
 std::string log_tics(double low, double high);
 
-/// gnuplot's commands for a logarithmic axis ("x", "y") over `range` with some room beside it.
-std::string log_axis(std::string_view axis, const Range& range, std::string_view label);
+/// The height of a picture [pixels] with `lines` lines of `line` pixels each, beside its frame; no
+/// larger than can be drawn, however many there are.
+int height_of(std::size_t lines, int line);
+
+/// gnuplot's commands for a logarithmic axis ("x", "y") over `given`, or around 1 where that is
+/// empty, with some room beside it.
+std::string log_axis(std::string_view axis, const Range& given, std::string_view label);
 
 }  // namespace controlspace

@@ -45,7 +45,7 @@ Figure access_figure(const std::string& setting, const std::vector<const Row*>& 
     figure.caption =
         "Boxes hold the middle half of the samples, with the median as a line; whiskers reach to "
         "the fastest and slowest sample; dots are the samples. Each is the mean of a batch.";
-    figure.height = 130 + 26 * static_cast<int>(rows.size());
+    figure.height = height_of(rows.size(), 26);
     constexpr double half_height = 0.17;
     Range x;
     std::string plots;

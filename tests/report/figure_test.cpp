@@ -51,7 +51,7 @@ TEST_CASE("a figure that gnuplot cannot draw, or not whole, is refused with its 
     CHECK_THROWS_WITH(Gnuplot().draw(figure, folder.path()),
                       Contains("line.gp") && Contains("nothing"));
     figure.commands = "exit\n";  // without a picture, and without a word
-    CHECK_THROWS_WITH(Gnuplot().draw(figure, folder.path()), Contains("without a word"));
+    CHECK_THROWS_WITH(Gnuplot().draw(figure, folder.path()), Contains("is the disk full?"));
 }
 
 TEST_CASE("a folder that is full gives no picture") {

@@ -1,5 +1,7 @@
 // The numbers of pictures are those of rows.
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -125,6 +127,13 @@ TEST_CASE("an axis holds its range, with tics that the reader can place") {
     CHECK_THAT(log_axis("x", range, "time"), Contains("'1' 1, '2' 2") && Contains("label 'time'"));
     range.add(70000);
     CHECK_THAT(log_axis("x", range, ""), Contains("'1' 1, '10' 10, '100' 100"));
+    range.add(0);
+    range.add(-1);
+    range.add(std::numeric_limits<double>::infinity());
+    range.add(std::nan(""));
+    CHECK(range.low == 0.7);
+    CHECK(range.high == 70000);
+    CHECK_THAT(log_axis("x", {}, ""), Contains("'1' 1"));
     Range single;
     single.add(5);
     CHECK_THAT(log_axis("y", single, ""), Contains("'5' 5"));
