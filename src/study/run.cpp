@@ -65,7 +65,7 @@ private:
 
 /// A field is followed by adaptation; without a target for it only what keeps its elements can be.
 void require_follows(const Case& c, const CatalogueEntry& entry) {
-    if (c.target_delta || entry.graded_from_start || (entry.has_voxels && !entry.has_levels)) {
+    if (c.target_delta || entry.graded_from_start || entry.has_voxels) {
         return;
     }
     throw InputError("an analytic field is followed by adaptation: set target_delta, for trees");

@@ -177,6 +177,8 @@ std::optional<double> unless_zero(double x) {
 
 /// One structure under one setting: what a structure does not have does not multiply it.
 std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const Case& setting) {
+    // Nothing but sources makes grids in levels finer.
+    if (entry.has_levels && has_field(setting.sources)) return {};
     std::vector<Case> cases{setting};
     cases.front().structure = entry.id;
     if (entry.has_split_rules) {
@@ -236,7 +238,12 @@ std::vector<Case> expand(const Study& study, std::span<const CatalogueEntry> cat
             }
         }
     }
-    if (cases.empty()) throw InputError("the study has no cases: give at least one structure");
+    if (cases.empty()) {
+        throw InputError(
+            "the study has no cases: give at least one structure, and for a field one that is not "
+            "a "
+            "grid in levels");
+    }
     return cases;
 }
 

@@ -74,6 +74,13 @@ TEST_CASE("voxels, levels and pruning multiply the grids that have them") {
     CHECK(cases[4].voxel_factor == 1);
     CHECK_FALSE(cases[4].prune_delta);
     CHECK(structure_label(cases.back()) == "levels, voxel 0.5, c 0.25, pruned at 0.1");
+
+    study.runs[0].field = {FieldKind::none, FieldKind::ugawg_linear};
+    study.sources.kind = SourcesKind::sphere;
+    CHECK(expand(study, catalogue).size() == 2 * (1 + 1 + 2) + 2 * 3 * 2);
+    study.runs[0].field = {FieldKind::ugawg_linear};
+    study.runs[0].structures = {"levels"};
+    CHECK_THROWS_WITH(expand(study, catalogue), Contains("not a grid in levels"));
 }
 
 TEST_CASE("goals that voxels are chosen for multiply grids, node values what holds metrics") {
