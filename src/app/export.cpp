@@ -29,9 +29,7 @@ Case only_case(const Study& study) {
                         cases.size(), structure_label(cases[0]), setting_label(cases[0]),
                         structure_label(cases[1]), setting_label(cases[1])));
     }
-    if (cases.front().equal_delta || cases.front().equal_memory) {
-        throw InputError("equal_delta and equal_memory are for compare: give voxel as it found it");
-    }
+    require_set_voxels(cases.front());
     return cases.front();
 }
 

@@ -1,5 +1,6 @@
 #include "app/input_study.h"
 
+#include "error.h"
 #include "study/study_file.h"
 
 namespace controlspace {
@@ -18,6 +19,11 @@ Study study_of_input(const std::filesystem::path& input, const GivenSettings& gi
     }
     apply(given, study);
     return study;
+}
+
+void require_set_voxels(const Case& c) {
+    if (!c.equal_delta && !c.equal_memory) return;
+    throw InputError("equal_delta and equal_memory are for compare: give voxel as it found it");
 }
 
 }  // namespace controlspace

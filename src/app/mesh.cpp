@@ -140,6 +140,7 @@ void MeshJob::run(Interruption& interruption) {
 
 /// What is wrong from the start leaves no folder; what is wrong with a later case makes a row.
 void MeshJob::require_runnable() {
+    for (const Case& c : cases_) require_set_voxels(c);
     const Reference& reference = reference_of(cases_.front());
     for (const Case& c : cases_) {
         if (c.sources == reference.first.sources) space_options(study_, c, reference.workload);

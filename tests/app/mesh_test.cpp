@@ -101,6 +101,7 @@ TEST_CASE("what cannot be meshed ends with one line, and leaves no folder") {
         {"--time-limit 0", "--time-limit"},
         {"--exact maybe", "--exact: give yes or no"},
         {"--mesh-threads 0", "--mesh-threads"},
+        {"--structures uniform-nearest --equal-delta 0.1", "equal_delta"},
         {"--kd-depth 1000 --structures K_L", "depth"},
         {"--structures K_X", "unknown structure 'K_X'"},
         {"--access-points 3", "--access-points"},
