@@ -62,7 +62,8 @@ public:
     std::string frame() const {
         return fmt::format(
             "set size ratio -1\nset xrange [{}:{}]\nset yrange [{}:{}]\nset xtics out nomirror "
-            "autofreq\nset ytics out nomirror autofreq\nset xlabel 'x'\nset ylabel 'y'\n"
+            "autofreq\nset ytics out nomirror autofreq\nset xlabel 'x [length]'\nset ylabel 'y "
+            "[length]'\n"
             "unset key\n",
             domain_.low.x(), domain_.high.x(), domain_.low.y(), domain_.high.y());
     }
@@ -122,7 +123,7 @@ std::vector<Figure> slice_figures(const SampledFields& fields, const std::string
             anisotropic ? "" : "All lengths at a place are the same: there is no anisotropy.");
         figure.made_by = made_by;
         figure.width = 1200;
-        figure.height = anisotropic ? 800 : 430;
+        figure.height = anisotropic ? 820 : 450;
         figure.raster = true;
 
         Values delta = errors(sample.slice, fields.exact.slice);
@@ -135,12 +136,13 @@ std::vector<Figure> slice_figures(const SampledFields& fields, const std::string
         const std::string label = structure_label(sample.row->setting);
         figure.commands =
             fmt::format("set multiplot layout {} title {}\n",
-                        anisotropic ? "2,3 margins 0.06,0.93,0.1,0.86 spacing 0.12,0.14"
-                                    : "1,3 margins 0.06,0.93,0.16,0.78 spacing 0.12,0.1",
+                        anisotropic ? "2,3 margins 0.06,0.92,0.12,0.86 spacing 0.12,0.14"
+                                    : "1,3 margins 0.06,0.92,0.21,0.8 spacing 0.12,0.1",
                         gnuplot_title(figure.title)) +
             panels.frame() + std::string(viridis_palette) +
-            panels.panel("exact", "exact", lengths, "mean length", false) + "unset label 999\n" +
-            panels.panel("lengths", label, lengths, "mean length", outlined) +
+            panels.panel("exact", "exact", lengths, "h_mean [length]", false) +
+            "unset label 999\n" +
+            panels.panel("lengths", label, lengths, "h_mean [length]", outlined) +
             std::string(error_palette) + panels.panel("delta", "error", deltas, "δ", false);
         if (anisotropic) {
             figure.data += matrix_block("exact_ratio", exact_anisotropies) +
