@@ -27,6 +27,7 @@
 #include "mesh/write_medit.h"
 #include "mesh/write_msh.h"
 #include "mesh/write_vtu.h"
+#include "sources/write_medit_sources.h"
 #include "spaces/space_field.h"
 #include "study/results.h"
 #include "study/run.h"

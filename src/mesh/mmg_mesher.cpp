@@ -15,6 +15,7 @@
 #include "mesh/size_query.h"
 #include "mesh/stopwatch.h"
 #include "mesh/write_medit.h"
+#include "sources/write_medit_sources.h"
 #include "study/child_program.h"
 
 namespace controlspace {

@@ -6,8 +6,8 @@
 
 namespace controlspace {
 
-/// Vertices, triangles and tetrahedra of an ASCII Medit file (.mesh), upright. Throws InputError
-/// "name:line: what is wrong".
+/// Vertices, triangles and tetrahedra of a Medit file (.mesh, .meshb), upright. Throws InputError
+/// that names the place.
 TetMesh read_medit_mesh(const std::filesystem::path& path);
 
 }  // namespace controlspace

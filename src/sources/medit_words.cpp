@@ -68,10 +68,10 @@ std::uint64_t MeditWords::count(std::string_view what) {
     return n;
 }
 
-std::size_t MeditWords::rows(std::string_view what, std::size_t numbers) {
+std::size_t MeditWords::rows(std::string_view what, std::size_t reals, std::size_t integers) {
     const std::uint64_t n = count(what);
     if (n == 0) fail(fmt::format("{} 0: nothing to read", what));
-    const std::size_t most = (text_.size() - at_) / (2 * numbers);  // "0 0 0 ..."
+    const std::size_t most = (text_.size() - at_) / (2 * (reals + integers));  // "0 0 0 ..."
     if (n > most) {
         fail(fmt::format("{} {}, but the rest of the file can hold {} at most: is it cut off?",
                          what, n, most));

@@ -23,11 +23,14 @@ public:
 
     std::uint64_t count(std::string_view what);
 
-    /// A count of rows with `numbers` numbers each, as the rest of the file can hold; not 0.
-    std::size_t rows(std::string_view what, std::size_t numbers);
+    /// A count of rows with that many numbers each, as the rest of the file can hold; not 0.
+    std::size_t rows(std::string_view what, std::size_t reals, std::size_t integers);
 
     /// A finite number of row `index` (0-based) of `what`.
     double number(std::string_view what, std::size_t index);
+
+    /// Passes over the reference of row `index`, a number without meaning here.
+    void skip_reference(std::string_view what, std::size_t index) { number(what, index); }
 
     /// A whole number of row `index` (0-based) of `what`, from 1 to `most`.
     std::uint64_t index_up_to(std::uint64_t most, std::string_view what, std::size_t index);

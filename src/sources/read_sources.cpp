@@ -18,16 +18,16 @@ std::string lower_case_extension(const std::filesystem::path& path) {
     return extension;
 }
 
-// The file beside `path` with another extension.
-std::filesystem::path partner(const std::filesystem::path& path, const char* extension) {
+// The file beside `path` with the first of two other extensions that is there.
+std::filesystem::path partner(const std::filesystem::path& path, const char* likely,
+                              const char* possible) {
     std::filesystem::path other = path;
-    other.replace_extension(extension);
     std::error_code ignored;
-    if (!std::filesystem::exists(other, ignored)) {
-        throw InputError(
-            fmt::format("{} is missing: {} needs it beside it", other.string(), path.string()));
+    for (const char* extension : {likely, possible}) {
+        if (std::filesystem::exists(other.replace_extension(extension), ignored)) return other;
     }
-    return other;
+    throw InputError(fmt::format("{} is missing: {} needs it beside it",
+                                 other.replace_extension(likely).string(), path.string()));
 }
 
 }  // namespace
@@ -42,12 +42,10 @@ std::vector<PointSource> read_sources(const std::filesystem::path& path) {
     }
     const std::string extension = lower_case_extension(path);
     if (extension == ".csv") return read_csv_sources(path);
-    if (extension == ".mesh") return read_medit_sources(path, partner(path, ".sol"));
-    if (extension == ".sol") return read_medit_sources(partner(path, ".mesh"), path);
-    if (extension == ".meshb" || extension == ".solb") {
-        throw InputError(
-            fmt::format("{} is binary Medit: convert it to .mesh and .sol", path.string()));
-    }
+    if (extension == ".mesh") return read_medit_sources(path, partner(path, ".sol", ".solb"));
+    if (extension == ".sol") return read_medit_sources(partner(path, ".mesh", ".meshb"), path);
+    if (extension == ".meshb") return read_medit_sources(path, partner(path, ".solb", ".sol"));
+    if (extension == ".solb") return read_medit_sources(partner(path, ".meshb", ".mesh"), path);
     // A pipe, as of <(command), has a name that says nothing.
     if (!std::filesystem::is_regular_file(path, ignored)) return read_csv_sources(path);
     throw InputError(fmt::format("{}: name a .csv, or a .mesh beside a .sol", path.string()));

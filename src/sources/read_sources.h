@@ -7,9 +7,9 @@
 
 namespace controlspace {
 
-/// Sources from a file, by its extension: `.csv` (sources/csv.h), or `.mesh` or `.sol`, of which
-/// the other must lie beside it under the same name (sources/medit.h). A pipe without an extension
-/// is read as CSV.
+/// Sources from a file, by its extension: `.csv` (sources/csv.h), or `.mesh`, `.meshb`, `.sol` or
+/// `.solb`, a mesh or a solution that has the other beside it under the same name
+/// (sources/medit.h). A pipe without an extension is read as CSV.
 /// Throws InputError for anything that cannot be read as such.
 std::vector<PointSource> read_sources(const std::filesystem::path& path);
 

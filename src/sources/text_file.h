@@ -16,6 +16,13 @@ constexpr std::size_t largest_stream = std::size_t{1} << 30;
 /// it goes on for `largest` bytes beyond the size that it has on disk (a pipe has none).
 std::string read_text_file(const std::filesystem::path& path, std::size_t largest = largest_stream);
 
+/// The same for a file that may be binary: as it is, zero bytes and all.
+std::string read_binary_file(const std::filesystem::path& path,
+                             std::size_t largest = largest_stream);
+
+/// What was read as binary, as a text: throws as read_text_file does.
+std::string_view text_in(std::string_view bytes, const std::filesystem::path& path);
+
 /// "name:line", for messages.
 std::string place(const std::filesystem::path& path, std::size_t line);
 

@@ -11,6 +11,7 @@
 #include "sources/files.h"
 #include "sources/medit.h"
 #include "sources/text_file.h"
+#include "sources/write_medit_sources.h"
 
 using namespace controlspace;
 

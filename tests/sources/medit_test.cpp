@@ -66,7 +66,7 @@ TEST_CASE("tensors in another order are found out") {
 }
 
 TEST_CASE("errors of a mesh name the place") {
-    CHECK_THAT(error_in_mesh(""), Contains("MeshVersionFormatted"));
+    CHECK_THAT(error_in_mesh(""), Contains("m.mesh is empty"));
     CHECK_THAT(error_in_mesh("solid stl\n"), Contains("m.mesh:1"));
     CHECK_THAT(error_in_mesh("MeshVersionFormatted 9\n"), Contains("1 to 4"));
     CHECK_THAT(error_in_mesh("MeshVersionFormatted two\n"), Contains("'two' instead of a count"));

@@ -5,9 +5,11 @@
 
 #include "data_folder.h"
 #include "sources/files.h"
+#include "sources/write_medit_sources.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -53,6 +55,21 @@ TEST_CASE("the extension tells the format, in any case of letters") {
     CHECK(read_sources(scratch.file("A.CSV", "x,y,z,h\n0,0,0,1\n")).size() == 1);
 }
 
+TEST_CASE("a mesh and its solution may be of either form") {
+    const ScratchDirectory scratch;
+    const auto sources = read_sources(samples / "polar.mesh");
+    write_medit_sources(scratch.path() / "b.meshb", sources);
+    fs::copy(samples / "polar.mesh", scratch.path() / "a.mesh");
+    fs::rename(scratch.path() / "b.solb", scratch.path() / "a.solb");
+    for (const char* name : {"a.mesh", "a.solb"}) {
+        const auto mixed = read_sources(scratch.path() / name);
+        REQUIRE(mixed.size() == sources.size());
+        for (std::size_t i = 0; i < mixed.size(); ++i) {
+            REQUIRE(mixed[i].metric.matrix().isApprox(sources[i].metric.matrix(), 1e-12));
+        }
+    }
+}
+
 TEST_CASE("files that are not sources are named with the remedy") {
     const ScratchDirectory scratch;
     const auto error = [](const std::filesystem::path& path) {
@@ -64,7 +81,7 @@ TEST_CASE("files that are not sources are named with the remedy") {
     CHECK_THAT(error(scratch.file("bom.csv", "\xEF\xBB\xBF")), Contains("bom.csv is empty"));
     CHECK_THAT(error(scratch.file("a.txt", "x")), Contains("name a .csv"));
     CHECK_THAT(error(scratch.file("a", "x")), Contains("name a .csv"));
-    CHECK_THAT(error(scratch.file("a.meshb", "x")), Contains("binary Medit"));
+    CHECK_THAT(error(scratch.file("lonely.meshb", "x")), Contains("lonely.solb is missing"));
     CHECK_THAT(error(scratch.file("lonely.mesh", "MeshVersionFormatted 2\n")),
                Contains("lonely.sol is missing"));
     CHECK_THAT(error(scratch.file("alone.sol", "MeshVersionFormatted 2\n")),

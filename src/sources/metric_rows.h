@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "metric/metric.h"
+
+namespace controlspace {
+
+/// Takes the rows of another program's field, one after the other: sizes, or Riemannian metrics.
+/// Tensors that are not positive definite are counted, since their share tells whether the order of
+/// the components is right: read in a wrong order, nine of ten are not.
+class MetricRows {
+public:
+    /// `order` is how the file is taken to order components, for the message: "xx xy yy xz yz zz".
+    MetricRows(const std::filesystem::path& path, std::string_view order)
+        : path_(path), order_(order) {}
+
+    /// Throws InputError where `h` is no length.
+    void add_size(double h);
+    void add_tensor(const Metric& riemannian);
+
+    /// Metrics of all rows. Throws InputError that names the first tensor that is not positive
+    /// definite, and says how many are not.
+    std::vector<Metric> take();
+
+private:
+    std::filesystem::path path_;
+    std::string order_;
+    std::vector<Metric> metrics_;
+    std::size_t wrong_ = 0;
+    std::size_t first_wrong_ = 0;  ///< its number, from 1
+};
+
+}  // namespace controlspace
