@@ -1,5 +1,6 @@
 #include "sources/text_file.h"
 
+#include <signal.h>
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
@@ -18,7 +19,14 @@ namespace {
 class Pipe {
 public:
     Pipe(const std::filesystem::path& path, const std::string& text)
-        : made_(::mkfifo(path.c_str(), 0600)), writer_([=] { std::ofstream(path) << text; }) {}
+        : made_(::mkfifo(path.c_str(), 0600)), writer_([=] {
+              // A reader that stops before the end must not end the program.
+              sigset_t broken_pipe;
+              sigemptyset(&broken_pipe);
+              sigaddset(&broken_pipe, SIGPIPE);
+              pthread_sigmask(SIG_BLOCK, &broken_pipe, nullptr);
+              std::ofstream(path) << text;
+          }) {}
     ~Pipe() { writer_.join(); }
     bool is_made() const { return made_ == 0; }
 
