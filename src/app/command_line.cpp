@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <map>
 
+#include "app/file_commands.h"
+#include "app/setting_options.h"
 #include "error.h"
 #include "export/metric_grids.h"
 #include "mesh/mesh_settings.h"
@@ -14,61 +15,6 @@
 
 namespace controlspace {
 namespace {
-
-/// Words given for each setting, by key.
-using WordsByKey = std::map<std::string_view, std::vector<std::string>>;
-
-std::string type_name(ValueType type, std::size_t at_most) {
-    const std::string name = type == ValueType::number         ? "NUMBER"
-                             : type == ValueType::whole_number ? "COUNT"
-                                                               : "TEXT";
-    return at_most == 0   ? name + ",..."
-           : at_most == 1 ? name
-                          : fmt::format("{} x {}", name, at_most);
-}
-
-/// One option for each setting; `defaults` shows in the help.
-template <class Target>
-void add_options(CLI::App& command, std::span<const Setting<Target>> settings,
-                 const Target& defaults, const std::string& group, WordsByKey& given,
-                 std::span<const std::string_view> without = {}) {
-    const auto is_left_out = [&](const Setting<Target>& setting) {
-        return std::find(without.begin(), without.end(), setting.key) != without.end();
-    };
-    for (const Setting<Target>& setting : settings) {
-        if (is_left_out(setting)) continue;
-        std::string help(setting.help);
-        const SettingValues values = setting.get(defaults);
-        if (!values.empty()) help += fmt::format(" (default: {})", to_string(values));
-        CLI::Option* option =
-            command.add_option(option_name(setting.key), given[setting.key], help);
-        // Lists are written with commas: with blanks they would swallow the study file.
-        option->delimiter(',')->group(group);
-        option->option_text(type_name(setting.type, setting.at_most));
-        if (setting.at_most > 1) {
-            option->expected(static_cast<int>(setting.at_most));
-        } else {
-            option->allow_extra_args(false);
-        }
-    }
-    for (const Setting<Target>& setting : settings) {
-        for (const Setting<Target>& other : settings) {
-            const bool related = other.same_as == setting.key ||
-                                 (!other.same_as.empty() && other.same_as == setting.same_as);
-            if (!related || other.key == setting.key) continue;
-            command.get_option(option_name(other.key))
-                ->excludes(command.get_option(option_name(setting.key)));
-        }
-    }
-}
-
-GivenSettings given_settings(const WordsByKey& given) {
-    GivenSettings settings;
-    for (const auto& [key, words] : given) {
-        if (!words.empty()) settings.emplace_back(key, words);
-    }
-    return settings;
-}
 
 #ifdef CONTROLSPACE_OPENVDB
 CLI::App* add_export(CLI::App& app, ExportOptions& options, WordsByKey& given) {
@@ -249,6 +195,16 @@ Command parse_command_line(int argc, const char* const* argv) {
     const CLI::App* mesh_command = add_mesh(app, mesh_options, given_to_mesh);
 #endif
 
+    InfoOptions info_options;
+    WordsByKey given_to_info;
+    const CLI::App* info_command = add_info(app, info_options, given_to_info);
+    ConvertOptions convert_options;
+    WordsByKey given_to_convert;
+    const CLI::App* convert_command = add_convert(app, convert_options, given_to_convert);
+    QueryOptions query_options;
+    WordsByKey given_to_query;
+    const CLI::App* query_command = add_query(app, query_options, given_to_query);
+
     CLI::App* list =
         app.add_subcommand("list", "Name the structures, splits, laws, schedules and references");
 
@@ -263,6 +219,18 @@ Command parse_command_line(int argc, const char* const* argv) {
     }
     if (list->parsed()) return ListCommand{};
     if (report->parsed()) return report_options;
+    if (info_command->parsed()) {
+        info_options.settings = given_settings(given_to_info);
+        return info_options;
+    }
+    if (convert_command->parsed()) {
+        convert_options.settings = given_settings(given_to_convert);
+        return convert_options;
+    }
+    if (query_command->parsed()) {
+        query_options.settings = given_settings(given_to_query);
+        return query_options;
+    }
     if (paper->parsed()) {
         paper_options.command_line = command_line_text(argc, argv);
         return paper_options;

@@ -4,9 +4,12 @@
 #include <variant>
 
 #include "app/compare.h"
+#include "app/convert.h"
 #include "app/export.h"
+#include "app/info.h"
 #include "app/mesh.h"
 #include "app/paper.h"
+#include "app/query.h"
 #include "app/report.h"
 
 namespace controlspace {
@@ -17,8 +20,9 @@ struct TextCommand {
 };
 struct ListCommand {};
 
-using Command = std::variant<TextCommand, ListCommand, CompareOptions, ExportOptions, MeshOptions,
-                             PaperOptions, ReportOptions>;
+using Command =
+    std::variant<TextCommand, ListCommand, CompareOptions, ExportOptions, MeshOptions, PaperOptions,
+                 ReportOptions, InfoOptions, ConvertOptions, QueryOptions>;
 
 /// Throws InputError for what is no valid command line.
 Command parse_command_line(int argc, const char* const* argv);

@@ -8,9 +8,9 @@
 
 #include "app/input_study.h"
 #include "app/peak_memory.h"
+#include "app/readers.h"
 #include "app/standard_output.h"
 #include "app/threads.h"
-#include "app/vdb_readers.h"
 #include "baselines/catalogue.h"
 #include "error.h"
 #include "study/names.h"
@@ -19,19 +19,6 @@
 
 namespace controlspace {
 namespace {
-
-Case only_case(const Study& study) {
-    const std::vector<Case> cases = expand(study, structures());
-    if (cases.size() > 1) {
-        throw InputError(
-            fmt::format("{} cases, the first two {} ({}) and {} ({}): a file takes one, choose by "
-                        "--structures, --splits, --tau and so on",
-                        cases.size(), structure_label(cases[0]), setting_label(cases[0]),
-                        structure_label(cases[1]), setting_label(cases[1])));
-    }
-    require_set_voxels(cases.front());
-    return cases.front();
-}
 
 std::vector<VdbNote> notes_of(const Case& c, const std::string& command_line) {
     return {{"structure", structure_label(c)},
@@ -65,7 +52,7 @@ void export_vdb(const ExportOptions& options) {
     const Study study = study_of_input(options.input, options.settings);
     const auto threads = limit_threads(study.threads);
     const Case c = only_case(study);
-    const Workload workload = make_workload(study, c.sources, vdb_readers());
+    const Workload workload = make_workload(study, c.sources, file_readers());
     Measures unused;
     const auto space = make_and_fill(study, c, entry_of(c, structures()), workload, unused, {});
 

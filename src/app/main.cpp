@@ -39,6 +39,12 @@ int main(int argc, char** argv) {
             return paper(*paper_options) ? 0 : 3;
         } else if (const auto* report_options = std::get_if<ReportOptions>(&command)) {
             report(*report_options);
+        } else if (const auto* info_options = std::get_if<InfoOptions>(&command)) {
+            info(*info_options);
+        } else if (const auto* convert_options = std::get_if<ConvertOptions>(&command)) {
+            convert(*convert_options);
+        } else if (const auto* query_options = std::get_if<QueryOptions>(&command)) {
+            query(*query_options);
 #ifdef CONTROLSPACE_OPENVDB
         } else if (const auto* export_options = std::get_if<ExportOptions>(&command)) {
             export_vdb(*export_options);

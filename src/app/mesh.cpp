@@ -11,6 +11,7 @@
 
 #include "app/input_study.h"
 #include "app/peak_memory.h"
+#include "app/readers.h"
 #include "app/signals.h"
 #include "app/standard_output.h"
 #include "app/threads.h"
@@ -59,7 +60,7 @@ bool is_anisotropic(std::span<const Metric> metrics) {
 }
 
 Reference make_shared_reference(const Study& study, const Case& c, Mesher asked) {
-    Reference reference{c, make_workload(study, c.sources), nullptr, {}, asked};
+    Reference reference{c, make_workload(study, c.sources, file_readers()), nullptr, {}, asked};
     reference.field = make_reference(study, c, reference.workload);
     reference.probes =
         make_probes(*reference.field, cell_centres(reference.workload.domain, study.probe_grid));

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "app/paper.h"
+#include "app/readers.h"
 #include "app/signals.h"
 #include "app/standard_output.h"
-#include "app/vdb_readers.h"
 #include "baselines/catalogue.h"
 #include "error.h"
 #include "report/results_section.h"
@@ -35,7 +35,7 @@ void add_fields_or_warn(Report& page, const ReportedResults& reported) {
     std::optional<SampledFields> fields;
     try {
         fields =
-            sample_fields(results.study, first_setting(results.rows), structures(), vdb_readers());
+            sample_fields(results.study, first_setting(results.rows), structures(), file_readers());
     } catch (const InputError& error) {
         page.add_paragraph(fmt::format("Fields are not shown: {}.", error.what()));
         spdlog::warn("{}: fields are not shown: {}", reported.folder.string(), error.what());

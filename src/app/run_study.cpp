@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "app/progress.h"
+#include "app/readers.h"
 #include "app/standard_output.h"
 #include "app/threads.h"
-#include "app/vdb_readers.h"
 #include "baselines/catalogue.h"
 #include "study/results.h"
 #include "study/run.h"
@@ -51,7 +51,7 @@ std::vector<Row> run_and_record(PreparedStudy prepared, const ResultsFolder& fol
 FinishedStudy run_study(const Study& study, const std::string& command_line, bool quiet,
                         Interruption& interruption) {
     const auto threads = limit_threads(study.threads);
-    PreparedStudy prepared(study, structures(), vdb_readers());
+    PreparedStudy prepared(study, structures(), file_readers());
 
     Provenance provenance = current_provenance();
     provenance.command_line = command_line;

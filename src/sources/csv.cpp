@@ -47,7 +47,7 @@ constexpr Columns columns_of(Form form) {
 constexpr std::size_t absent = names.size();
 
 struct Header {
-    std::vector<std::size_t> name_of_column;  ///< index into `names`, by column of the file
+    std::vector<std::size_t> name_of_column;  ///< index into `names`, or absent, by column
     Form form = Form::isotropic;
 };
 
@@ -71,17 +71,37 @@ public:
     Parser(std::string_view text, const std::filesystem::path& path) : rest_(text), path_(path) {}
 
     std::vector<PointSource> sources() {
-        std::string_view line;
-        if (!next_line(line))
-            throw InputError(path_.string() + " holds no sources: add some lines");
-        read_header(line);
         std::vector<PointSource> all;
-        while (next_line(line)) all.push_back(source(line));
-        if (all.empty()) throw InputError(path_.string() + " holds no sources: add some lines");
+        for_each_row("sources", [&](const Values& v) {
+            all.push_back(
+                {{v[0], v[1], v[2]}, metric(std::span(v).subspan(columns_of(header_.form).first))});
+        });
+        return all;
+    }
+
+    std::vector<Point> points() {
+        positions_alone_ = true;
+        std::vector<Point> all;
+        for_each_row("points", [&](const Values& v) { all.emplace_back(v[0], v[1], v[2]); });
         return all;
     }
 
 private:
+    using Values = std::array<double, names.size()>;  ///< 0 where there is no such column
+
+    template <class Take>
+    void for_each_row(std::string_view what, Take&& take_row) {
+        std::string_view line;
+        bool any = false;
+        if (next_line(line)) {
+            read_header(line);
+            for (; next_line(line); any = true) take_row(values(line));
+        }
+        if (!any) {
+            throw InputError(fmt::format("{} holds no {}: add some lines", path_.string(), what));
+        }
+    }
+
     // The next line that says something.
     bool next_line(std::string_view& line) {
         while (!rest_.empty()) {
@@ -101,6 +121,10 @@ private:
             for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 'a' - 'A') : c;
             const auto index = static_cast<std::size_t>(
                 std::find(names.begin(), names.end(), name) - names.begin());
+            if (positions_alone_ && index >= position_columns.count) {
+                header_.name_of_column.push_back(absent);
+                continue;
+            }
             if (index == absent) {
                 fail(fmt::format("column {} is none of {}: name the columns in the first line",
                                  quote(name), fmt::join(names, " ")));
@@ -118,6 +142,7 @@ private:
         if (const auto name = missing(position_columns)) {
             fail(fmt::format("column '{}' is missing: give x, y and z", *name));
         }
+        if (positions_alone_) return;
         std::optional<Form> form;
         for (const Form f : {Form::isotropic, Form::tensor, Form::frame}) {
             const Columns c = columns_of(f);
@@ -136,8 +161,8 @@ private:
         header_.form = *form;
     }
 
-    PointSource source(std::string_view line) {
-        std::array<double, names.size()> value{};
+    Values values(std::string_view line) {
+        Values value{};
         const std::size_t columns = header_.name_of_column.size();
         std::string_view rest = line;
         for (std::size_t column = 0; column < columns; ++column) {
@@ -148,6 +173,7 @@ private:
             }
             const std::string_view field = trimmed(take(rest, ','));
             const std::size_t name = header_.name_of_column[column];
+            if (name == absent) continue;
             if (!parse_number(field, value[name])) {
                 fail(fmt::format("{} = {} is not a number", names[name], quote(field)));
             }
@@ -156,8 +182,7 @@ private:
                                  value[name], largest_magnitude));
             }
         }
-        return {{value[0], value[1], value[2]},
-                metric(std::span(value).subspan(columns_of(header_.form).first))};
+        return value;
     }
 
     Metric metric(std::span<const double> v) {
@@ -212,6 +237,7 @@ private:
     std::string_view rest_;
     const std::filesystem::path& path_;
     std::size_t line_number_ = 0;
+    bool positions_alone_ = false;
     Header header_;
 };
 
@@ -224,6 +250,10 @@ std::vector<PointSource> read_csv_sources(const std::filesystem::path& path) {
 std::vector<PointSource> parse_csv_sources(std::string_view text,
                                            const std::filesystem::path& path) {
     return Parser(text, path).sources();
+}
+
+std::vector<Point> read_csv_points(const std::filesystem::path& path) {
+    return Parser(read_text_file(path), path).points();
 }
 
 void write_csv_sources(const std::filesystem::path& path, std::span<const PointSource> sources) {

@@ -24,6 +24,9 @@ std::vector<PointSource> read_csv_sources(const std::filesystem::path& path);
 std::vector<PointSource> parse_csv_sources(std::string_view text,
                                            const std::filesystem::path& path);
 
+/// Places as a table of the same kind: columns x, y and z; others are passed over.
+std::vector<Point> read_csv_points(const std::filesystem::path& path);
+
 /// Writes sources that read back to the last bit, with column h where all are isotropic and as
 /// tensors otherwise. The file appears whole or not at all; throws InputError if it cannot.
 void write_csv_sources(const std::filesystem::path& path, std::span<const PointSource> sources);

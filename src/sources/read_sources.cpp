@@ -12,12 +12,6 @@ namespace controlspace {
 
 namespace {
 
-std::string lower_case_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 'a' - 'A') : c;
-    return extension;
-}
-
 // The file beside `path` with the first of two other extensions that is there.
 std::filesystem::path partner(const std::filesystem::path& path, const char* likely,
                               const char* possible) {
@@ -31,6 +25,12 @@ std::filesystem::path partner(const std::filesystem::path& path, const char* lik
 }
 
 }  // namespace
+
+std::string lower_case_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 'a' - 'A') : c;
+    return extension;
+}
 
 std::vector<PointSource> read_sources(const std::filesystem::path& path) {
     std::error_code ignored;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "sources/point_source.h"
@@ -12,5 +13,8 @@ namespace controlspace {
 /// (sources/medit.h). A pipe without an extension is read as CSV.
 /// Throws InputError for anything that cannot be read as such.
 std::vector<PointSource> read_sources(const std::filesystem::path& path);
+
+/// The ending of a file's name, which tells its format, in small letters: ".csv".
+std::string lower_case_extension(const std::filesystem::path& path);
 
 }  // namespace controlspace

@@ -17,9 +17,13 @@ namespace controlspace {
 namespace {
 
 [[noreturn]] void fail_without_reader(const std::filesystem::path& file) {
-    throw InputError(fmt::format(
-        "{}: this program is built without OpenVDB, which reads .vdb files", file.string()));
+    throw InputError(
+        fmt::format("{}: this program is built without the library that reads {} files",
+                    file.string(), lower_case_extension(file)));
 }
+
+/// Formats that other libraries read.
+bool needs_reader(const std::string& ending) { return ending == ".vdb"; }
 
 std::vector<PointSource> make_sources(const SourcesChoice& s, std::uint64_t seed,
                                       const FileReaders& readers) {
@@ -41,9 +45,7 @@ std::vector<PointSource> make_sources(const SourcesChoice& s, std::uint64_t seed
         case SourcesKind::file:
             break;
     }
-    if (!is_vdb(s)) return read_sources(s.file);
-    if (!readers.vdb_sources) fail_without_reader(s.file);
-    return readers.vdb_sources(s);
+    return read_source_file(s, readers);
 }
 
 AnalyticField field_of(const FieldChoice& choice, const FileReaders& readers) {
@@ -69,6 +71,15 @@ double finest_length_of(const Workload& workload) {
 }
 
 }  // namespace
+
+std::vector<PointSource> read_source_file(const SourcesChoice& choice, const FileReaders& readers) {
+    const std::string ending = lower_case_extension(choice.file);
+    if (const auto reader = readers.sources.find(ending); reader != readers.sources.end()) {
+        return reader->second(choice);
+    }
+    if (needs_reader(ending)) fail_without_reader(choice.file);
+    return read_sources(choice.file);
+}
 
 Workload make_workload(const Study& study, const SourcesChoice& choice,
                        const FileReaders& readers) {

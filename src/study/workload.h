@@ -20,6 +20,10 @@ struct Workload {
     double finest_length = 0;  ///< smallest length that any source or the field asks for
 };
 
+/// The sources of the file that `choice`, of kind `file`, names: by the reader of its ending, or
+/// by read_sources. Throws InputError.
+std::vector<PointSource> read_source_file(const SourcesChoice& choice, const FileReaders& readers);
+
 /// Samples or reads the sources, and checks that each lies in the domain, and the domain where the
 /// field is defined. Throws InputError.
 Workload make_workload(const Study& study, const SourcesChoice& choice,

@@ -1,4 +1,4 @@
-#include "app/vdb_readers.h"
+#include "app/readers.h"
 
 #ifdef CONTROLSPACE_OPENVDB
 #include "export/read_vdb_field.h"
@@ -7,10 +7,10 @@
 
 namespace controlspace {
 
-FileReaders vdb_readers() {
+FileReaders file_readers() {
     FileReaders readers;
 #ifdef CONTROLSPACE_OPENVDB
-    readers.vdb_sources = [](const SourcesChoice& choice) {
+    readers.sources[".vdb"] = [](const SourcesChoice& choice) {
         return read_vdb_sources(choice.file, choice.surface);
     };
     readers.vdb_field = [](const FieldChoice& choice) {

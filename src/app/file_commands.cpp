@@ -1,0 +1,66 @@
+#include "app/file_commands.h"
+
+#include "study/vdb_settings.h"
+
+namespace controlspace {
+namespace {
+
+constexpr const char* formats =
+    "Sources: .csv; .mesh, .sol, .meshb or .solb, the other beside it; or a surface in a .vdb";
+
+void add_reading_options(CLI::App& command, WordsByKey& given) {
+    constexpr std::string_view fields[] = {"field_file", "field_grid", "field_density_sizes"};
+    add_options(command, vdb_settings(), Study{}, "Settings of reading", given, fields);
+}
+
+}  // namespace
+
+CLI::App* add_info(CLI::App& app, InfoOptions& options, WordsByKey& given) {
+    CLI::App* command = app.add_subcommand(
+        "info", "Say what a file of sources holds: how many, their sizes, how fast they grow");
+    command->add_option("FILE", options.input, formats)->required()->option_text("FILE");
+    add_reading_options(*command, given);
+    return command;
+}
+
+CLI::App* add_convert(CLI::App& app, ConvertOptions& options, WordsByKey& given) {
+    CLI::App* command =
+        app.add_subcommand("convert", "Write the sources of one file in another format");
+    command->add_option("IN", options.input, formats)->required()->option_text("FILE");
+    command
+        ->add_option(
+            "OUT", options.output,
+            "File to write: .csv, or .mesh, .sol, .meshb or .solb, which makes both a mesh "
+            "and a solution")
+        ->required()
+        ->option_text("FILE");
+    add_reading_options(*command, given);
+    return command;
+}
+
+CLI::App* add_query(CLI::App& app, QueryOptions& options, WordsByKey& given) {
+    CLI::App* command =
+        app.add_subcommand("query", "Write what one structure answers at given places");
+    command->add_option("INPUT", options.input, "Study file (.toml) or file of sources")
+        ->required()
+        ->option_text("FILE");
+    command->add_option("POINTS", options.points, "Places: columns x, y and z, others passed over")
+        ->required()
+        ->option_text("FILE.csv");
+    command
+        ->add_option("-o,--output", options.output,
+                     "File to write: x,y,z,h, or the components of M; left out: standard output")
+        ->option_text("FILE.csv");
+    constexpr std::string_view without[] = {"name",       "access_points",   "access_repeats",
+                                            "probe_grid", "fine_probe_grid", "output",
+                                            "reference"};
+    Run defaults;
+    defaults.structures = {"K_oL"};
+    defaults.splits = {SplitRule::middle};
+    add_options(*command, run_settings(), defaults, "Settings of the structure (a value each)",
+                given, without);
+    add_options(*command, study_settings(), Study{}, "Settings of the study", given, without);
+    return command;
+}
+
+}  // namespace controlspace

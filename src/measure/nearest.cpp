@@ -1,0 +1,97 @@
+#include "measure/nearest.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace controlspace {
+namespace {
+
+/// A balanced kd-tree without nodes of its own: the middle of a range of `order_` is its root, what
+/// lies before it is on the low side.
+class PointTree {
+public:
+    explicit PointTree(std::span<const Point> points)
+        : points_(points), order_(points.size()), axes_(points.size()) {
+        std::iota(order_.begin(), order_.end(), NodeIndex{0});
+        build(0, order_.size());
+    }
+
+    using Found = std::vector<std::pair<double, NodeIndex>>;  ///< squared distance, point
+
+    /// The points nearest to `x` but not there, ascending.
+    void find(const Point& x, std::size_t most, Found& found) const {
+        found.clear();
+        look_into(0, order_.size(), x, most, found);
+        std::sort_heap(found.begin(), found.end());
+    }
+
+private:
+    void build(std::size_t first, std::size_t last) {
+        if (last - first < 2) return;
+        Point low = points_[order_[first]], high = low;
+        for (std::size_t i = first; i < last; ++i) {
+            low = low.cwiseMin(points_[order_[i]]);
+            high = high.cwiseMax(points_[order_[i]]);
+        }
+        Axis axis = 0;
+        (high - low).maxCoeff(&axis);
+        const auto begin = order_.begin();
+        const std::size_t middle = first + (last - first) / 2;
+        std::nth_element(
+            begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(middle),
+            begin + static_cast<std::ptrdiff_t>(last),
+            [&](NodeIndex i, NodeIndex j) { return points_[i][axis] < points_[j][axis]; });
+        axes_[middle] = static_cast<std::uint8_t>(axis);
+        build(first, middle);
+        build(middle + 1, last);
+    }
+
+    void look_into(std::size_t first, std::size_t last, const Point& x, std::size_t most,
+                   Found& found) const {
+        if (first == last) return;
+        const std::size_t middle = first + (last - first) / 2;
+        const Point& p = points_[order_[middle]];
+        const double squared = (p - x).squaredNorm();
+        const bool full = found.size() == most;
+        if (squared > 0 && (!full || squared < found.front().first)) {
+            if (full) {
+                std::pop_heap(found.begin(), found.end());
+                found.pop_back();
+            }
+            found.emplace_back(squared, order_[middle]);
+            std::push_heap(found.begin(), found.end());
+        }
+        const double beyond = x[axes_[middle]] - p[axes_[middle]];
+        const auto look = [&](bool low) {
+            low ? look_into(first, middle, x, most, found)
+                : look_into(middle + 1, last, x, most, found);
+        };
+        look(beyond < 0);
+        if (found.size() < most || beyond * beyond < found.front().first) look(beyond >= 0);
+    }
+
+    std::span<const Point> points_;
+    std::vector<NodeIndex> order_;
+    std::vector<std::uint8_t> axes_;  ///< of cuts, by place in order_
+};
+
+}  // namespace
+
+NodeGraph nearest_neighbours(std::span<const Point> points, std::size_t most) {
+    const PointTree tree(points);
+    NodeGraph graph;
+    graph.positions.assign(points.begin(), points.end());
+    graph.first.push_back(0);
+    PointTree::Found found;
+    for (const Point& x : points) {
+        tree.find(x, most, found);
+        for (const auto& [squared, i] : found) graph.neighbours.push_back(i);
+        graph.first.push_back(graph.neighbours.size());
+    }
+    return graph;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,65 @@
+#include "measure/source_summary.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "gradation/grade.h"
+#include "measure/nearest.h"
+
+namespace controlspace {
+namespace {
+
+constexpr std::size_t near_sources = 6;
+
+bool precedes(const Point& a, const Point& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+}
+
+std::size_t count_contradictory(std::span<const PointSource> sources) {
+    std::vector<std::size_t> order(sources.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+        return precedes(sources[i].position, sources[j].position);
+    });
+    std::size_t count = 0;
+    for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
+        bool all_alike = true;
+        for (last = first + 1; last < order.size(); ++last) {
+            const PointSource& source = sources[order[last]];
+            if (source.position != sources[order[first]].position) break;
+            all_alike = all_alike && source.metric == sources[order[first]].metric;
+        }
+        if (!all_alike) count += last - first;
+    }
+    return count;
+}
+
+}  // namespace
+
+SourceSummary summarise(std::span<const PointSource> sources) {
+    SourceSummary summary;
+    summary.count = sources.size();
+    summary.finest = finest_length(sources);
+    summary.contradictory = count_contradictory(sources);
+    summary.extent = {sources.front().position, sources.front().position};
+    std::vector<Point> positions;
+    std::vector<Metric> metrics;
+    double sum = 0;
+    for (const auto& [position, metric] : sources) {
+        positions.push_back(position);
+        metrics.push_back(metric);
+        summary.extent.low = summary.extent.low.cwiseMin(position);
+        summary.extent.high = summary.extent.high.cwiseMax(position);
+        summary.isotropic += is_isotropic(metric) ? 1 : 0;
+        const auto lengths = eigen_frame(metric).lengths;
+        summary.coarsest = std::max(summary.coarsest, lengths[2]);
+        summary.anisotropy = std::max(summary.anisotropy, lengths[2] / lengths[0]);
+        sum += mean_length(metric);
+    }
+    summary.mean = sum / static_cast<double>(sources.size());
+    summary.gradation =
+        largest_gradation(nearest_neighbours(positions, near_sources), metrics, GradationLaw::cone);
+    return summary;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "geometry/box.h"
+#include "sources/point_source.h"
+
+namespace controlspace {
+
+/// What sources ask for, at a glance.
+struct SourceSummary {
+    std::size_t count = 0;
+    std::size_t isotropic = 0;      ///< how many ask for the same length in every direction
+    std::size_t contradictory = 0;  ///< how many lie where another one asks for something else
+    Box extent;                     ///< the smallest box around them
+    double finest = 0;              ///< smallest length in any direction
+    double coarsest = 0;            ///< largest length in any direction
+    double mean = 0;                ///< mean over the sources of their mean length
+    double anisotropy = 1;          ///< largest ratio of a source's largest length to its smallest
+    /// Largest gradation ratio, under the cone law, from a source to one of the six nearest that
+    /// are not at its very place: a field graded with less takes something off the sources.
+    double gradation = 1;
+};
+
+/// Throws InputError for no sources.
+SourceSummary summarise(std::span<const PointSource> sources);
+
+}  // namespace controlspace

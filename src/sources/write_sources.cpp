@@ -1,0 +1,24 @@
+#include "sources/write_sources.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "error.h"
+#include "sources/csv.h"
+#include "sources/read_sources.h"
+#include "sources/write_medit_sources.h"
+
+namespace controlspace {
+
+void write_sources(const std::filesystem::path& path, std::span<const PointSource> sources) {
+    const std::string ending = lower_case_extension(path);
+    if (ending == ".csv") return write_csv_sources(path, sources);
+    if (ending == ".mesh" || ending == ".sol" || ending == ".meshb" || ending == ".solb") {
+        return write_medit_sources(path, sources);
+    }
+    throw InputError(
+        fmt::format("{}: name a .csv, .mesh, .sol, .meshb or .solb to write", path.string()));
+}
+
+}  // namespace controlspace
