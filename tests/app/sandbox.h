@@ -11,6 +11,8 @@
 #include <sstream>
 #include <string>
 
+#include "scratch_directory.h"
+
 namespace controlspace {
 
 namespace fs = std::filesystem;
@@ -21,36 +23,18 @@ struct Outcome {
     std::string err;
 };
 
-inline std::string file_text(const fs::path& path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-}
-
 /// A folder of its own for each test, removed at the end.
 class Sandbox {
 public:
-    explicit Sandbox(const std::string& name)
-        : folder_(fs::temp_directory_path() / ("controlspace-app-" + name)) {
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    ~Sandbox() {
-        std::error_code ignored;
-        fs::remove_all(folder_, ignored);
-    }
-    Sandbox(const Sandbox&) = delete;
-    Sandbox& operator=(const Sandbox&) = delete;
+    explicit Sandbox(const std::string& name) : folder_("app-" + name) {}
 
     fs::path operator/(const std::string& name) const { return folder_ / name; }
 
-    void write(const std::string& name, const std::string& text) const {
-        std::ofstream(folder_ / name) << text;
-    }
+    void write(const std::string& name, const std::string& text) const { folder_.file(name, text); }
 
     /// Runs `controlspace ARGUMENTS` in this folder, after `before` in the same shell.
     Outcome run(const std::string& arguments, const std::string& before = "") const {
-        const std::string command = "cd '" + folder_.string() + "' || exit 9; " + before +
+        const std::string command = "cd '" + folder_.path().string() + "' || exit 9; " + before +
                                     "'" CONTROLSPACE_APP "' " + arguments + " >.out 2>.err";
         const int status = std::system(command.c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, file_text(folder_ / ".out"),
@@ -58,7 +42,7 @@ public:
     }
 
 private:
-    fs::path folder_;
+    ScratchDirectory folder_;
 };
 
 inline std::size_t lines(const std::string& text) {

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
-#include "report/picture_folder.h"
+#include "scratch_directory.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;
@@ -23,15 +23,15 @@ Figure line_figure() {
 }  // namespace
 
 TEST_CASE("a figure is drawn as a whole SVG and PNG, beside its script") {
-    const PictureFolder folder("drawn");
+    const ScratchDirectory folder;
     Gnuplot().draw(line_figure(), folder.path());
     CHECK_THAT(file_bytes(folder.path() / "line.svg"), Contains("<svg") && Contains("</svg>"));
     CHECK(file_bytes(folder.path() / "line.png").substr(1, 3) == "PNG");
-    CHECK(folder.names() == std::vector<std::string>{"line.gp", "line.png", "line.svg"});
+    CHECK(names_in(folder.path()) == std::vector<std::string>{"line.gp", "line.png", "line.svg"});
 }
 
 TEST_CASE("no text of a figure is a command to gnuplot or to the shell") {
-    const PictureFolder folder("hostile");
+    const ScratchDirectory folder;
     const std::string hostile =
         "`touch a` $(touch b) 'system(\"touch c\") \n!touch d\n\\n @m %s {/x}";
     Figure figure = line_figure();
@@ -40,12 +40,12 @@ TEST_CASE("no text of a figure is a command to gnuplot or to the shell") {
     figure.commands =
         "plot $points using 1:2:3 with labels title " + gnuplot_string(hostile) + "\n";
     Gnuplot().draw(figure, folder.path());
-    CHECK(folder.names() == std::vector<std::string>{"line.gp", "line.png", "line.svg"});
+    CHECK(names_in(folder.path()) == std::vector<std::string>{"line.gp", "line.png", "line.svg"});
     CHECK_THAT(file_bytes(folder.path() / "line.svg"), Contains("`touch a`"));
 }
 
 TEST_CASE("a figure that gnuplot cannot draw, or not whole, is refused with its words") {
-    const PictureFolder folder("broken");
+    const ScratchDirectory folder;
     Figure figure = line_figure();
     figure.commands = "plot $nothing\n";
     CHECK_THROWS_WITH(Gnuplot().draw(figure, folder.path()),
@@ -55,7 +55,7 @@ TEST_CASE("a figure that gnuplot cannot draw, or not whole, is refused with its 
 }
 
 TEST_CASE("a folder that is full gives no picture") {
-    const PictureFolder folder("full");
+    const ScratchDirectory folder;
     std::filesystem::create_symlink("/dev/full", folder.path() / "line.svg");
     CHECK_THROWS_WITH(Gnuplot().draw(line_figure(), folder.path()), Contains("is the disk full?"));
 }

@@ -3,11 +3,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "error.h"
+#include "scratch_directory.h"
 #include "study/results.h"
 #include "study/row_json.h"
 #include "study/sample_rows.h"
@@ -34,24 +34,6 @@ std::vector<Row> some_rows() {
     return rows;
 }
 
-class Folder {
-public:
-    explicit Folder(const std::string& name)
-        : path(std::filesystem::temp_directory_path() / ("controlspace-read-" + name)) {
-        std::filesystem::remove_all(path);
-        std::filesystem::create_directories(path);
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path, ignored);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-
-    void write(const std::string& text) const { std::ofstream(path / "results.json") << text; }
-    const std::filesystem::path path;
-};
-
 Json valid_json() {
     return Json::parse(results_json(current_provenance(), Study{}, some_rows(), true));
 }
@@ -59,7 +41,7 @@ Json valid_json() {
 }  // namespace
 
 TEST_CASE("what was written is read back") {
-    const Folder folder("whole");
+    const ScratchDirectory folder;
     Study study;
     study.name = "mine";
     study.seed = 7;
@@ -73,9 +55,9 @@ TEST_CASE("what was written is read back") {
     rows[1].setting.sources.field.kind = FieldKind::ugawg_polar_1;
     Provenance provenance = current_provenance();
     provenance.command_line = "controlspace compare";
-    ResultsFolder(folder.path).write(provenance, study, rows, false);
+    ResultsFolder(folder.path()).write(provenance, study, rows, false);
 
-    const StoredResults read = read_results(folder.path);
+    const StoredResults read = read_results(folder.path());
     CHECK_FALSE(read.complete);
     CHECK(read.study.name == "mine");
     CHECK(read.study.seed == 7);
@@ -92,31 +74,32 @@ TEST_CASE("what was written is read back") {
 }
 
 TEST_CASE("results of before grids, samplings and fields had settings are read") {
-    const Folder folder("older");
+    const ScratchDirectory folder;
     Json json = valid_json();
     for (Json& row : json["rows"]) {
-        for (const char* field : {"voxel", "voxel_factor", "prune_delta", "target_delta", "sampling", "field"})
+        for (const char* field :
+             {"voxel", "voxel_factor", "prune_delta", "target_delta", "sampling", "field"})
             row.erase(field);
     }
-    folder.write(json.dump());
-    const StoredResults read = read_results(folder.path);
+    folder.file("results.json", json.dump());
+    const StoredResults read = read_results(folder.path());
     REQUIRE(read.rows.size() == some_rows().size());
     CHECK(read.rows[0].setting == some_rows()[0].setting);
     CHECK_FALSE(read.rows[1].setting.voxel);
 }
 
 TEST_CASE("what is no file of results is refused by name") {
-    const Folder folder("refused");
-    CHECK_THROWS_WITH(read_results(folder.path / "none"), Contains("results.json"));
-    CHECK_THROWS_AS(read_results(folder.path), InputError);
+    const ScratchDirectory folder;
+    CHECK_THROWS_WITH(read_results(folder.path() / "none"), Contains("results.json"));
+    CHECK_THROWS_AS(read_results(folder.path()), InputError);
     const auto refuse = [&](const std::string& text, const std::string& expected) {
-        folder.write(text);
-        CHECK_THROWS_AS(read_results(folder.path), InputError);
-        CHECK_THROWS_WITH(read_results(folder.path),
+        folder.file("results.json", text);
+        CHECK_THROWS_AS(read_results(folder.path()), InputError);
+        CHECK_THROWS_WITH(read_results(folder.path()),
                           Contains("results.json: ") && Contains(expected));
     };
-    folder.write("");
-    CHECK_THROWS_WITH(read_results(folder.path), Contains("results.json is empty"));
+    folder.file("results.json", "");
+    CHECK_THROWS_WITH(read_results(folder.path()), Contains("results.json is empty"));
     refuse("{", "parse error");
     refuse("[]", "not written by this program");
     refuse("{}", "not written by this program");
@@ -145,12 +128,12 @@ TEST_CASE("what is no file of results is refused by name") {
 }
 
 TEST_CASE("a row that is no row is refused by its number") {
-    const Folder folder("rows");
+    const ScratchDirectory folder;
     const auto refuse = [&](const char* field, const Json& value, const std::string& expected) {
         Json json = valid_json();
         json["rows"][1][field] = value;
-        folder.write(json.dump());
-        CHECK_THROWS_WITH(read_results(folder.path), Contains("row 2: ") && Contains(expected));
+        folder.file("results.json", json.dump());
+        CHECK_THROWS_WITH(read_results(folder.path()), Contains("row 2: ") && Contains(expected));
     };
     refuse("split", "s_X", "unknown split 's_X'");
     refuse("law", "none", "unknown law 'none'");
@@ -161,12 +144,12 @@ TEST_CASE("a row that is no row is refused by its number") {
     refuse("t_access_ns_random_samples", Json::array(), "no samples");
     Json json = valid_json();
     json["rows"][1].erase("delta_R_max");
-    folder.write(json.dump());
-    CHECK_THROWS_WITH(read_results(folder.path), Contains("row 2: ") && Contains("delta_R_max"));
+    folder.file("results.json", json.dump());
+    CHECK_THROWS_WITH(read_results(folder.path()), Contains("row 2: ") && Contains("delta_R_max"));
 }
 
 TEST_CASE("an infinite error is read back; what old results do not have is unknown") {
-    const Folder folder("errors");
+    const ScratchDirectory folder;
     auto rows = some_rows();
     rows[0].measures->accuracy.max = std::numeric_limits<double>::infinity();
     rows[0].measures->accuracy.coarser_max = std::numeric_limits<double>::infinity();
@@ -175,8 +158,8 @@ TEST_CASE("an infinite error is read back; what old results do not have is unkno
          {"coarser_max", "coarser_share", "coarser_fine_max", "coarser_fine_share"}) {
         json["rows"][1].erase(field);
     }
-    folder.write(json.dump());
-    const StoredResults read = read_results(folder.path);
+    folder.file("results.json", json.dump());
+    const StoredResults read = read_results(folder.path());
     CHECK(std::isinf(read.rows[0].measures->accuracy.max));
     CHECK(std::isinf(read.rows[0].measures->accuracy.coarser_max));
     CHECK(read.rows[0].measures->accuracy.coarser_share == 0.06);

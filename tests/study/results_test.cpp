@@ -2,11 +2,10 @@
 
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "error.h"
+#include "scratch_directory.h"
 #include "study/row_json.h"
 #include "study/sample_rows.h"
 
@@ -114,20 +113,6 @@ std::vector<std::string> take_record(std::string_view& csv) {
     return fields;
 }
 
-std::string file_text(const std::filesystem::path& path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
-}
-
-/// An empty folder of its own for each test.
-std::filesystem::path empty_folder(const std::string& name) {
-    const auto folder = std::filesystem::temp_directory_path() / ("controlspace-" + name);
-    std::filesystem::remove_all(folder);
-    std::filesystem::create_directories(folder);
-    return folder;
-}
-
 }  // namespace
 
 TEST_CASE("a row has exactly the documented fields, measured or not") {
@@ -228,7 +213,7 @@ TEST_CASE("results.json says who made it and what was asked for") {
 }
 
 TEST_CASE("a folder of results holds whole files only, and is not written over") {
-    const auto root = empty_folder("results");
+    const ScratchDirectory root;
     const auto path = root / "a" / "b";
     {
         const ResultsFolder folder(path);
@@ -238,24 +223,20 @@ TEST_CASE("a folder of results holds whole files only, and is not written over")
     CHECK(Json::parse(file_text(path / "results.json"))["rows"].size() == 1);
     CHECK_THAT(file_text(path / "summary.md"), Contains("17.07 / 17.07"));
     CHECK_THAT(file_text(path / "results.csv"), Contains("K_L,s_L,1.0,"));
-    std::size_t files = 0;
-    for ([[maybe_unused]] const auto& file : std::filesystem::directory_iterator(path)) ++files;
-    CHECK(files == 5);  // with paper.md, since the row is one of the paper's
+    // paper.md, since the row is one of the paper's.
+    CHECK(names_in(path) == std::vector<std::string>{"paper.md", "pareto.json", "results.csv",
+                                                     "results.json", "summary.md"});
     CHECK_THROWS_WITH(ResultsFolder(path), Contains("holds results already"));
     CHECK_THROWS_AS(ResultsFolder(path / "results.csv"), InputError);
     CHECK_THROWS_AS(ResultsFolder(path / "results.csv" / "c"), InputError);
-    std::filesystem::remove_all(root);
 }
 
 TEST_CASE("a file of results that cannot be written leaves nothing behind") {
-    const auto root = empty_folder("unwritable");
-    const ResultsFolder folder(root);
+    const ScratchDirectory root;
+    const ResultsFolder folder(root.path());
     std::filesystem::create_directories(root / "results.json" / "in the way");
     CHECK_THROWS_WITH(folder.write({}, Study{}, {}, false), Contains("results.json: it is"));
-    std::size_t files = 0;
-    for ([[maybe_unused]] const auto& file : std::filesystem::directory_iterator(root)) ++files;
-    CHECK(files == 1);
-    std::filesystem::remove_all(root);
+    CHECK(names_in(root.path()) == std::vector<std::string>{"results.json"});
 }
 
 TEST_CASE("results go to the folder asked for, or to one named after study and time") {
