@@ -146,6 +146,12 @@ Command parse_command_line(int argc, const char* const* argv) {
         published->excludes(compare->get_option(name));
     }
     add_options(*compare, study_settings(), Study{}, "Settings of the study", given);
+    compare
+        ->add_option("--resume", options.resume,
+                     "Go on with an interrupted run, whose results lie in FOLDER: the study and "
+                     "settings must be the same, but for --output")
+        ->option_text("FOLDER")
+        ->excludes(compare->get_option("--output"));
     compare->add_flag("--quiet", options.quiet, "No progress on standard error");
     compare->footer(statuses);
 

@@ -13,6 +13,7 @@ struct CompareOptions {
     std::filesystem::path study_file;  ///< empty: the built-in study
     GivenSettings settings;            ///< they override the study file in all of its runs
     bool as_published = false;
+    std::filesystem::path resume;  ///< folder of an interrupted run to go on with, or empty
     bool quiet = false;
     std::string command_line;
 };

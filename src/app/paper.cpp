@@ -51,7 +51,7 @@ void add(Findings& findings, const Study& study, std::span<const Row> rows,
 fs::path run(Findings& findings, const Study& study, const PaperOptions& options,
              Interruption& interruption) {
     const FinishedStudy finished =
-        run_study(study, options.command_line, options.quiet, interruption);
+        run_study(study, {options.command_line, options.quiet, {}}, interruption);
     add(findings, finished.study, finished.rows, finished.provenance, true);
     return finished.folder;
 }

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "app/progress.h"
@@ -11,18 +12,19 @@
 #include "app/standard_output.h"
 #include "app/threads.h"
 #include "baselines/catalogue.h"
+#include "error.h"
 #include "study/results.h"
+#include "study/resume.h"
 #include "study/run.h"
 
 namespace controlspace {
 namespace {
 
-/// Runs `prepared` and keeps what lies in `folder` up to date.
-std::vector<Row> run_and_record(PreparedStudy prepared, const ResultsFolder& folder,
-                                const Provenance& provenance, Progress& progress,
-                                Interruption& interruption) {
+/// Runs `prepared`, whose rows come after `rows`, and keeps what lies in `folder` up to date.
+std::vector<Row> run_and_record(PreparedStudy prepared, std::vector<Row> rows,
+                                const ResultsFolder& folder, const Provenance& provenance,
+                                Progress& progress, Interruption& interruption) {
     const Study study = prepared.study();
-    std::vector<Row> rows;
     const auto record = [&](bool complete) {
         const auto whole = interruption.postpone();
         folder.write(provenance, study, rows, complete);
@@ -46,27 +48,46 @@ std::vector<Row> run_and_record(PreparedStudy prepared, const ResultsFolder& fol
     return rows;
 }
 
+/// What an interrupted run of `study` left in `folder`: its provenance and its rows.
+std::pair<Provenance, std::vector<Row>> go_on_from(const std::filesystem::path& folder,
+                                                   const Study& study, const Provenance& now) {
+    const StoredResults earlier = read_results(folder);
+    try {
+        return {earlier.provenance,
+                rows_to_go_on_from(earlier, study, expand(study, structures()), now)};
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("--resume {}: {}", folder.string(), error.what()));
+    }
+}
+
 }  // namespace
 
-FinishedStudy run_study(const Study& study, const std::string& command_line, bool quiet,
-                        Interruption& interruption) {
+FinishedStudy run_study(const Study& study, const RunOptions& options, Interruption& interruption) {
     const auto threads = limit_threads(study.threads);
-    PreparedStudy prepared(study, structures(), file_readers());
-
+    const bool resumes = !options.resume.empty();
     Provenance provenance = current_provenance();
-    provenance.command_line = command_line;
-    const ResultsFolder folder(results_path(study, provenance));
+    provenance.command_line = options.command_line;
+    std::vector<Row> rows;
+    if (resumes) std::tie(provenance, rows) = go_on_from(options.resume, study, provenance);
+    PreparedStudy prepared(study, structures(), file_readers(), rows.size());
+
+    const ResultsFolder folder = resumes ? ResultsFolder::existing(options.resume)
+                                         : ResultsFolder(results_path(study, provenance));
     Progress progress(prepared.cases(), prepared.source_counts(),
-                      quiet ? ProgressStyle::none : progress_style_of_stderr());
+                      options.quiet ? ProgressStyle::none : progress_style_of_stderr());
+    const std::size_t finished_before = rows.size();
     const Interruption::Watch watch(
         interruption, [&] { progress.show(); },
         [&] {
             progress.finish();
-            print_error(fmt::format("controlspace: interrupted: {} of {} cases are in {}\n",
-                                    progress.finished(), progress.count(), folder.path().string()));
+            print_error(fmt::format(
+                "controlspace: interrupted: {} of {} cases are in {}; to go on, run the same "
+                "command with --resume {} in place of --output\n",
+                finished_before + progress.finished(), finished_before + progress.count(),
+                folder.path().string(), folder.path().string()));
         });
-    std::vector<Row> rows =
-        run_and_record(std::move(prepared), folder, provenance, progress, interruption);
+    rows = run_and_record(std::move(prepared), std::move(rows), folder, provenance, progress,
+                          interruption);
     return {study, std::move(rows), provenance, folder.path()};
 }
 

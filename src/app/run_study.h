@@ -19,9 +19,14 @@ struct FinishedStudy {
     std::filesystem::path folder;  ///< where its results are
 };
 
-/// Runs `study` on all structures that it names, with progress on standard error unless `quiet`,
+struct RunOptions {
+    std::string command_line;
+    bool quiet = false;
+    std::filesystem::path resume;  ///< folder of an interrupted run to go on with, or empty
+};
+
+/// Runs `study` on all structures that it names, with progress on standard error unless quiet,
 /// and keeps its folder of results up to date. Throws InputError for what cannot be run.
-FinishedStudy run_study(const Study& study, const std::string& command_line, bool quiet,
-                        Interruption& interruption);
+FinishedStudy run_study(const Study& study, const RunOptions& options, Interruption& interruption);
 
 }  // namespace controlspace

@@ -163,6 +163,12 @@ ResultsFolder::ResultsFolder(std::filesystem::path folder) : folder_(std::move(f
     make_results_folder(folder_, "results.json");
 }
 
+ResultsFolder ResultsFolder::existing(std::filesystem::path folder) {
+    ResultsFolder results;
+    results.folder_ = std::move(folder);
+    return results;
+}
+
 void ResultsFolder::write(const Provenance& provenance, const Study& study,
                           std::span<const Row> rows, bool complete) const {
     replace_file(folder_ / "results.json", results_json(provenance, study, rows, complete));

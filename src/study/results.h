@@ -51,6 +51,8 @@ public:
     /// Makes the folder with its parents. Throws InputError if that fails, if results lie there
     /// already, or if it cannot be written to.
     explicit ResultsFolder(std::filesystem::path folder);
+    /// The folder of a run that goes on: it is there, and what it holds is replaced.
+    static ResultsFolder existing(std::filesystem::path folder);
 
     const std::filesystem::path& path() const { return folder_; }
 
@@ -60,6 +62,7 @@ public:
                bool complete) const;
 
 private:
+    ResultsFolder() = default;
     std::filesystem::path folder_;
 };
 

@@ -161,8 +161,9 @@ Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry
 }
 
 PreparedStudy::PreparedStudy(Study study, std::span<const CatalogueEntry> catalogue,
-                             const FileReaders& readers)
+                             const FileReaders& readers, std::size_t finished)
     : study_(std::move(study)), catalogue_(catalogue), cases_(expand(study_, catalogue)) {
+    cases_.erase(cases_.begin(), cases_.begin() + static_cast<std::ptrdiff_t>(finished));
     for (std::size_t i = 0; i < cases_.size(); ++i) {
         const Case& c = cases_[i];
         const bool known =

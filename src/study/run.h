@@ -24,9 +24,10 @@ struct StudyObserver {
 /// A study made ready to run: every case checked, every set of sources at hand.
 class PreparedStudy {
 public:
-    /// Throws InputError for anything about the study that cannot be run.
+    /// Without the `finished` cases that come first. Throws InputError for anything about the study
+    /// that cannot be run.
     PreparedStudy(Study study, std::span<const CatalogueEntry> catalogue,
-                  const FileReaders& readers = {});
+                  const FileReaders& readers = {}, std::size_t finished = 0);
 
     const Study& study() const { return study_; }
     std::span<const Case> cases() const { return cases_; }

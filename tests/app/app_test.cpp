@@ -224,8 +224,44 @@ TEST_CASE("Ctrl-C leaves whole files and status 130") {
                 "exec sh -c 'echo $$ >pid; exec \"$@\"' sh ");
     INFO(outcome.err);
     CHECK(outcome.status == 130);
-    CHECK_THAT(outcome.err, Contains("interrupted: 0 of 12 cases are in out"));
+    CHECK_THAT(
+        outcome.err,
+        Contains("interrupted: 0 of 12 cases are in out; to go on, run the same command with "
+                 "--resume out"));
     const auto json = nlohmann::json::parse(file_text(box / "out" / "results.json"));
     CHECK(json["complete"] == false);
     CHECK(std::distance(fs::directory_iterator(box / "out"), fs::directory_iterator()) == 4);
+}
+
+TEST_CASE("an interrupted study goes on where it was") {
+    const Sandbox box("resume");
+    const std::string study =
+        "compare --h 0.3 --structures K_L,K_oL,K_oV --splits s_L --law cone --access-points 100 "
+        "--access-repeats 1 --fine-probe-grid 9 ";
+    REQUIRE(box.run(study + "--output out").status == 0);
+    const auto results = [&] { return nlohmann::json::parse(file_text(box / "out/results.json")); };
+    const auto whole = results();
+    REQUIRE(whole["rows"].size() == 3);
+    auto part = whole;
+    part["complete"] = false;
+    part["rows"].erase(1);
+    part["rows"].erase(1);
+    box.write("out/results.json", part.dump());
+
+    check_refused(box.run(study + "--seed 2 --resume out"), "--resume out: seed differs");
+    check_refused(box.run(study + "--resume none"), "none/results.json");
+    check_refused(box.run(study + "--resume out --output two"), "--resume");
+    const Outcome outcome = box.run(study + "--resume out");
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    CHECK(lines(outcome.err) == 2);  // the cases that were left
+    const auto joined = results();
+    CHECK(joined["complete"] == true);
+    REQUIRE(joined["rows"].size() == 3);
+    CHECK(joined["rows"][0] == whole["rows"][0]);
+    for (const char* field : {"structure", "delta_R_max", "elements"}) {
+        for (std::size_t i = 0; i < 3; ++i)
+            CHECK(joined["rows"][i][field] == whole["rows"][i][field]);
+    }
+    check_refused(box.run(study + "--resume out"), "complete");
 }
