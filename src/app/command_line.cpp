@@ -146,6 +146,8 @@ Command parse_command_line(int argc, const char* const* argv) {
         published->excludes(compare->get_option(name));
     }
     add_options(*compare, study_settings(), Study{}, "Settings of the study", given);
+    compare->add_flag("--dry-run", options.dry_run,
+                      "Only list the cases, with estimates of time and memory from small trials");
     compare
         ->add_option("--resume", options.resume,
                      "Go on with an interrupted run, whose results lie in FOLDER: the study and "

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 
+#include "app/readers.h"
 #include "app/run_study.h"
 #include "app/signals.h"
 #include "app/standard_output.h"
+#include "baselines/catalogue.h"
+#include "study/forecast.h"
 #include "study/study_file.h"
 #include "study/tables.h"
 
@@ -41,6 +44,11 @@ Study study_of(const CompareOptions& options) {
 }
 
 bool compare(const CompareOptions& options) {
+    if (options.dry_run) {
+        const PreparedStudy prepared(study_of(options), structures(), file_readers());
+        print(forecast_text(prepared, forecast(prepared)));
+        return true;
+    }
     Interruption interruption;
     const FinishedStudy finished = run_study(
         study_of(options), {options.command_line, options.quiet, options.resume}, interruption);

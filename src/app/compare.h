@@ -14,6 +14,7 @@ struct CompareOptions {
     GivenSettings settings;            ///< they override the study file in all of its runs
     bool as_published = false;
     std::filesystem::path resume;  ///< folder of an interrupted run to go on with, or empty
+    bool dry_run = false;          ///< say what would be run
     bool quiet = false;
     std::string command_line;
 };

@@ -26,12 +26,6 @@ ProgressStyle progress_style_of_stderr() {
     return isatty(STDERR_FILENO) != 0 ? ProgressStyle::live : ProgressStyle::lines;
 }
 
-std::string duration_text(double seconds) {
-    const auto s = static_cast<long long>(seconds);
-    return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60)
-                    : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
-}
-
 Progress::Progress(std::span<const Case> cases, std::span<const std::size_t> source_counts,
                    ProgressStyle style)
     : count_(cases.size()), style_(style), estimate_(cases, source_counts) {}

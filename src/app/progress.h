@@ -22,9 +22,6 @@ enum class ProgressStyle {
 /// live on a terminal, lines elsewhere.
 ProgressStyle progress_style_of_stderr();
 
-/// "0:07", "12:30", "1:02:03".
-std::string duration_text(double seconds);
-
 /// Progress of a study on standard error: which case, what runs, elapsed and estimated time.
 /// May be shown by one thread while another reports.
 class Progress {

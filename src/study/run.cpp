@@ -24,11 +24,6 @@ void tell(const std::function<Callback>& callback, const Arguments&... arguments
     if (callback) callback(arguments...);
 }
 
-/// The cases whose probes are the same: same sources, same reference, same g_r.
-bool share_probes(const Case& a, const Case& b) {
-    return a.sources == b.sources && a.reference == b.reference && a.g_r == b.g_r;
-}
-
 /// Probes that are needed again by later cases.
 class ProbeCache {
 public:
@@ -78,6 +73,10 @@ void follow_at_nodes(ControlSpace& space, const MetricField& field) {
 }
 
 }  // namespace
+
+bool share_probes(const Case& a, const Case& b) {
+    return a.sources == b.sources && a.reference == b.reference && a.g_r == b.g_r;
+}
 
 const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> catalogue) {
     return *std::find_if(catalogue.begin(), catalogue.end(),
@@ -177,9 +176,15 @@ PreparedStudy::PreparedStudy(Study study, std::span<const CatalogueEntry> catalo
     }
 }
 
-PreparedStudy::SharedSources& PreparedStudy::sources_of(const Case& c) {
+const CatalogueEntry& PreparedStudy::entry(const Case& c) const { return entry_of(c, catalogue_); }
+
+const PreparedStudy::SharedSources& PreparedStudy::sources_of(const Case& c) const {
     return *std::find_if(sources_.begin(), sources_.end(),
                          [&](const SharedSources& shared) { return shared.choice == c.sources; });
+}
+
+PreparedStudy::SharedSources& PreparedStudy::sources_of(const Case& c) {
+    return const_cast<SharedSources&>(std::as_const(*this).sources_of(c));
 }
 
 void PreparedStudy::run(const StudyObserver& observer) && {
@@ -194,7 +199,7 @@ void PreparedStudy::run(const StudyObserver& observer) && {
                 tell(observer.phase_started, "reference field");
                 return make_reference_probes(study_, c, shared.workload);
             });
-            const CatalogueEntry& entry = entry_of(c, catalogue_);
+            const CatalogueEntry& entry = this->entry(c);
             const std::string shortfall =
                 choose_equal_setting(study_, row.setting, entry, shared.workload, probes);
             row.measures = run_case(study_, row.setting, entry, shared.workload, probes, observer);

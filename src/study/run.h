@@ -31,6 +31,9 @@ public:
 
     const Study& study() const { return study_; }
     std::span<const Case> cases() const { return cases_; }
+    /// Of a case of the study: its structure, and its sources, until `run` has freed them.
+    const CatalogueEntry& entry(const Case& c) const;
+    const Workload& workload(const Case& c) const { return sources_of(c).workload; }
     /// Number of sources of each case.
     std::span<const std::size_t> source_counts() const { return source_counts_; }
 
@@ -46,6 +49,7 @@ private:
         std::size_t last_use = 0;  ///< index of a case
     };
 
+    const SharedSources& sources_of(const Case& c) const;
     SharedSources& sources_of(const Case& c);
 
     Study study_;
@@ -54,6 +58,9 @@ private:
     std::vector<SharedSources> sources_;
     std::vector<std::size_t> source_counts_;
 };
+
+/// The cases whose probes are the same: same sources, same reference, same g_r.
+bool share_probes(const Case& a, const Case& b);
 
 /// The entry of the structure of `c`, which `expand` has found in `catalogue`.
 const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> catalogue);

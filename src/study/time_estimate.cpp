@@ -1,8 +1,16 @@
 #include "study/time_estimate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace controlspace {
+
+std::string duration_text(double seconds) {
+    const auto s = static_cast<long long>(seconds);
+    return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60)
+                    : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+}
 
 TimeEstimate::TimeEstimate(std::span<const Case> cases,
                            std::span<const std::size_t> source_counts) {

@@ -11,6 +11,9 @@
 
 namespace controlspace {
 
+/// "0:07", "12:30", "1:02:03".
+std::string duration_text(double seconds);
+
 /// How long the rest of a study may take, from what finished cases took. The work of a case is
 /// taken to grow with sources / tau, at a pace that is each structure's own once it is known.
 class TimeEstimate {

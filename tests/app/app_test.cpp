@@ -265,3 +265,13 @@ TEST_CASE("an interrupted study goes on where it was") {
     }
     check_refused(box.run(study + "--resume out"), "complete");
 }
+
+TEST_CASE("a dry run lists the cases and writes nothing") {
+    const Sandbox box("dry");
+    const Outcome outcome = box.run("compare --h 0.1 --splits s_L --dry-run --output out");
+    INFO(outcome.err);
+    CHECK(outcome.status == 0);
+    CHECK_THAT(outcome.out, Contains("K_oLA") && Contains("cases: about "));
+    CHECK_FALSE(fs::exists(box / "out"));
+    check_refused(box.run("compare --h -1 --dry-run"), "h");
+}

@@ -1,0 +1,157 @@
+#include "study/forecast.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "measure/access_time.h"
+#include "study/text_table.h"
+#include "study/time_estimate.h"
+
+namespace controlspace {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The `count` sources nearest to the one in the middle of the list: as close together as all are.
+std::vector<PointSource> patch_of(std::vector<PointSource> sources, std::size_t count) {
+    if (count >= sources.size()) return sources;
+    const Point centre = sources[sources.size() / 2].position;
+    std::ranges::nth_element(
+        sources, sources.begin() + static_cast<std::ptrdiff_t>(count), {},
+        [&](const PointSource& source) { return (source.position - centre).squaredNorm(); });
+    sources.resize(count);
+    return sources;
+}
+
+struct Trial {
+    double seconds = 0;        ///< to make and grade the structure
+    double bytes = 0;          ///< of the structure
+    double query_seconds = 0;  ///< for each place
+};
+
+Trial try_case(const PreparedStudy& prepared, const Case& c, const Workload& workload) {
+    Measures ignored;
+    const auto start = std::chrono::steady_clock::now();
+    const auto space = make_and_fill(prepared.study(), c, prepared.entry(c), workload, ignored, {});
+    Trial trial{seconds_since(start), static_cast<double>(space->footprint().bytes_total()), 0};
+    const auto places = random_points(workload.domain, 1000, 1);
+    trial.query_seconds = 1e-9 * access_time(*space, places, 3).median_ns();
+    return trial;
+}
+
+Trial scaled(const Trial& trial, double factor) {
+    return {factor * trial.seconds, factor * trial.bytes, trial.query_seconds};
+}
+
+/// A grid of one voxel size, by one with fewer voxels.
+Trial forecast_grid(const PreparedStudy& prepared, Case c, const Workload& workload) {
+    constexpr double voxels_of_trial = 1e5;
+    const SpaceOptions options = space_options(prepared.study(), c, workload);
+    const double voxel = options.voxel > 0 ? options.voxel : options.l_min * options.finest_length;
+    const double voxels = workload.domain.edges().prod() / std::pow(voxel, 3);
+    const double factor = std::max(1.0, voxels / voxels_of_trial);
+    c.voxel = voxel * std::cbrt(factor);
+    const Trial whole = scaled(try_case(prepared, c, workload), factor);
+    // Grids that outgrow the cap become coarser.
+    const auto cap = static_cast<double>(options.max_bytes);
+    return whole.bytes > cap ? scaled(whole, cap / whole.bytes) : whole;
+}
+
+/// Anything else, from two patches of sources: what they have in common does not grow.
+Trial forecast_patches(const PreparedStudy& prepared, const Case& c, const Workload& workload) {
+    constexpr std::size_t sources_of_trial = 4000;
+    Workload patch = workload;
+    patch.sources = patch_of(workload.sources, sources_of_trial);
+    const Trial large = try_case(prepared, c, patch);
+    if (patch.sources.size() == workload.sources.size()) return large;
+    patch.sources = patch_of(patch.sources, sources_of_trial / 2);
+    const Trial small = try_case(prepared, c, patch);
+    const double steps =
+        static_cast<double>(workload.sources.size() - sources_of_trial) / (sources_of_trial / 2.0);
+    const auto further = [&](double Trial::*of) {
+        return large.*of + steps * std::max(0.0, large.*of - small.*of);
+    };
+    return {further(&Trial::seconds), further(&Trial::bytes), large.query_seconds};
+}
+
+/// Seconds that the reference takes for all probes.
+double probes_seconds(const Study& study, const Case& c, const Workload& workload, double probes) {
+    constexpr std::size_t places = 200;
+    auto start = std::chrono::steady_clock::now();
+    const auto field = make_reference(study, c, workload);
+    const double making = seconds_since(start);
+    start = std::chrono::steady_clock::now();
+    make_probes(*field, random_points(workload.domain, places, 1));
+    return making + seconds_since(start) * probes / static_cast<double>(places);
+}
+
+double cubed(int n) { return std::pow(n, 3); }
+
+}  // namespace
+
+std::vector<std::optional<Forecast>> forecast(const PreparedStudy& prepared) {
+    const Study& study = prepared.study();
+    const double probes = cubed(study.probe_grid) + cubed(study.fine_probe_grid);
+    const double timed =
+        study.access_repeats * (static_cast<double>(study.access_points) + cubed(study.probe_grid));
+    std::vector<std::optional<Forecast>> forecasts;
+    for (std::size_t i = 0; i < prepared.cases().size(); ++i) {
+        const Case& c = prepared.cases()[i];
+        const Workload& workload = prepared.workload(c);
+        std::optional<Forecast> forecast;
+        const bool only_running_tells =
+            c.target_delta || c.equal_delta || c.equal_memory || has_field(c.sources);
+        if (!only_running_tells) {
+            try {
+                const CatalogueEntry& entry = prepared.entry(c);
+                const Trial trial = entry.has_voxels && !entry.has_levels
+                                        ? forecast_grid(prepared, c, workload)
+                                        : forecast_patches(prepared, c, workload);
+                forecast = {trial.seconds + trial.query_seconds * (timed + probes), trial.bytes};
+                const auto earlier = prepared.cases().first(i);
+                if (std::ranges::none_of(earlier,
+                                         [&](const Case& e) { return share_probes(e, c); })) {
+                    forecast->seconds += probes_seconds(study, c, workload, probes);
+                }
+            } catch (const std::exception&) {
+                // The row will say why.
+                forecast.reset();
+            }
+        }
+        forecasts.push_back(forecast);
+    }
+    return forecasts;
+}
+
+std::string forecast_text(const PreparedStudy& prepared,
+                          const std::vector<std::optional<Forecast>>& forecasts) {
+    TextTable table;
+    table.columns = {{"case"},     {"structure", Align::left}, {"sources"}, {"about s"},
+                     {"about MB"}, {"setting", Align::left}};
+    double seconds = 0;
+    double most_bytes = 0;
+    std::size_t unknown = 0;
+    for (std::size_t i = 0; i < forecasts.size(); ++i) {
+        const Case& c = prepared.cases()[i];
+        const auto& f = forecasts[i];
+        table.rows.push_back({fmt::format("{}", i + 1), structure_label(c),
+                              fmt::format("{}", prepared.source_counts()[i]),
+                              f ? fmt::format("{:.2g}", f->seconds) : "–",
+                              f ? fmt::format("{:.3g}", 1e-6 * f->bytes) : "–", setting_label(c)});
+        seconds += f ? f->seconds : 0;
+        most_bytes = std::max(most_bytes, f ? f->bytes : 0);
+        unknown += f ? 0 : 1;
+    }
+    std::string text = render(table, TableStyle::terminal);
+    text += fmt::format("\n{} cases: about {} in all, structures of up to {:.2g} MB",
+                        forecasts.size(), duration_text(seconds), 1e-6 * most_bytes);
+    if (unknown > 0) text += fmt::format("; {} of them (–) not counted", unknown);
+    return text + "\n";
+}
+
+}  // namespace controlspace
