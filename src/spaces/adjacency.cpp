@@ -20,6 +20,20 @@ NodeGraph graph_from_pairs(std::size_t nodes,
     return graph;
 }
 
+NodeGraph vertex_graph(std::span<const Corners> leaves, std::vector<Point> positions,
+                       Neighbourhood neighbourhood) {
+    std::vector<std::pair<NodeIndex, NodeIndex>> pairs;
+    pairs.reserve((neighbourhood == Neighbourhood::all ? 28 : 12) * leaves.size());
+    for (const Corners& corners : leaves) {
+        for_each_pair(corners, neighbourhood,
+                      [&](NodeIndex a, NodeIndex b) { pairs.emplace_back(a, b); });
+    }
+    NodeGraph graph = graph_from_pairs(positions.size(), pairs);
+    sort_rows_uniquely(graph);
+    graph.positions = std::move(positions);
+    return graph;
+}
+
 void sort_rows_uniquely(NodeGraph& graph) {
     const auto begin = graph.neighbours.begin();
     auto end = begin;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gradation/node_graph.h"
+#include "spaces/corners.h"
 #include "spaces/topology.h"
 #include "spaces/touching_pairs.h"
 
@@ -119,6 +120,10 @@ NodeGraph graph_from_pairs(std::size_t nodes,
 
 /// Removes repeated neighbours and sorts each row.
 void sort_rows_uniquely(NodeGraph& graph);
+
+/// The vertices of leaves as a graph.
+NodeGraph vertex_graph(std::span<const Corners> leaves, std::vector<Point> positions,
+                       Neighbourhood neighbourhood);
 
 /// The leaves of a tree as a graph: nodes at their centres, in depth-first order.
 struct LeafGraph {

@@ -31,6 +31,10 @@ AdaptationReport ControlSpace::adapt(const AdaptationGoal& goal) {
     return report;
 }
 
+std::unique_ptr<ControlSpace> ControlSpace::freeze(Precision) const {
+    throw InputError("this structure cannot be frozen: choose a tree that holds metrics");
+}
+
 void require_valid(const PointSource& source, std::size_t index, const Box& domain) {
     if (!domain.contains(source.position)) {
         throw InputError(fmt::format(

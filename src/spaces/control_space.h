@@ -12,6 +12,7 @@
 #include "gradation/grade.h"
 #include "gradation/node_graph.h"
 #include "metric/metric.h"
+#include "metric/stored_metric.h"
 #include "sources/point_source.h"
 #include "spaces/adaptation.h"
 #include "spaces/insertion.h"
@@ -77,6 +78,12 @@ public:
     /// voxels. What could not be reached is said in the report. Throws InputError as GoalField
     /// does, and where the structure would outgrow its cap on memory; the field is undefined then.
     virtual AdaptationReport adapt(const AdaptationGoal& goal);
+
+    /// A compact copy that answers alike but is only read: insert, assign, grade and adapt throw
+    /// InputError. With doubles it answers the same bits; floats round the metrics by 6e-8. Throws
+    /// InputError for a structure that has no such form, and for metrics that floats cannot hold
+    /// (beyond 1e-38 to 3e38, or with lengths in ratios above about 1e4).
+    virtual std::unique_ptr<ControlSpace> freeze(Precision precision) const;
 
     virtual const Box& domain() const = 0;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "spaces/adapt_tree.h"
 #include "spaces/adjacency.h"
 #include "spaces/control_space.h"
+#include "spaces/frozen_tree.h"
 #include "spaces/leaf_changes.h"
 #include "spaces/node_metrics.h"
 #include "spaces/space_options.h"
@@ -27,7 +29,9 @@ namespace controlspace {
 //   is_fitted(leaf)                      is known to follow the field at the leaf's own places
 //   learn(leaf, x, field)                follows the field better at x, or returns false
 //   control_nodes(tree, neighbourhood), assign(tree, metrics), describe(footprint), shrink_to_fit()
-// and, if it holds metrics, for sources that come after gradation:
+// and, if it holds metrics,
+//   freeze(tree, precision)              see ControlSpace::freeze
+// and for sources that come after gradation:
 //   release_asked(), keep_asked(metrics) see NodeMetrics; from the latter on, changes are recorded
 //   is_regradable(), regrade(tree, past) whether changes are few and isotropic; grades those alone
 
@@ -88,6 +92,11 @@ public:
     }
     static constexpr bool is_fitted(LeafIndex) { return false; }
     static constexpr bool learn(LeafIndex, const Point&, const GoalField&) { return false; }
+
+    template <class Node>
+    std::unique_ptr<ControlSpace> freeze(const Topology<Node>& tree, Precision precision) const {
+        return freeze_leaves(tree, metrics_.field(), precision);
+    }
 
     bool keeps_asked() const { return metrics_.keeps_asked(); }
     std::vector<Metric> release_asked() { return metrics_.release_asked(); }

@@ -25,6 +25,29 @@ namespace controlspace {
 Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, const Vector& t,
                     double largest_growth);
 
+/// The same at the nearest place to `place` in a leaf of a tree, with this box; nowhere coarser
+/// than the cone of the leaf's own metric of this slope (g_r - 1). metric_at(i) is the metric of
+/// leaf i.
+template <class Node, class MetricAt>
+Metric triquadratic_in(const Topology<Node>& tree, LeafIndex leaf, const Box& box,
+                       const Point& place, double slope, MetricAt&& metric_at) {
+    const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
+    std::array<Point, 6> beyond;
+    std::array<LeafIndex, 6> neighbours;
+    for (int face = 0; face < 6; ++face) {
+        Point& y = beyond[static_cast<std::size_t>(face)];
+        y = x;
+        step_across(tree.domain(), box, face, y);
+    }
+    tree.find(beyond, neighbours);
+    std::array<Metric, 6> across;
+    for (std::size_t face = 0; face < 6; ++face) across[face] = metric_at(neighbours[face]);
+    const Metric own = metric_at(leaf);
+    const Vector v = x - box.centre();
+    const Vector t = 2 * v.cwiseQuotient(box.edges());
+    return triquadratic(own, across, t, 1 + slope * metric_length(own, v));
+}
+
 /// One metric a leaf, interpolated with those of the neighbours when asked (K_Li). Nowhere coarser
 /// than the cone of the leaf's own metric at its centre, with the ratio of the gradation to come:
 /// on the paper's sphere that leaves its Tables 1 and 4 as they are, and divides δ_S by up to 20.
@@ -50,6 +73,11 @@ public:
         return interpolate(tree, tree.find(x), x, metrics_.asked());
     }
 
+    template <class Node>
+    std::unique_ptr<ControlSpace> freeze(const Topology<Node>& tree, Precision precision) const {
+        return freeze_quadratic(tree, metrics_.field(), slope_, precision);
+    }
+
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new) {
         LeafValues::split(subdivision, leaf, first_new);
         boxes_[leaf] = subdivision.child(0);
@@ -69,22 +97,8 @@ private:
     template <class Node>
     Metric interpolate(const Topology<Node>& tree, LeafIndex leaf, const Point& place,
                        std::span<const Metric> metrics) const {
-        const Box& box = boxes_[leaf];
-        const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
-        std::array<Point, 6> beyond;
-        std::array<LeafIndex, 6> neighbours;
-        for (int face = 0; face < 6; ++face) {
-            Point& y = beyond[static_cast<std::size_t>(face)];
-            y = x;
-            step_across(tree.domain(), box, face, y);
-        }
-        tree.find(beyond, neighbours);
-        std::array<Metric, 6> across;
-        for (std::size_t face = 0; face < 6; ++face) across[face] = metrics[neighbours[face]];
-        const Metric& own = metrics[leaf];
-        const Vector v = x - box.centre();
-        const Vector t = 2 * v.cwiseQuotient(box.edges());
-        return triquadratic(own, across, t, 1 + slope_ * metric_length(own, v));
+        return triquadratic_in(tree, leaf, boxes_[leaf], place, slope_,
+                               [&](LeafIndex i) -> const Metric& { return metrics[i]; });
     }
 
     std::vector<Box> boxes_;  // of the leaves

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/box.h"
+#include "spaces/control_space.h"
 #include "spaces/jump_table.h"
 #include "spaces/subdivision.h"
 
@@ -125,10 +126,15 @@ public:
     const Node& node(Ref inner) const { return nodes_[inner.index()]; }
     std::size_t leaves() const { return leaves_; }
     std::size_t inner_nodes() const { return nodes_.size(); }
-    /// Deepest level of any leaf; the root is level 0.
-    int deepest_level() const { return deepest_; }
-    std::size_t bytes() const { return nodes_.capacity() * sizeof(Node); }
     std::size_t bytes_of_jumps() const { return jumps_.bytes(); }
+    /// Enters what it consists of, and the bytes that it takes.
+    void describe(Footprint& footprint) const {
+        footprint.leaves = leaves();
+        footprint.elements = leaves() + inner_nodes();
+        footprint.depth = deepest_ + 1;
+        footprint.bytes_topology = nodes_.capacity() * sizeof(Node);
+        footprint.bytes_auxiliary = bytes_of_jumps();
+    }
 
     void shrink_to_fit() { nodes_.shrink_to_fit(); }
     /// Fits the start of descents to the number of leaves: a cell for two to four of them. With
@@ -208,6 +214,19 @@ public:
         enter_jumps(inner, place.box);
     }
 
+    /// The same tree with its nodes and leaves in depth-first order; leaf i was `former[i]`.
+    Topology depth_first(std::vector<LeafIndex>& former) const {
+        Topology ordered(domain_);
+        ordered.nodes_.reserve(nodes_.size());
+        former.clear();
+        former.reserve(leaves_);
+        ordered.root_ = ordered.append(*this, root_, former);
+        ordered.leaves_ = leaves_;
+        ordered.deepest_ = deepest_;
+        ordered.fit_jumps();
+        return ordered;
+    }
+
     /// Whether one more split would outgrow the references.
     bool is_full() const { return leaves_ + arity > Ref::max_index; }
 
@@ -224,6 +243,22 @@ private:
     Ref child_with(Ref inner, const Point& x) const {
         const Node& node = nodes_[inner.index()];
         return node.children[static_cast<std::size_t>(node.child_with(x))];
+    }
+
+    // Copies a part of another tree; its leaves get the next numbers.
+    Ref append(const Topology& other, Ref part, std::vector<LeafIndex>& former) {
+        if (part.is_leaf()) {
+            former.push_back(part.index());
+            return Ref::leaf(static_cast<LeafIndex>(former.size() - 1));
+        }
+        const std::size_t copy = nodes_.size();
+        const Node& node = other.node(part);
+        nodes_.push_back(node);
+        for (int c = 0; c < arity; ++c) {
+            const Ref child = append(other, node.children[static_cast<std::size_t>(c)], former);
+            nodes_[copy].set_child(c, child);
+        }
+        return Ref::inner(copy);
     }
 
     void enter_jumps(Ref ref, const Box& box) {
@@ -260,7 +295,7 @@ private:
     JumpTable<Ref> jumps_;
     Ref root_;
     LeafIndex leaves_ = 1;
-    int deepest_ = 0;
+    int deepest_ = 0;  // level of any leaf, the root being level 0
 };
 
 }  // namespace controlspace

@@ -16,6 +16,7 @@
 #include "spaces/control_space.h"
 #include "spaces/leaf_values.h"
 #include "spaces/published_bytes.h"
+#include "spaces/sample_leaves.h"
 #include "spaces/split_rule.h"
 #include "spaces/topology.h"
 
@@ -32,15 +33,7 @@ public:
         : options_(options), balanced_(balanced), topology_(options.domain), storage_(options) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
-        std::array<LeafIndex, Topology<Node>::most_found> leaves;
-        for (std::size_t first = 0; first < x.size(); first += leaves.size()) {
-            const auto part = x.subspan(first, std::min(leaves.size(), x.size() - first));
-            topology_.find(part, leaves);
-            for (std::size_t i = 0; i < part.size(); ++i) storage_.prefetch(leaves[i]);
-            for (std::size_t i = 0; i < part.size(); ++i) {
-                out[first + i] = storage_.value_in(topology_, leaves[i], part[i]);
-            }
-        }
+        sample_leaves(topology_, storage_, x, out);
     }
 
     Insertion insert(const PointSource& source) override {
@@ -120,11 +113,7 @@ public:
 
     Footprint footprint() const override {
         Footprint footprint;
-        footprint.leaves = topology_.leaves();
-        footprint.elements = topology_.leaves() + topology_.inner_nodes();
-        footprint.depth = topology_.deepest_level() + 1;
-        footprint.bytes_topology = topology_.bytes();
-        footprint.bytes_auxiliary = topology_.bytes_of_jumps();
+        topology_.describe(footprint);
         storage_.describe(footprint);
         footprint.bytes_published =
             published_bytes({is_octree, !std::is_base_of_v<LeafValues, Storage>, topology_.leaves(),
@@ -133,6 +122,14 @@ public:
     }
 
     Box element_at(const Point& x) const override { return topology_.locate(x).box; }
+
+    std::unique_ptr<ControlSpace> freeze(Precision precision) const override {
+        if constexpr (keeps_sources) {
+            return ControlSpace::freeze(precision);
+        } else {
+            return storage_.freeze(topology_, precision);
+        }
+    }
 
 private:
     static constexpr bool keeps_sources = std::is_same_v<Storage, AnchoredValues>;

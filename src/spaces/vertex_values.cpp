@@ -99,19 +99,6 @@ void VertexValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& fie
     });
 }
 
-NodeGraph VertexValues::graph(Neighbourhood neighbourhood) const {
-    std::vector<std::pair<NodeIndex, NodeIndex>> pairs;
-    pairs.reserve((neighbourhood == Neighbourhood::all ? 28 : 12) * corners_.size());
-    for (const Corners& corners : corners_) {
-        for_each_pair(corners, neighbourhood,
-                      [&](NodeIndex a, NodeIndex b) { pairs.emplace_back(a, b); });
-    }
-    NodeGraph graph = graph_from_pairs(positions_.size(), pairs);
-    sort_rows_uniquely(graph);
-    graph.positions = positions_;
-    return graph;
-}
-
 void VertexValues::describe(Footprint& footprint) const {
     metrics_.describe(footprint);
     footprint.bytes_topology += corners_.capacity() * sizeof(Corners);

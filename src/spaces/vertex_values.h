@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "spaces/adapt_tree.h"
 #include "spaces/adjacency.h"
 #include "spaces/control_space.h"
+#include "spaces/frozen_tree.h"
 #include "spaces/node_metrics.h"
 #include "spaces/place_index.h"
 #include "spaces/space_options.h"
@@ -23,6 +25,14 @@ inline std::array<double, 8> corner_weights(const Box& box, const Point& x) {
     std::array<double, 8> weights{};
     for (std::size_t i = 0; i < 8; ++i) weights[i] = wx[i & 1] * wy[i >> 1 & 1] * wz[i >> 2];
     return weights;
+}
+
+/// Trilinear between the corners of `box`, at the nearest place of it to `place`; metric_at(i) is
+/// the metric of corner i.
+template <class MetricAt>
+Metric trilinear_in(const Box& box, const Point& place, MetricAt&& metric_at) {
+    const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
+    return blend_lengths(corner_weights(box, x), metric_at);
 }
 
 /// A metric at each vertex of the leaves, trilinear between the eight of a leaf (K_V, K_oV).
@@ -58,12 +68,18 @@ public:
 
     template <class Node>
     ControlNodes control_nodes(const Topology<Node>&, Neighbourhood neighbourhood) const {
-        return {graph(neighbourhood), {metrics_.field().begin(), metrics_.field().end()}};
+        return {vertex_graph(corners_, positions_, neighbourhood),
+                {metrics_.field().begin(), metrics_.field().end()}};
     }
     template <class Node>
     void assign(const Topology<Node>&, std::span<const Metric> metrics) {
         metrics_.forget_asked();
         for (std::size_t i = 0; i < metrics.size(); ++i) metrics_.set(i, metrics[i]);
+    }
+
+    template <class Node>
+    std::unique_ptr<ControlSpace> freeze(const Topology<Node>& tree, Precision precision) const {
+        return freeze_vertices(tree, corners_, metrics_.field(), precision);
     }
 
     bool keeps_asked() const { return metrics_.keeps_asked(); }
@@ -104,12 +120,11 @@ private:
     Metric interpolate(LeafIndex leaf, const Point& place, std::span<const Metric> metrics) const {
         const Corners& corners = corners_[leaf];
         const Box box{positions_[corners.front()], positions_[corners.back()]};
-        const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
-        return interpolate(corners, corner_weights(box, x), metrics);
+        return trilinear_in(box, place,
+                            [&](std::size_t i) -> const Metric& { return metrics[corners[i]]; });
     }
     void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field);
     NodeIndex vertex_at(const Point& x, const Box& box, const Corners& corners);
-    NodeGraph graph(Neighbourhood neighbourhood) const;
 
     std::vector<Corners> corners_;  // of a leaf, in the order of controlspace::corner
     NodeMetrics metrics_;

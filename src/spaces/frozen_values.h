@@ -1,0 +1,134 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "metric/stored_metric.h"
+#include "spaces/control_space.h"
+#include "spaces/corners.h"
+#include "spaces/leaf_faces.h"
+#include "spaces/quadratic_values.h"
+#include "spaces/vertex_values.h"
+
+namespace controlspace {
+
+// What the leaves of a tree hold once it is only read, its leaves numbered depth first. What
+// FrozenTree asks of each:
+//   prefetch(leaf), value_in(tree, leaf, x)
+//   control_nodes(tree, neighbourhood), describe(footprint)
+// `Number` is what metrics are kept in, `Plane` what planes are numbered in.
+
+/// One metric a leaf, constant over it.
+template <class Number>
+class FrozenLeaves {
+public:
+    explicit FrozenLeaves(std::vector<StoredMetric<Number>> metrics)
+        : metrics_(std::move(metrics)) {}
+
+    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&metrics_[leaf]); }
+    template <class Node>
+    Metric value_in(const Topology<Node>&, LeafIndex leaf, const Point&) const {
+        return metrics_[leaf];
+    }
+
+    template <class Node>
+    ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
+        return {leaf_graph(tree, neighbourhood).graph, {metrics_.begin(), metrics_.end()}};
+    }
+    void describe(Footprint& footprint) const {
+        footprint.control_nodes = metrics_.size();
+        footprint.bytes_payload = metrics_.capacity() * sizeof(StoredMetric<Number>);
+    }
+
+protected:
+    std::vector<StoredMetric<Number>> metrics_;
+};
+
+/// One metric a leaf, interpolated with those of the neighbours.
+template <class Number, class Plane>
+class FrozenQuadratic : public FrozenLeaves<Number> {
+public:
+    template <class Node>
+    FrozenQuadratic(const Topology<Node>& tree, CutPlanes planes,
+                    std::vector<StoredMetric<Number>> metrics, double slope)
+        : FrozenLeaves<Number>(std::move(metrics)), planes_(std::move(planes)), slope_(slope) {
+        faces_.reserve(tree.leaves());
+        for_each_faces<Plane>(
+            tree, planes_, [&](LeafIndex, const Faces<Plane>& faces) { faces_.push_back(faces); });
+    }
+
+    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&faces_[leaf]); }
+    template <class Node>
+    Metric value_in(const Topology<Node>& tree, LeafIndex leaf, const Point& place) const {
+        return triquadratic_in(tree, leaf, faces_[leaf].box(planes_), place, slope_,
+                               [this](LeafIndex i) -> Metric { return this->metrics_[i]; });
+    }
+
+    void describe(Footprint& footprint) const {
+        FrozenLeaves<Number>::describe(footprint);
+        footprint.bytes_topology += faces_.capacity() * sizeof(Faces<Plane>) + planes_.bytes();
+    }
+
+private:
+    CutPlanes planes_;
+    std::vector<Faces<Plane>> faces_;
+    double slope_;
+};
+
+/// A metric at each vertex, trilinear between the eight of a leaf; vertices numbered as the leaves
+/// come to them.
+template <class Number, class Plane>
+class FrozenVertices {
+public:
+    /// `corners` are those of the tree's leaves, whose numbers point into `metrics`.
+    template <class Node>
+    FrozenVertices(const Topology<Node>& tree, CutPlanes planes,
+                   const std::vector<Corners>& corners, std::vector<StoredMetric<Number>> metrics)
+        : planes_(std::move(planes)), metrics_(std::move(metrics)) {
+        leaves_.reserve(tree.leaves());
+        for_each_faces<Plane>(tree, planes_, [&](LeafIndex leaf, const Faces<Plane>& faces) {
+            leaves_.push_back({corners[leaf], faces});
+        });
+    }
+
+    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&leaves_[leaf]); }
+    template <class Node>
+    Metric value_in(const Topology<Node>&, LeafIndex leaf, const Point& place) const {
+        const Leaf& l = leaves_[leaf];
+        return trilinear_in(l.faces.box(planes_), place,
+                            [&](std::size_t i) -> Metric { return metrics_[l.corners[i]]; });
+    }
+
+    template <class Node>
+    ControlNodes control_nodes(const Topology<Node>&, Neighbourhood neighbourhood) const {
+        std::vector<Corners> corners;
+        std::vector<Point> positions(metrics_.size());
+        corners.reserve(leaves_.size());
+        for (const Leaf& leaf : leaves_) {
+            corners.push_back(leaf.corners);
+            const Box box = leaf.faces.box(planes_);
+            for (int i = 0; i < 8; ++i) {
+                positions[leaf.corners[static_cast<std::size_t>(i)]] = corner(box, i);
+            }
+        }
+        return {vertex_graph(corners, std::move(positions), neighbourhood),
+                {metrics_.begin(), metrics_.end()}};
+    }
+    void describe(Footprint& footprint) const {
+        footprint.control_nodes = metrics_.size();
+        footprint.bytes_payload = metrics_.capacity() * sizeof(StoredMetric<Number>);
+        footprint.bytes_topology += leaves_.capacity() * sizeof(Leaf) + planes_.bytes();
+    }
+
+private:
+    struct Leaf {
+        Corners corners;
+        Faces<Plane> faces;
+    };
+
+    CutPlanes planes_;
+    std::vector<Leaf> leaves_;
+    std::vector<StoredMetric<Number>> metrics_;
+};
+
+}  // namespace controlspace

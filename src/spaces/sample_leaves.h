@@ -1,0 +1,27 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "spaces/topology.h"
+
+namespace controlspace {
+
+/// Metrics at `x`: leaves are found for many places side by side, then read. Of `values` it asks
+/// prefetch(leaf) and value_in(tree, leaf, x).
+template <class Node, class Values>
+void sample_leaves(const Topology<Node>& tree, const Values& values, std::span<const Point> x,
+                   std::span<Metric> out) {
+    std::array<LeafIndex, Topology<Node>::most_found> leaves;
+    for (std::size_t first = 0; first < x.size(); first += leaves.size()) {
+        const auto part = x.subspan(first, std::min(leaves.size(), x.size() - first));
+        tree.find(part, leaves);
+        for (std::size_t i = 0; i < part.size(); ++i) values.prefetch(leaves[i]);
+        for (std::size_t i = 0; i < part.size(); ++i) {
+            out[first + i] = values.value_in(tree, leaves[i], part[i]);
+        }
+    }
+}
+
+}  // namespace controlspace

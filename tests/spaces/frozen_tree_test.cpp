@@ -1,0 +1,206 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+#include "counting_allocator.h"
+#include "error.h"
+#include "geometry/random_fractions.h"
+#include "measure/access_time.h"
+#include "metric/nonconformity.h"
+#include "sources/sampled_surfaces.h"
+#include "spaces/catalogue.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const Box domain{Point(-1, -1, -1), Point(1, 1.5, 1)};
+
+struct TreeUnderTest {
+    const CatalogueEntry* entry;
+    SplitRule split;
+
+    std::unique_ptr<ControlSpace> graded(const std::vector<PointSource>& sources) const {
+        auto space = entry->make({.domain = domain, .split = split});
+        space->insert(sources);
+        space->grade({});
+        return space;
+    }
+};
+
+std::vector<TreeUnderTest> trees() {
+    std::vector<TreeUnderTest> all;
+    for (const CatalogueEntry& entry : tree_catalogue()) {
+        all.push_back({&entry, SplitRule::middle});
+        if (!entry.has_split_rules) continue;
+        all.push_back({&entry, SplitRule::golden});
+        all.push_back({&entry, SplitRule::metric});
+    }
+    return all;
+}
+
+std::vector<PointSource> sphere(double s_n) {
+    return sample_sphere({.h = 0.07, .s_a = 3, .s_n = s_n, .rho = 1});
+}
+
+// Random places, places on planes of cuts, and places outside.
+std::vector<Point> places() {
+    std::vector<Point> x = random_points({Point(-1.1, -1.1, -1.1), Point(1.1, 1.7, 1.1)}, 3000, 7);
+    RandomFractions fraction(8);
+    const auto step = [&](Axis a) {
+        return domain.low[a] + std::floor(65 * fraction()) / 64 * (domain.high[a] - domain.low[a]);
+    };
+    for (int i = 0; i < 3000; ++i) x.emplace_back(step(0), step(1), step(2));
+    return x;
+}
+
+std::vector<Metric> answers(const ControlSpace& space, const std::vector<Point>& x) {
+    std::vector<Metric> out(x.size());
+    space.sample(x, out);
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("frozen with doubles, a tree answers the same bits; with floats, to 1e-6") {
+    const std::vector<Point> x = places();
+    for (const double s_n : {1.0, 0.2}) {
+        const std::vector<PointSource> sources = sphere(s_n);
+        for (const TreeUnderTest& tree : trees()) {
+            CAPTURE(tree.entry->id, static_cast<int>(tree.split), s_n);
+            const auto space = tree.graded(sources);
+            const auto doubles = space->freeze(Precision::doubles);
+            const auto floats = space->freeze(Precision::floats);
+            const std::vector<Metric> expected = answers(*space, x);
+            CHECK(checksum(answers(*doubles, x)) == checksum(expected));
+            double most = 0;
+            const std::vector<Metric> rounded = answers(*floats, x);
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                const double length = mean_length(expected[i]);
+                const auto apart = [&](double a, double b) { return std::abs(a - b) / length; };
+                const Metric& a = rounded[i];
+                const Metric& b = expected[i];
+                most = std::max({most, apart(a.xx, b.xx), apart(a.yy, b.yy), apart(a.zz, b.zz),
+                                 apart(a.xy, b.xy), apart(a.xz, b.xz), apart(a.yz, b.yz)});
+                REQUIRE(doubles->element_at(x[i]) == space->element_at(x[i]));
+                REQUIRE(floats->element_at(x[i]) == space->element_at(x[i]));
+            }
+            CHECK(most > 0);
+            // A metric is rounded by 6e-8; the quadratic's weights reach beyond 1.
+            CHECK(most < 5e-7);
+            CHECK(floats->domain() == domain);
+        }
+    }
+}
+
+TEST_CASE("frozen trees have the same control nodes and links as before") {
+    using Entered = std::tuple<double, double, double, double, std::size_t>;
+    const auto entered = [](const ControlSpace& space, Neighbourhood neighbourhood) {
+        const ControlNodes nodes = space.control_nodes(neighbourhood);
+        const NodeGraph& graph = std::get<NodeGraph>(nodes.graph);
+        std::vector<Entered> all;
+        for (NodeIndex i = 0; i < graph.size(); ++i) {
+            const Point& p = graph.position(i);
+            all.emplace_back(p.x(), p.y(), p.z(), nodes.metrics[i].xx,
+                             graph.first[i + 1] - graph.first[i]);
+        }
+        std::sort(all.begin(), all.end());
+        return all;
+    };
+    const std::vector<PointSource> sources = sphere(1);
+    for (const TreeUnderTest& tree : trees()) {
+        CAPTURE(tree.entry->id, static_cast<int>(tree.split));
+        const auto space = tree.graded(sources);
+        const auto frozen = space->freeze(Precision::doubles);
+        for (const auto neighbourhood : {Neighbourhood::faces, Neighbourhood::all}) {
+            CHECK(entered(*frozen, neighbourhood) == entered(*space, neighbourhood));
+        }
+    }
+}
+
+TEST_CASE("frozen trees are small, and their footprint is what they have allocated") {
+    const std::vector<PointSource> sources = sphere(1);
+    for (const TreeUnderTest& tree : trees()) {
+        CAPTURE(tree.entry->id, static_cast<int>(tree.split));
+        const auto space = tree.graded(sources);
+        const Footprint full = space->footprint();
+        for (const Precision precision : {Precision::doubles, Precision::floats}) {
+            const std::size_t before = live_bytes();
+            const auto frozen = space->freeze(precision);
+            const std::size_t allocated = live_bytes() - before;
+            const Footprint footprint = frozen->footprint();
+            CHECK(footprint.bytes_total() <= allocated);
+            CHECK(footprint.bytes_total() + 1024 >= allocated);
+            CHECK(footprint.leaves == full.leaves);
+            CHECK(footprint.elements == full.elements);
+            CHECK(footprint.depth == full.depth);
+            CHECK(footprint.control_nodes == full.control_nodes);
+            CHECK(footprint.bytes_payload ==
+                  footprint.control_nodes * (precision == Precision::floats ? 24 : 48));
+            CHECK(footprint.bytes_auxiliary <= full.bytes_auxiliary);
+        }
+    }
+}
+
+TEST_CASE("a tree of one leaf is frozen like any other") {
+    for (const CatalogueEntry& entry : tree_catalogue()) {
+        const auto frozen = entry.make({.domain = domain})->freeze(Precision::floats);
+        const double all = largest_metric(domain).xx;
+        CHECK(sample_at(*frozen, Point(0.3, 0.1, 0.2)).xx == Approx(all).epsilon(1e-7));
+    }
+}
+
+TEST_CASE("trees with more planes than 16 bits can number are frozen too") {
+    RandomFractions fraction(3);
+    std::vector<PointSource> sources;
+    for (int i = 0; i < 10000; ++i) {
+        const auto within = [&] { return 2 * fraction() - 1; };
+        const Point x(within(), within(), within());
+        sources.push_back({x, Metric::isotropic(1e-4)});
+    }
+    const CatalogueEntry& kd_vertices = tree_catalogue()[2];
+    REQUIRE(kd_vertices.id == "K_V");
+    const auto space = kd_vertices.make({.domain = domain, .split = SplitRule::golden});
+    space->insert(sources);
+    // Hardly two cuts stand on one plane.
+    REQUIRE(space->footprint().leaves > 3 * 80000);
+    const auto frozen = space->freeze(Precision::doubles);
+    const std::vector<Point> x = places();
+    CHECK(checksum(answers(*frozen, x)) == checksum(answers(*space, x)));
+}
+
+TEST_CASE("a frozen tree refuses to be changed, and says what to do") {
+    for (const CatalogueEntry& entry : tree_catalogue()) {
+        const auto frozen = entry.make({.domain = domain})->freeze(Precision::doubles);
+        const PointSource source{Point::Zero(), Metric::isotropic(0.1)};
+        const auto hint = Contains("before freezing");
+        CHECK_THROWS_WITH(frozen->insert(source), hint);
+        CHECK_THROWS_WITH(frozen->insert({&source, 1}), hint);
+        CHECK_THROWS_WITH(frozen->grade({}), hint);
+        CHECK_THROWS_WITH(frozen->assign({}), hint);
+        CHECK_THROWS_WITH(frozen->adapt({{&source, 1}, nullptr, 1.25, 0.1}), hint);
+        CHECK_THROWS_AS(frozen->freeze(Precision::doubles), InputError);
+    }
+}
+
+TEST_CASE("what cannot be frozen is refused, with what would help") {
+    const auto with = [](const Metric& metric) {
+        auto space = tree_catalogue()[3].make({.domain = domain, .octree_depth = 2});
+        space->insert(PointSource{Point::Zero(), metric});
+        return space;
+    };
+    const Vector slanted = Vector(1, 2, 3).normalized();
+    for (const Metric& bad : {layer_metric(slanted, 1e-6, 1), Metric::isotropic(1e-40)}) {
+        const auto space = with(bad);
+        CHECK_THROWS_WITH(space->freeze(Precision::floats), Contains("freeze with doubles"));
+        CHECK_NOTHROW(space->freeze(Precision::doubles));
+    }
+    CHECK_NOTHROW(with(layer_metric(slanted, 1e-3, 1))->freeze(Precision::floats));
+    const auto anchored = anchored_catalogue()[0].make({.domain = domain});
+    CHECK_THROWS_WITH(anchored->freeze(Precision::doubles), Contains("choose a tree"));
+}
