@@ -13,6 +13,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -29,8 +30,9 @@ namespace {
 /// A structure of the table and how it is made for a work.
 struct Row {
     std::string name;
-    std::function<std::unique_ptr<ControlSpace>(const Work&)> make;
+    std::function<std::unique_ptr<ControlSpace>(const Work&)> make = {};
     bool has_limit = false;
+    std::optional<Precision> frozen = {};  ///< the row before it that is not, in that form
 };
 
 const CatalogueEntry& entry_named(const std::string& id) {
@@ -47,32 +49,29 @@ std::unique_ptr<ControlSpace> as_fine_as_octree(const CatalogueEntry& grid, cons
 
 bool is_blended(const std::string& id) { return id == "K_V" || id == "K_oV"; }
 
-// All structures on the first work; on the others the paper's trees, and the grids whose voxels are
-// few enough.
+// All structures on the first work; on the others the paper's trees, and the plain grids where
+// their voxels are few enough.
 std::vector<Row> rows_of(const Work& work) {
     const bool first = work.name == works().front().name;
     std::vector<Row> rows;
     for (const CatalogueEntry& entry : structures()) {
+        const bool is_tree = entry.group == "trees";
         const bool is_plain_grid =
-            entry.id == "uniform-nearest" || entry.id == "openvdb-uniform-nearest";
-        if (!first && entry.group != "trees" && !(is_plain_grid && work.tau == 1)) continue;
-        const bool has_limit = is_blended(entry.id) || entry.id == "K_L" || entry.id == "K_oL";
+            entry.id.starts_with("uniform-") || entry.id.starts_with("openvdb-uniform-");
+        if (!first && !is_tree && !(is_plain_grid && work.tau == 1)) continue;
+        const bool has_limit = is_tree && entry.order < 2;
         rows.push_back({entry.id, [&](const Work& w) { return graded(entry, w); }, has_limit});
+        if (is_tree) {
+            rows.push_back({.name = entry.id + "-frozen", .frozen = Precision::doubles});
+            rows.push_back({.name = entry.id + "-floats", .frozen = Precision::floats});
+        }
         if (first && entry.id == "K_L") {
-            rows.push_back(
-                {"K_L-s_G", [&](const Work& w) { return graded(entry, w, SplitRule::golden); }});
+            const auto make = [&](const Work& w) { return graded(entry, w, SplitRule::golden); };
+            rows.push_back({entry.id + "-s_G", make, has_limit});
         }
-        if (entry.group == "trees" && (has_limit || entry.id == "K_Li")) {
-            rows.push_back({entry.id + "-frozen", [&](const Work& w) {
-                                return graded(entry, w)->freeze(Precision::doubles);
-                            }});
-            rows.push_back({entry.id + "-floats", [&](const Work& w) {
-                                return graded(entry, w)->freeze(Precision::floats);
-                            }});
-        }
-        if (is_plain_grid && first) {
-            rows.push_back(
-                {entry.id + "-fine", [&](const Work& w) { return as_fine_as_octree(entry, w); }});
+        if (first && is_plain_grid && entry.order == 0) {
+            const auto make = [&](const Work& w) { return as_fine_as_octree(entry, w); };
+            rows.push_back({entry.id + "-fine", make});
         }
     }
     return rows;
@@ -132,7 +131,12 @@ public:
     const std::vector<Row>& rows() const { return rows_; }
     void make() {
         if (!spaces_.empty()) return;
-        for (const Row& row : rows_) spaces_[row.name] = row.make(work_);
+        const ControlSpace* unfrozen = nullptr;
+        for (const Row& row : rows_) {
+            auto& space = spaces_[row.name];
+            space = row.frozen ? unfrozen->freeze(*row.frozen) : row.make(work_);
+            if (!row.frozen) unfrozen = space.get();
+        }
         for (const auto& [order, name] : orders()) {
             places_[name] = places(order, *spaces_.at("K_oV"));
         }
