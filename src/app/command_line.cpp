@@ -5,74 +5,16 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
+#include "app/export_command.h"
 #include "app/file_commands.h"
 #include "app/setting_options.h"
 #include "error.h"
-#include "export/metric_grids.h"
 #include "mesh/mesh_settings.h"
 #include "study/provenance.h"
 #include "study/settings.h"
 
 namespace controlspace {
 namespace {
-
-#ifdef CONTROLSPACE_OPENVDB
-CLI::App* add_export(CLI::App& app, ExportOptions& options, WordsByKey& given) {
-    CLI::App* command = app.add_subcommand(
-        "export", "Write the field of one structure to a .vdb file, for Blender and Houdini");
-    command
-        ->add_option("INPUT", options.input,
-                     "Study file (.toml) or file of sources; left out: the paper's sphere")
-        ->option_text("FILE");
-    const std::string file = "File";
-    command->add_option("-o,--output", options.output, "File to write")
-        ->option_text("FILE.vdb")
-        ->required()
-        ->group(file);
-    command
-        ->add_option("--voxel", options.vdb.voxel,
-                     "Edge of a voxel [length]; left out: 1/128 of the longest edge of the domain")
-        ->option_text("NUMBER")
-        ->group(file);
-    command
-        ->add_option("--tolerance", options.vdb.tolerance,
-                     "Non-conformity within which voxels share a metric; 0: only where it is the "
-                     "same (default: 0.02)")
-        ->option_text("NUMBER")
-        ->group(file);
-    std::string names;
-    for (const MetricGrid& grid : metric_grids()) names += fmt::format("{}, ", grid.name);
-    command
-        ->add_option("--grids", options.vdb.grids,
-                     fmt::format("Some of {}and {}, the points (left out: all but these)", names,
-                                 sources_grid))
-        ->option_text("TEXT,...")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->group(file);
-    command
-        ->add_option("--compression", options.vdb.compression,
-                     "blosc, zip or none (default: blosc)")
-        ->option_text("TEXT")
-        ->transform(
-            CLI::Transformer(std::map<std::string, VdbCompression>{{"blosc", VdbCompression::blosc},
-                                                                   {"zip", VdbCompression::zip},
-                                                                   {"none", VdbCompression::none}}))
-        ->group(file);
-    command->add_flag("--half", options.vdb.half, "Numbers of 16 bits")->group(file);
-    // Settings of measuring, and the voxels of a grid that is exported, which are not the file's.
-    constexpr std::string_view without[] = {
-        "name",   "access_points", "access_repeats", "probe_grid", "fine_probe_grid",
-        "output", "reference",     "voxel"};
-    Run defaults;
-    defaults.structures = {"K_oL"};
-    defaults.splits = {SplitRule::middle};
-    add_options(*command, run_settings(), defaults, "Settings of the structure (a value each)",
-                given, without);
-    add_options(*command, study_settings(), Study{}, "Settings of the study", given, without);
-    return command;
-}
-#endif
 
 #ifdef CONTROLSPACE_GMSH
 CLI::App* add_mesh(CLI::App& app, MeshOptions& options, WordsByKey& given) {
@@ -191,11 +133,9 @@ Command parse_command_line(int argc, const char* const* argv) {
     report->add_flag("--without-fields", report_options.without_fields,
                      "No slices, histograms or cross-validation: no structure is made again");
 
-#ifdef CONTROLSPACE_OPENVDB
     ExportOptions export_options;
     WordsByKey given_to_export;
     const CLI::App* export_command = add_export(app, export_options, given_to_export);
-#endif
 
 #ifdef CONTROLSPACE_GMSH
     MeshOptions mesh_options;
@@ -243,18 +183,11 @@ Command parse_command_line(int argc, const char* const* argv) {
         paper_options.command_line = command_line_text(argc, argv);
         return paper_options;
     }
-#ifdef CONTROLSPACE_OPENVDB
     if (export_command->parsed()) {
-        std::erase_if(export_options.vdb.grids, [&](const std::string& name) {
-            const bool points = name == sources_grid;
-            export_options.with_sources |= points;
-            return points;
-        });
         export_options.settings = given_settings(given_to_export);
         export_options.command_line = command_line_text(argc, argv);
         return export_options;
     }
-#endif
 #ifdef CONTROLSPACE_GMSH
     if (mesh_command->parsed()) {
         mesh_options.settings = given_settings(given_to_mesh);

@@ -1,12 +1,25 @@
 #include "app/convert.h"
 
+#include <string>
+#include <vector>
+
 #include "app/input_study.h"
+#include "sources/read_sources.h"
 #include "sources/write_sources.h"
+
+#ifdef CONTROLSPACE_VTK
+#include "export/write_vtk.h"
+#endif
 
 namespace controlspace {
 
 void convert(const ConvertOptions& options) {
-    write_sources(options.output, sources_of_input(options.input, options.settings));
+    const std::vector<PointSource> sources = sources_of_input(options.input, options.settings);
+#ifdef CONTROLSPACE_VTK
+    const std::string ending = lower_case_extension(options.output);
+    if (ending == ".vtu" || ending == ".vtp") return write_vtk_sources(options.output, sources);
+#endif
+    write_sources(options.output, sources);
 }
 
 }  // namespace controlspace

@@ -1,77 +1,162 @@
 #include "app/export.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
-#include <chrono>
-#include <ctime>
+#include <map>
+#include <memory>
 
 #include "app/input_study.h"
-#include "app/peak_memory.h"
 #include "app/readers.h"
 #include "app/standard_output.h"
 #include "app/threads.h"
 #include "baselines/catalogue.h"
 #include "error.h"
-#include "study/names.h"
-#include "study/provenance.h"
+#include "sources/medit.h"
+#include "sources/read_sources.h"
+#include "sources/write_medit_sources.h"
+#include "sources/write_sources.h"
+#include "spaces/space_field.h"
 #include "study/run.h"
+
+#ifdef CONTROLSPACE_OPENVDB
+#include "app/export_vdb.h"
+#endif
 
 namespace controlspace {
 namespace {
 
-std::vector<VdbNote> notes_of(const Case& c, const std::string& command_line) {
-    return {{"structure", structure_label(c)},
-            {"law", std::string(name_of(c.law))},
-            {"g_r", c.g_r},
-            {"settings", setting_label(c)},
-            {"sources", sources_name(c.sources)},
-            {"version", version_text(current_provenance())},
-            {"command_line", command_line}};
+/// What a format is made of, and how: `write` says what was written beside the file's size.
+struct Exported {
+    const ExportOptions& options;
+    const Study& study;
+    const Case& c;
+    const Workload& workload;
+    const ControlSpace& space;
+};
+using Write = std::string (*)(const Exported&);
+
+std::string size_note(const Exported& e, const std::string& what) {
+    std::error_code none;  // a pipe has no size
+    const std::uintmax_t bytes = std::filesystem::file_size(e.options.output, none);
+    const std::string size =
+        none ? "" : fmt::format("; {:.1f} MB", static_cast<double>(bytes) / 1e6);
+    return fmt::format("{}: {}{}\n", e.options.output.string(), what, size);
 }
 
-/// What writing took.
-struct Cost {
-    double seconds;
-    double processor_seconds;
-};
+std::string write_solution(const Exported& e) {
+    const std::vector<Point> vertices = read_medit_vertices(e.options.mesh);
+    std::vector<Metric> metrics(vertices.size());
+    e.space.sample(vertices, metrics);
+    write_medit_solution(e.options.output, metrics);
+    return size_note(e, fmt::format("metrics at the {} vertices of {}", vertices.size(),
+                                    e.options.mesh.string()));
+}
 
-std::string summary(const std::filesystem::path& path, const VdbReport& report, const Cost& cost) {
-    return fmt::format(
-        "{}: {} x {} x {} voxels of {:.4g}, {:.0f} % of them kept, the others in tiles of 8^3; "
-        "smallest lengths {:.4g} to {:.4g}\n"
-        "{:.1f} MB in the file; {:.1f} s, {:.1f} s of processors, {:.0f} MB of memory at most\n",
-        path.string(), report.counts[0], report.counts[1], report.counts[2], report.voxel,
-        100 * report.kept, report.finest, report.coarsest, static_cast<double>(report.file) / 1e6,
-        cost.seconds, cost.processor_seconds, static_cast<double>(peak_memory()) / 1e6);
+std::string write_node_table(const Exported& e) {
+    const ControlNodes nodes = e.space.control_nodes(Neighbourhood::faces);
+    const std::vector<Point> places = positions(nodes.graph);
+    std::vector<PointSource> sources;
+    for (std::size_t i = 0; i < places.size(); ++i)
+        sources.push_back({places[i], nodes.metrics[i]});
+    write_sources(e.options.output, sources);
+    return size_note(e, fmt::format("{} control nodes", sources.size()));
+}
+
+#ifdef CONTROLSPACE_VTK
+std::string write_grid(const Exported& e) {
+    if (e.options.nodes) {
+        write_nodes(e.options.output, e.space);
+        return size_note(e, fmt::format("{} control nodes", e.space.footprint().control_nodes));
+    }
+    write_leaves(e.options.output, e.space);
+    return size_note(e, "the elements, with their metrics");
+}
+
+std::string write_tree(const Exported& e) {
+    write_octree(e.options.output, e.space);
+    return size_note(e, "an octree");
+}
+
+Slice slice_of(const ExportOptions& options, const Box& domain) {
+    const std::string& name = options.slice.front();
+    const std::size_t axis = std::string("xyz").find(name);
+    if (name.size() != 1 || axis > 2) {
+        throw InputError(fmt::format("--slice: {} is no axis: give x, y or z", quote(name)));
+    }
+    Slice slice;
+    slice.axis = static_cast<Axis>(axis);
+    slice.at = domain.centre()[slice.axis];
+    slice.samples = options.samples;
+    if (options.slice.size() > 1 && !parse_number(options.slice[1], slice.at)) {
+        throw InputError(fmt::format("--slice: {} is not a number", quote(options.slice[1])));
+    }
+    return slice;
+}
+
+std::string write_image(const Exported& e) {
+    const Slice slice = slice_of(e.options, e.space.domain());
+    write_slice(e.options.output, SpaceAsField(e.space), e.space.domain(), slice);
+    return size_note(e, fmt::format("a slice at {} = {}", "xyz"[slice.axis], slice.at));
+}
+#endif
+
+#ifdef CONTROLSPACE_OPENVDB
+std::string write_grids(const Exported& e) {
+    return export_vdb(e.options, e.study, e.c, e.workload, e.space);
+}
+#endif
+
+const std::map<std::string, Write>& formats() {
+    static const std::map<std::string, Write> all{
+        {".csv", write_node_table}, {".pos", write_node_table}, {".sol", write_solution},
+        {".solb", write_solution},
+#ifdef CONTROLSPACE_OPENVDB
+        {".vdb", write_grids},
+#endif
+#ifdef CONTROLSPACE_VTK
+        {".htg", write_tree},       {".vti", write_image},      {".vtu", write_grid},
+#endif
+    };
+    return all;
+}
+
+Write format_of(const ExportOptions& options) {
+    const std::string ending = lower_case_extension(options.output);
+    const auto format = formats().find(ending);
+    if (format == formats().end()) {
+        throw InputError(fmt::format("{}: name a file of one of {}", options.output.string(),
+                                     exported_formats()));
+    }
+    const bool at_vertices = format->second == write_solution;
+    if (at_vertices && options.mesh.empty()) {
+        throw InputError(
+            fmt::format("{}: name the mesh that it is for by --mesh", options.output.string()));
+    }
+    if (!at_vertices && !options.mesh.empty()) {
+        throw InputError("--mesh is for .sol and .solb: leave it out");
+    }
+    return format->second;
 }
 
 }  // namespace
 
-void export_vdb(const ExportOptions& options) {
+std::string exported_formats() {
+    std::string endings;
+    for (const auto& [ending, write] : formats()) {
+        endings += (endings.empty() ? "" : ", ") + ending;
+    }
+    return endings;
+}
+
+void export_field(const ExportOptions& options) {
+    const Write write = format_of(options);
     const Study study = study_of_input(options.input, options.settings);
     const auto threads = limit_threads(study.threads);
     const Case c = only_case(study);
     const Workload workload = make_workload(study, c.sources, file_readers());
     Measures unused;
     const auto space = make_and_fill(study, c, entry_of(c, structures()), workload, unused, {});
-
-    VdbOptions vdb = options.vdb;
-    vdb.notes = notes_of(c, options.command_line);
-    vdb.max_bytes = space_options(study, c, workload).max_bytes;
-    if (options.with_sources) vdb.sources = workload.sources;
-    const auto start = std::chrono::steady_clock::now();
-    const std::clock_t processor_start = std::clock();
-    const VdbReport report = write_vdb(options.output, *space, vdb);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    const auto ticks = static_cast<double>(std::clock() - processor_start);
-    if (report.voxel > workload.finest_length) {
-        spdlog::warn(
-            "voxels of {:.4g} are larger than the smallest length asked for, {:.4g}: give --voxel "
-            "to see all of it",
-            report.voxel, workload.finest_length);
-    }
-    print(summary(options.output, report, {seconds.count(), ticks / CLOCKS_PER_SEC}));
+    print(write({options, study, c, workload, *space}));
 }
 
 }  // namespace controlspace

@@ -1,15 +1,18 @@
 #include "app/file_commands.h"
 
+#include "study/file_settings.h"
 #include "study/vdb_settings.h"
 
 namespace controlspace {
 namespace {
 
 constexpr const char* formats =
-    "Sources: .csv; .mesh, .sol, .meshb or .solb, the other beside it; or a surface in a .vdb";
+    "Sources: .csv; .mesh, .sol, .meshb or .solb, the other beside it; .pos; .msh; .vtu, .vtp; or "
+    "a surface: .stl, .obj, .ply, .off, or in a .vdb";
 
 void add_reading_options(CLI::App& command, WordsByKey& given) {
     constexpr std::string_view fields[] = {"field_file", "field_grid", "field_density_sizes"};
+    add_options(command, file_settings(), Study{}, "Settings of reading", given);
     add_options(command, vdb_settings(), Study{}, "Settings of reading", given, fields);
 }
 
@@ -28,10 +31,9 @@ CLI::App* add_convert(CLI::App& app, ConvertOptions& options, WordsByKey& given)
         app.add_subcommand("convert", "Write the sources of one file in another format");
     command->add_option("IN", options.input, formats)->required()->option_text("FILE");
     command
-        ->add_option(
-            "OUT", options.output,
-            "File to write: .csv, or .mesh, .sol, .meshb or .solb, which makes both a mesh "
-            "and a solution")
+        ->add_option("OUT", options.output,
+                     "File to write: .csv; .mesh, .sol, .meshb or .solb, which makes both a mesh "
+                     "and a solution; .pos; .vtu, .vtp")
         ->required()
         ->option_text("FILE");
     add_reading_options(*command, given);

@@ -45,10 +45,8 @@ int main(int argc, char** argv) {
             convert(*convert_options);
         } else if (const auto* query_options = std::get_if<QueryOptions>(&command)) {
             query(*query_options);
-#ifdef CONTROLSPACE_OPENVDB
         } else if (const auto* export_options = std::get_if<ExportOptions>(&command)) {
-            export_vdb(*export_options);
-#endif
+            export_field(*export_options);
 #ifdef CONTROLSPACE_GMSH
         } else if (const auto* mesh_options = std::get_if<MeshOptions>(&command)) {
             return mesh(*mesh_options) ? 0 : 3;

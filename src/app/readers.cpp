@@ -1,14 +1,29 @@
 #include "app/readers.h"
 
+#include "sources/pos.h"
+
 #ifdef CONTROLSPACE_OPENVDB
 #include "export/read_vdb_field.h"
 #include "export/read_vdb_sources.h"
+#endif
+
+#ifdef CONTROLSPACE_CGAL
+#include "export/read_surface_sources.h"
+#endif
+#ifdef CONTROLSPACE_GMSH
+#include "mesh/read_msh_sources.h"
+#endif
+#ifdef CONTROLSPACE_VTK
+#include "export/read_vtk_sources.h"
 #endif
 
 namespace controlspace {
 
 FileReaders file_readers() {
     FileReaders readers;
+    readers.sources[".pos"] = [](const SourcesChoice& choice) {
+        return read_pos_sources(choice.file, choice.in_file.array);
+    };
 #ifdef CONTROLSPACE_OPENVDB
     readers.sources[".vdb"] = [](const SourcesChoice& choice) {
         return read_vdb_sources(choice.file, choice.surface);
@@ -16,6 +31,25 @@ FileReaders file_readers() {
     readers.vdb_field = [](const FieldChoice& choice) {
         return read_vdb_field(choice.file, choice.vdb);
     };
+#endif
+#ifdef CONTROLSPACE_CGAL
+    for (const char* ending : {".stl", ".obj", ".ply", ".off"}) {
+        readers.sources[ending] = [](const SourcesChoice& choice) {
+            return read_surface_sources(choice.file, choice.in_file.curvature);
+        };
+    }
+#endif
+#ifdef CONTROLSPACE_GMSH
+    readers.sources[".msh"] = [](const SourcesChoice& choice) {
+        return read_msh_sources(choice.file, choice.in_file.array);
+    };
+#endif
+#ifdef CONTROLSPACE_VTK
+    for (const char* ending : {".vtu", ".vtp"}) {
+        readers.sources[ending] = [](const SourcesChoice& choice) {
+            return read_vtk_sources(choice.file, choice.in_file.array);
+        };
+    }
 #endif
     return readers;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "geometry/point_order.h"
 #include "gradation/grade.h"
 #include "measure/nearest.h"
 
@@ -10,10 +11,6 @@ namespace controlspace {
 namespace {
 
 constexpr std::size_t near_sources = 6;
-
-bool precedes(const Point& a, const Point& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-}
 
 std::size_t count_contradictory(std::span<const PointSource> sources) {
     std::vector<std::size_t> order(sources.size());

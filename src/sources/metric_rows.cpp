@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "error.h"
@@ -22,6 +24,19 @@ void MetricRows::add_tensor(const Metric& riemannian) {
     const auto m = from_riemannian(riemannian);
     metrics_.push_back(m.value_or(Metric{}));
     if (!m && wrong_++ == 0) first_wrong_ = metrics_.size();
+}
+
+void MetricRows::add_matrix(const std::array<double, 9>& t) {
+    constexpr double negligible = 1e-6;
+    double largest = 0;
+    for (const double x : t) largest = std::max(largest, std::abs(x));
+    constexpr std::array<std::array<std::size_t, 2>, 3> opposite{{{1, 3}, {2, 6}, {5, 7}}};
+    for (const auto& [i, j] : opposite) {
+        if (!(std::abs(t[i] - t[j]) > negligible * largest)) continue;
+        throw InputError(fmt::format("tensor {} of {} is not symmetric: {} and {} differ",
+                                     metrics_.size() + 1, path_.string(), t[i], t[j]));
+    }
+    add_tensor({t[0], t[4], t[8], t[1], t[2], t[5]});
 }
 
 std::vector<Metric> MetricRows::take() {

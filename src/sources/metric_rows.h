@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <string>
@@ -22,6 +23,9 @@ public:
     /// Throws InputError where `h` is no length.
     void add_size(double h);
     void add_tensor(const Metric& riemannian);
+    /// A whole matrix, by rows. Throws InputError where it is not symmetric, to 1e-6 of its largest
+    /// entry.
+    void add_matrix(const std::array<double, 9>& riemannian);
 
     /// Metrics of all rows. Throws InputError that names the first tensor that is not positive
     /// definite, and says how many are not.

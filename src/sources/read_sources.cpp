@@ -7,6 +7,7 @@
 #include "error.h"
 #include "sources/csv.h"
 #include "sources/medit.h"
+#include "sources/pos.h"
 
 namespace controlspace {
 
@@ -46,9 +47,10 @@ std::vector<PointSource> read_sources(const std::filesystem::path& path) {
     if (extension == ".sol") return read_medit_sources(partner(path, ".mesh", ".meshb"), path);
     if (extension == ".meshb") return read_medit_sources(path, partner(path, ".solb", ".sol"));
     if (extension == ".solb") return read_medit_sources(partner(path, ".meshb", ".mesh"), path);
+    if (extension == ".pos") return read_pos_sources(path);
     // A pipe, as of <(command), has a name that says nothing.
     if (!std::filesystem::is_regular_file(path, ignored)) return read_csv_sources(path);
-    throw InputError(fmt::format("{}: name a .csv, or a .mesh beside a .sol", path.string()));
+    throw InputError(fmt::format("{}: name a .csv, a .mesh beside a .sol, or a .pos", path.string()));
 }
 
 }  // namespace controlspace

@@ -6,6 +6,7 @@
 
 #include "error.h"
 #include "sources/csv.h"
+#include "sources/pos.h"
 #include "sources/read_sources.h"
 #include "sources/write_medit_sources.h"
 
@@ -17,8 +18,9 @@ void write_sources(const std::filesystem::path& path, std::span<const PointSourc
     if (ending == ".mesh" || ending == ".sol" || ending == ".meshb" || ending == ".solb") {
         return write_medit_sources(path, sources);
     }
+    if (ending == ".pos") return write_pos_sources(path, sources);
     throw InputError(
-        fmt::format("{}: name a .csv, .mesh, .sol, .meshb or .solb to write", path.string()));
+        fmt::format("{}: name a .csv, .mesh, .sol, .meshb, .solb or .pos to write", path.string()));
 }
 
 }  // namespace controlspace

@@ -9,6 +9,7 @@
 #include "sources/scattered_surfaces.h"
 #include "spaces/catalogue.h"
 #include "study/field_choice.h"
+#include "study/file_choice.h"
 #include "study/vdb_choice.h"
 
 namespace controlspace {
@@ -43,7 +44,8 @@ struct SourcesChoice {
     double s_a = 2;                ///< tangential length in units of h
     double s_n = 1;                ///< normal length in units of the tangential one
     FieldChoice field = {};
-    VdbSurface surface = {};  ///< file only, a .vdb
+    VdbSurface surface = {};   ///< file only, a .vdb
+    FileSources in_file = {};  ///< file only, of other formats
 
     bool operator==(const SourcesChoice&) const = default;
 };

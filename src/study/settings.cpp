@@ -10,6 +10,7 @@
 #include "error.h"
 #include "gradation/law.h"
 #include "study/field_settings.h"
+#include "study/file_settings.h"
 #include "study/names.h"
 #include "study/setting_values.h"
 #include "study/vdb_settings.h"
@@ -132,9 +133,9 @@ const Setting<Study> general_table[] = {
      },
      [](const Study& s) { return SettingValues{s.name}; }},
     {"sources", text_type, 1, "",
-     "sphere, planes, a file of sources: .csv, a pipe of such, .mesh beside .sol, or a surface in "
-     "a .vdb; or none, for "
-     "a field alone",
+     "sphere, planes, or none, for a field alone; or a file of sources: .csv, a pipe of such, "
+     ".mesh or .meshb beside .sol or .solb, .pos, .msh, .vtu or .vtp; or a surface: .stl, .obj, "
+     ".ply, .off or in a .vdb",
      set_sources, [](const Study& s) { return SettingValues{sources_name(s.sources)}; }},
     {"centre", number_type, 3, "", "x y z: centre of the sphere [length]",
      [](Study& s, const SettingValues& v) { s.sources.centre = point(v); },
@@ -303,7 +304,7 @@ void require_type(ValueType type, const SettingValue& value) {
 std::span<const Setting<Study>> study_settings() {
     static const std::vector<Setting<Study>> all = [] {
         std::vector<Setting<Study>> settings(std::begin(general_table), std::end(general_table));
-        for (const auto more : {field_settings(), vdb_settings()}) {
+        for (const auto more : {field_settings(), file_settings(), vdb_settings()}) {
             settings.insert(settings.end(), more.begin(), more.end());
         }
         return settings;

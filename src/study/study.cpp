@@ -73,6 +73,11 @@ void require_needed(const SourcesChoice& sources, const Run& run) {
             "vdb_size, vdb_size_per_radius, vdb_grid and vdb_isovalue are for sources out of a "
             ".vdb: leave them out with other sources");
     }
+    if (sources.kind != SourcesKind::file && sources.in_file != plain.in_file) {
+        throw InputError(
+            "source_array, surface_angle, surface_h_min and surface_h_max are for files of "
+            "sources: leave them out with other sources");
+    }
     if (sources.kind != SourcesKind::planes && sources.slope != plain.slope) {
         throw InputError("slope is for the planes: leave it out with other sources");
     }

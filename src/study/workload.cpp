@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "error.h"
@@ -22,8 +25,33 @@ namespace {
                     file.string(), lower_case_extension(file)));
 }
 
+constexpr std::array<std::string_view, 4> with_arrays{".vtu", ".vtp", ".msh", ".pos"};
+constexpr std::array<std::string_view, 4> surfaces{".stl", ".obj", ".ply", ".off"};
+
+bool is_one_of(const std::string& ending, std::span<const std::string_view> endings) {
+    return std::find(endings.begin(), endings.end(), ending) != endings.end();
+}
+
 /// Formats that other libraries read.
-bool needs_reader(const std::string& ending) { return ending == ".vdb"; }
+bool needs_reader(const std::string& ending) {
+    return ending == ".vdb" || (ending != ".pos" && is_one_of(ending, with_arrays)) ||
+           is_one_of(ending, surfaces);
+}
+
+/// What is given for files of another format would be passed over.
+void require_fitting_options(const SourcesChoice& choice, const std::string& ending) {
+    const auto fail = [&](const char* keys, const char* formats) {
+        throw InputError(fmt::format("{} are for {}: leave them out with {}", keys, formats,
+                                     choice.file.string()));
+    };
+    const FileSources plain;
+    if (choice.in_file.array != plain.array && !is_one_of(ending, with_arrays)) {
+        fail("names of arrays (source_array)", ".vtu, .vtp, .msh and .pos");
+    }
+    if (choice.in_file.curvature != plain.curvature && !is_one_of(ending, surfaces)) {
+        fail("surface_angle, surface_h_min and surface_h_max", ".stl, .obj, .ply and .off");
+    }
+}
 
 std::vector<PointSource> make_sources(const SourcesChoice& s, std::uint64_t seed,
                                       const FileReaders& readers) {
@@ -74,6 +102,7 @@ double finest_length_of(const Workload& workload) {
 
 std::vector<PointSource> read_source_file(const SourcesChoice& choice, const FileReaders& readers) {
     const std::string ending = lower_case_extension(choice.file);
+    require_fitting_options(choice, ending);
     if (const auto reader = readers.sources.find(ending); reader != readers.sources.end()) {
         return reader->second(choice);
     }

@@ -49,7 +49,7 @@ TEST_CASE("an export that cannot be made ends with one line, and leaves no file"
     const auto [arguments, expected] = GENERATE(table<std::string, std::string>({
         {"", "--output"},
         {"-o out.vdb --structures K_L,K_oL", "2 cases"},
-        {"-o out.vdb --structures K_L --splits s_L,s_G", "a file takes one"},
+        {"-o out.vdb --structures K_L --splits s_L,s_G", "only one can be taken"},
         {"-o out.vdb s.csv --tau 1,0.5", "2 cases"},
         {"-o out.vdb s.csv --structures uniform-nearest --equal-delta 0.1", "give voxel"},
         {"-o out.vdb --structures K_X", "K_X"},
@@ -62,7 +62,7 @@ TEST_CASE("an export that cannot be made ends with one line, and leaves no file"
         {"-o out.vdb s.csv --tolerance -1", "tolerance"},
         {"-o out.vdb s.csv --access-points 3", "--access-points"},
         {"-o none/out.vdb s.csv", "none/out.vdb"},
-        {"-o . s.csv", "directory"},
+        {"-o . s.csv", ".: name a file of one of .csv"},
         {"-o /dev/full s.csv", "/dev/full"},
         {"-o /proc/out.vdb s.csv", "/proc/out.vdb"},
     }));

@@ -1,6 +1,7 @@
 // End to end: `controlspace info`, `convert` and `query`.
 #include <catch2/catch.hpp>
 #include <string>
+#include <vector>
 
 #include "app/sandbox.h"
 
@@ -13,6 +14,14 @@ const std::string sizes_csv = "x,y,z,h\n0,0,0,0.1\n1,0,0,0.2\n0,1,0,0.2\n1,1,1,0
 const std::string tensors_csv =
     "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n"
     "0,0,0,0.3,0.4,0.5,0.02,-0.03,0.05\n1,2,3,0.35,0.45,0.55,-0.01,0.06,0.07\n";
+
+/// That sources can be written in and read from.
+const std::vector<std::string> formats{
+    "csv", "mesh", "sol", "meshb", "solb", "pos",
+#ifdef CONTROLSPACE_VTK
+    "vtu", "vtp",
+#endif
+};
 
 /// The numbers of a table, row by row.
 std::vector<double> numbers_of(const std::string& csv) {
@@ -45,7 +54,7 @@ TEST_CASE("sources that are converted there and back are the same") {
     const Sandbox box("convert");
     box.write("sizes.csv", sizes_csv);
     box.write("tensors.csv", tensors_csv);
-    const std::string format = GENERATE("csv", "mesh", "sol", "meshb", "solb");
+    const std::string format = GENERATE(from_range(formats));
     for (const std::string name : {"sizes", "tensors"}) {
         CAPTURE(format, name);
         const Outcome there = box.run("convert " + name + ".csv out." + format);
@@ -96,6 +105,8 @@ TEST_CASE("commands on files that cannot be carried out end with one line") {
         {"convert no.csv out.csv", "no.csv: no such file"},
         {"convert s.csv no/out.mesh", "cannot write"},
         {"convert s.csv out.csv --vdb-size x", "--vdb-size: 'x' is not a number"},
+        {"info s.csv --source-array a", "(source_array) are for .vtu, .vtp, .msh and .pos"},
+        {"info s.csv --surface-h-min 1", "are for .stl, .obj, .ply and .off: leave them out"},
         {"query s.csv", "POINTS"},
         {"query s.csv p.csv", "p.csv:1: column 'z' is missing"},
         {"query s.csv none.csv", "none.csv holds no points"},

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "sources/point_source.h"
+#include "study/file_choice.h"
+
+namespace controlspace {
+
+/// Sources at the vertices of a surface of polygons (.stl, .obj, .ply, .off), each vertex once. A
+/// jet of second order is fitted to the vertices around; the length along each principal direction
+/// of curvature κ is 2 sin(angle / 2) / |κ|, within h_min and h_max, and across the surface the
+/// smaller of the two.
+///
+/// Throws InputError that names the file for what cannot be read; for a vertex where those around
+/// do not determine the curvature; and for bounds or an angle that are none.
+std::vector<PointSource> read_surface_sources(const std::filesystem::path& path,
+                                              const CurvatureSizes& sizes = {});
+
+}  // namespace controlspace

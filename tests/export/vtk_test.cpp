@@ -1,0 +1,269 @@
+// Files of VTK, read by VTK itself and by our reader.
+#include <vtkCell.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFloatArray.h>
+#include <vtkHyperTreeGrid.h>
+#include <vtkHyperTreeGridNonOrientedGeometryCursor.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLHyperTreeGridReader.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <catch2/catch.hpp>
+
+#include "export/elements.h"
+#include "export/read_vtk_sources.h"
+#include "export/vtk_fields.h"
+#include "export/write_vtk.h"
+#include "fields/formula_field.h"
+#include "sources/files.h"
+#include "sources/riemannian.h"
+#include "sources/sampled_surfaces.h"
+#include "spaces/catalogue.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const Box domain{{-1, -1, -1}, {1, 1, 2}};
+
+const CatalogueEntry& tree_named(const std::string& id) {
+    for (const CatalogueEntry& entry : tree_catalogue()) {
+        if (entry.id == id) return entry;
+    }
+    throw std::logic_error(id);
+}
+
+/// Filled with tensors whose numbers all differ.
+std::unique_ptr<ControlSpace> filled(const std::string& id) {
+    std::vector<PointSource> sources = sample_sphere({.h = 0.2, .rho = 2});
+    for (PointSource& s : sources) {
+        const Point& p = s.position;
+        s.metric = {0.3 + 0.1 * p.x(), 0.4 + 0.1 * p.y(), 0.5, 0.02 + 0.01 * p.x(), -0.03, 0.05};
+    }
+    auto space = tree_named(id).make({.domain = domain, .finest_length = 0.15});
+    space->insert(sources);
+    return space;
+}
+
+template <class Reader>
+auto read_back(const std::filesystem::path& path) {
+    vtkNew<Reader> reader;
+    reader->SetFileName(path.c_str());
+    reader->Update();
+    return vtkSmartPointer(reader->GetOutput());
+}
+
+Eigen::Matrix3d tensor_at(vtkDataSetAttributes& data, vtkIdType i) {
+    std::array<double, 9> t{};
+    data.GetArray(vtk_metric_array)->GetTuple(i, t.data());
+    return Eigen::Map<Eigen::Matrix3d>(t.data());
+}
+
+bool is_riemannian_of(const Eigen::Matrix3d& t, const Metric& m) {
+    return (m.matrix() * t * m.matrix()).isApprox(Eigen::Matrix3d::Identity(), 1e-10);
+}
+
+double value_at(vtkDataSetAttributes& data, const char* name, vtkIdType i) {
+    return data.GetArray(name)->GetTuple1(i);
+}
+
+void check_close(const std::vector<PointSource>& a, const std::vector<PointSource>& b,
+                 double tolerance = 1e-12) {
+    REQUIRE(a.size() == b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        CHECK((a[i].position - b[i].position).norm() <= tolerance);
+        CHECK(a[i].metric.matrix().isApprox(b[i].metric.matrix(), tolerance));
+    }
+}
+
+const std::vector<PointSource> two{{{0.1, -0.2, 0.3}, {0.3, 0.4, 0.5, 0.02, -0.03, 0.05}},
+                                   {{1, 2, 4}, {0.35, 0.45, 0.55, -0.01, 0.06, 0.07}}};
+
+/// `two` in a .vtp by VTK's own writer.
+template <class Array>
+std::filesystem::path write_vtp(const ScratchDirectory& folder, int components, const char* name,
+                                vtkXMLWriter& writer) {
+    vtkNew<vtkPolyData> grid;
+    vtkNew<vtkPoints> points;
+    vtkNew<Array> array;
+    array->SetName(name);
+    array->SetNumberOfComponents(components);
+    for (const PointSource& s : two) {
+        points->InsertNextPoint(s.position.data());
+        const Metric t = to_riemannian(s.metric);
+        const double h[] = {s.metric.xx};
+        const double vtk_order[] = {t.xx, t.yy, t.zz, t.xy, t.yz, t.xz};
+        const double rows[] = {t.xx, t.xy, t.xz, t.xy, t.yy, t.yz, t.xz, t.yz, t.zz};
+        array->InsertNextTuple(components == 1 ? h : components == 6 ? vtk_order : rows);
+    }
+    grid->SetPoints(points);
+    grid->GetPointData()->AddArray(array);
+    const auto path = folder.path() / "two.vtp";
+    writer.SetInputDataObject(grid);
+    writer.SetFileName(path.c_str());
+    writer.Write();
+    return path;
+}
+
+}  // namespace
+
+TEST_CASE("leaves are hexahedra with the metrics at their centres") {
+    const std::string id = GENERATE("K_oL", "K_V");
+    const ScratchDirectory folder;
+    const auto space = filled(id);
+    write_leaves(folder.path() / "leaves.vtu", *space);
+    const auto grid = read_back<vtkXMLUnstructuredGridReader>(folder.path() / "leaves.vtu");
+    const std::vector<Box> elements = elements_of(*space);
+    REQUIRE(static_cast<std::size_t>(grid->GetNumberOfCells()) == elements.size());
+    for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i) {
+        const Box& box = elements[static_cast<std::size_t>(i)];
+        vtkCell& cell = *grid->GetCell(i);
+        REQUIRE(cell.GetCellType() == VTK_HEXAHEDRON);
+        std::array<Point, 8> p;
+        for (int k = 0; k < 8; ++k) cell.GetPoints()->GetPoint(k, p[std::size_t(k)].data());
+        CHECK(p[0] == box.low);
+        CHECK(p[6] == box.high);
+        CHECK((p[1] - p[0]).cross(p[3] - p[0]).dot(p[4] - p[0]) == Approx(box.edges().prod()));
+        const Metric m = sample_at(*space, box.centre());
+        CHECK(is_riemannian_of(tensor_at(*grid->GetCellData(), i), m));
+        const auto lengths = eigen_frame(m).lengths;
+        CHECK(value_at(*grid->GetCellData(), "h_min", i) == Approx(lengths[0]));
+        CHECK(value_at(*grid->GetCellData(), "h_max", i) == Approx(lengths[2]));
+        CHECK(value_at(*grid->GetCellData(), "h_mean", i) == Approx(mean_length(m)));
+        CHECK(value_at(*grid->GetCellData(), "anisotropy", i) == Approx(lengths[2] / lengths[0]));
+    }
+}
+
+TEST_CASE("control nodes are points that can be read as sources") {
+    const ScratchDirectory folder;
+    const auto space = filled("K_oV");
+    write_nodes(folder.path() / "nodes.vtu", *space);
+    const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
+    const std::vector<Point> places = positions(nodes.graph);
+    std::vector<PointSource> expected;
+    for (std::size_t i = 0; i < places.size(); ++i)
+        expected.push_back({places[i], nodes.metrics[i]});
+    check_close(read_vtk_sources(folder.path() / "nodes.vtu"), expected);
+}
+
+TEST_CASE("an octree is a hyper tree grid with the same leaves") {
+    const ScratchDirectory folder;
+    const auto space = filled("K_oL");
+    write_octree(folder.path() / "tree.htg", *space);
+    vtkNew<vtkXMLHyperTreeGridReader> reader;
+    reader->SetFileName((folder.path() / "tree.htg").c_str());
+    reader->Update();
+    auto& grid = *vtkHyperTreeGrid::SafeDownCast(reader->GetOutputDataObject(0));
+    REQUIRE(static_cast<std::size_t>(grid.GetNumberOfLeaves()) == space->footprint().leaves);
+    vtkNew<vtkHyperTreeGridNonOrientedGeometryCursor> cursor;
+    grid.InitializeNonOrientedGeometryCursor(cursor, 0);
+    int leaves = 0;
+    const std::function<void()> visit = [&] {
+        if (!cursor->IsLeaf()) {
+            for (unsigned char c = 0; c < cursor->GetNumberOfChildren(); ++c) {
+                cursor->ToChild(c);
+                visit();
+                cursor->ToParent();
+            }
+            return;
+        }
+        ++leaves;
+        Point centre;
+        cursor->GetPoint(centre.data());
+        REQUIRE(space->element_at(centre).centre().isApprox(centre, 1e-12));
+        REQUIRE(is_riemannian_of(tensor_at(*grid.GetCellData(), cursor->GetGlobalNodeIndex()),
+                                 sample_at(*space, centre)));
+    };
+    visit();
+    CHECK(leaves == grid.GetNumberOfLeaves());
+    CHECK_THAT(error_of([&] { write_octree(folder.path() / "kd.htg", *filled("K_L")); }),
+               Contains("only an octree"));
+    CHECK_FALSE(std::filesystem::exists(folder.path() / "kd.htg"));
+}
+
+TEST_CASE("a slice is an image of the field") {
+    const ScratchDirectory folder;
+    const FormulaField field([](const Point& p) {
+        return Metric{
+            0.3 + 0.05 * p.x(), 0.4 + 0.05 * p.y(), 0.5 + 0.05 * p.z(), 0.02, -0.03, 0.05};
+    });
+    const Axis axis = GENERATE(0, 1, 2);
+    CAPTURE(axis);
+    write_slice(folder.path() / "s.vti", field, domain, {.axis = axis, .at = 0.25, .samples = 13});
+    const auto image = read_back<vtkXMLImageDataReader>(folder.path() / "s.vti");
+    CHECK(image->GetNumberOfPoints() == (axis == 2 ? 13 * 13 : 13 * 9));
+    Point low = Point::Zero(), high = low;
+    for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i) {
+        Point x;
+        image->GetPoint(i, x.data());
+        CHECK(x[axis] == 0.25);
+        if (i == 0) low = x;
+        high = x;
+        REQUIRE(is_riemannian_of(tensor_at(*image->GetPointData(), i), metric_at(field, x)));
+    }
+    Box plane = domain;
+    plane.low[axis] = plane.high[axis] = 0.25;
+    CHECK(low == plane.low);
+    CHECK(high.isApprox(plane.high));
+    const auto error = [&](const Slice& slice) {
+        return error_of([&] { write_slice(folder.path() / "e.vti", field, domain, slice); });
+    };
+    CHECK_THAT(error({.axis = 0, .at = 1.5}), Contains("a slice at x = 1.5 is outside"));
+    CHECK_THAT(error({.samples = 1}), Contains("1 samples"));
+    CHECK_FALSE(std::filesystem::exists(folder.path() / "e.vti"));
+}
+
+TEST_CASE("sources that are written for VTK are read back") {
+    const ScratchDirectory folder;
+    for (const char* name : {"s.vtu", "s.vtp"}) {
+        write_vtk_sources(folder.path() / name, two);
+        check_close(read_vtk_sources(folder.path() / name), two);
+    }
+    CHECK_THAT(error_of([&] { write_vtk_sources("/dev/full", two); }), Contains("/dev/full"));
+}
+
+TEST_CASE("arrays of 1, 6 and 9 components, however VTK encodes them") {
+    const ScratchDirectory folder;
+    const int components = GENERATE(1, 6, 9);
+    const auto set_mode =
+        GENERATE(&vtkXMLWriter::SetDataModeToAscii, &vtkXMLWriter::SetDataModeToBinary,
+                 &vtkXMLWriter::SetDataModeToAppended);
+    const bool big_endian = GENERATE(false, true);
+    vtkNew<vtkXMLPolyDataWriter> writer;
+    (writer->*set_mode)();
+    if (big_endian) writer->SetByteOrderToBigEndian();
+    std::vector<PointSource> expected = two;
+    if (components == 1) {
+        for (PointSource& s : expected) s.metric = Metric::isotropic(s.metric.xx);
+    }
+    // VTK's points are of floats unless one asks for more, and its texts of a few digits.
+    const double tolerance = 1e-6;
+    const auto path = write_vtp<vtkDoubleArray>(folder, components, "a:metric", *writer);
+    check_close(read_vtk_sources(path), expected, tolerance);
+    check_close(read_vtk_sources(path, "a:metric"), expected, tolerance);
+    const auto floats = write_vtp<vtkFloatArray>(folder, components, "size", *writer);
+    check_close(read_vtk_sources(floats, "size"), expected, 1e-5);
+    CHECK_THAT(error_of([&] { read_vtk_sources(floats); }),
+               Contains("0 arrays of points are named :metric; there are 'size': name one"));
+    CHECK_THAT(error_of([&] { read_vtk_sources(floats, "sizes"); }),
+               Contains("0 arrays of points are 'sizes'"));
+}
+
+TEST_CASE("arrays that are no metrics are refused") {
+    const ScratchDirectory folder;
+    vtkNew<vtkXMLPolyDataWriter> writer;
+    CHECK_THAT(error_of([&] {
+                   read_vtk_sources(write_vtp<vtkDoubleArray>(folder, 3, ":metric", *writer));
+               }),
+               Contains("array ':metric' has 3 components: give 1"));
+}

@@ -1,0 +1,166 @@
+// Files that Gmsh itself wrote.
+#include <gmsh.h>
+
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <fstream>
+
+#include "mesh/gmsh_session.h"
+#include "mesh/read_msh_sources.h"
+#include "sources/files.h"
+#include "sources/pos.h"
+#include "sources/riemannian.h"
+#include "sources/text_file.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+Metric metric_of(const Point& p) {
+    return {0.3 + 0.05 * p.x(), 0.4 + 0.05 * p.y(), 0.5 + 0.05 * p.z(), 0.02, -0.03, 0.05};
+}
+
+std::vector<double> row_of(const Point& p, bool sizes) {
+    if (sizes) return {metric_of(p).xx};
+    const Metric t = to_riemannian(metric_of(p));
+    return {t.xx, t.xy, t.xz, t.xy, t.yy, t.yz, t.xz, t.yz, t.zz};
+}
+
+/// A box meshed by Gmsh, with data at its nodes, as Gmsh saves it.
+void write_by_gmsh(const std::filesystem::path& msh, bool sizes, bool binary, int views = 1) {
+    in_gmsh_session(1, [&] {
+        gmsh::option::setNumber("Mesh.Binary", binary ? 1 : 0);
+        gmsh::option::setNumber("Mesh.MeshSizeMax", 0.4);
+        gmsh::model::occ::addBox(0, 0, 0, 1, 1, 2);
+        gmsh::model::occ::synchronize();
+        gmsh::model::mesh::generate(3);
+        std::vector<std::size_t> tags;
+        std::vector<double> x, unused;
+        gmsh::model::mesh::getNodes(tags, x, unused);
+        std::vector<std::vector<double>> rows;
+        for (std::size_t i = 0; i < tags.size(); ++i)
+            rows.push_back(row_of(Point(&x[3 * i]), sizes));
+        gmsh::write(msh.string());
+        std::string model;
+        gmsh::model::getCurrent(model);
+        for (int i = 0; i < views; ++i) {
+            const int view = gmsh::view::add("view " + std::to_string(i));
+            gmsh::view::addModelData(view, 0, model, "NodeData", tags, rows);
+            gmsh::view::write(view, msh.string(), true);
+        }
+    });
+}
+
+/// Sources that ask for what metric_of says.
+void check_sources(const std::vector<PointSource>& sources, bool sizes) {
+    for (const PointSource& s : sources) {
+        const Metric m = metric_of(s.position);
+        const Metric expected = sizes ? Metric::isotropic(m.xx) : m;
+        REQUIRE(s.metric.matrix().isApprox(expected.matrix(), 1e-6));
+    }
+}
+
+std::string altered(std::string text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+TEST_CASE("data at the nodes of a mesh by Gmsh are sources") {
+    const ScratchDirectory folder;
+    const bool sizes = GENERATE(true, false);
+    const bool binary = GENERATE(false, true);
+    const auto path = folder.path() / "box.msh";
+    write_by_gmsh(path, sizes, binary, 2);
+    CHECK_THAT(error_of([&] { read_msh_sources(path); }),
+               Contains("2 of its views can be meant: name one of 'view 0', 'view 1'"));
+    const auto sources = read_msh_sources(path, "view 1");
+    CHECK(sources.size() > 50);
+    check_sources(sources, sizes);
+}
+
+TEST_CASE("list views that Gmsh saved are sources") {
+    const ScratchDirectory folder;
+    const std::string type = GENERATE("SP", "TP", "SS", "TS");
+    const bool sizes = type[0] == 'S';
+    const std::vector<Point> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const std::size_t used = type[1] == 'P' ? 1 : 4;
+    std::vector<double> data;
+    for (Axis a = 0; a < 3; ++a) {  // all x, then all y, then all z
+        for (std::size_t i = 0; i < used; ++i) data.push_back(corners[i][a]);
+    }
+    for (std::size_t i = 0; i < used; ++i) {
+        const auto row = row_of(corners[i], sizes);
+        data.insert(data.end(), row.begin(), row.end());
+    }
+    const auto path = folder.path() / "list.pos";
+    in_gmsh_session(1, [&] {
+        const int view = gmsh::view::add("a list");
+        gmsh::view::addListData(view, type, 1, data);
+        gmsh::view::write(view, path.string());
+    });
+    CAPTURE(type, read_text_file(path));
+    const auto sources = read_pos_sources(path);
+    REQUIRE(sources.size() == used);
+    check_sources(sources, sizes);
+}
+
+TEST_CASE("list views that are written here are read by Gmsh") {
+    const ScratchDirectory folder;
+    const Point p(0.5, 0.25, 2);
+    write_pos_sources(folder.path() / "a.pos", std::vector<PointSource>{{p, metric_of(p)}});
+    std::vector<std::string> types;
+    std::vector<int> counts;
+    std::vector<std::vector<double>> data;
+    in_gmsh_session(1, [&] {
+        gmsh::merge((folder.path() / "a.pos").string());
+        std::vector<int> tags;
+        gmsh::view::getTags(tags);
+        gmsh::view::getListData(tags.at(0), types, counts, data);
+    });
+    REQUIRE(types == std::vector<std::string>{"TP"});
+    std::vector<double> expected{p.x(), p.y(), p.z()};
+    for (const double x : row_of(p, false)) expected.push_back(x);
+    REQUIRE(data.at(0).size() == expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) CHECK(data[0][i] == Approx(expected[i]));
+}
+
+TEST_CASE("a .msh that lies or breaks off is refused before Gmsh sees it") {
+    const ScratchDirectory folder;
+    const auto path = folder.path() / "box.msh";
+    const auto error = [&](const std::string& bytes) {
+        std::ofstream(path, std::ios::binary) << bytes;
+        return error_of([&] { read_msh_sources(path); });
+    };
+    write_by_gmsh(path, true, false);
+    const std::string text = read_text_file(path);
+    CHECK_THAT(error(altered(text, "4.1 0 8", "2.2 0 8")), Contains("box.msh:2: format '2.2'"));
+    CHECK_THAT(error("mesh"), Contains("does not start with $MeshFormat"));
+    CHECK_THAT(error(text.substr(0, text.find("$EndNodes"))), Contains("no $NodeData"));
+    CHECK_THAT(error(text.substr(0, text.find("$EndNodes") - 200)), Contains("cut off"));
+    const std::size_t nodes = text.find("$Nodes\n") + 7;
+    const std::size_t line_end = text.find('\n', nodes);
+    const auto with_head = [&](const std::string& head) {
+        return text.substr(0, nodes) + head + text.substr(line_end);
+    };
+    CHECK_THAT(error(with_head("27 2000000000 1 2000000000")), Contains("Nodes 2000000"));
+    CHECK_THAT(error(with_head("27 -5 1 5")), Contains("'-5' instead of a count"));
+    CHECK_THAT(error(with_head("27 3 1 3")), Contains("left"));
+    CHECK_THAT(error(with_head("many")), Contains("'many' instead of a count"));
+    const std::size_t data = text.find("$NodeData");
+    CHECK_THAT(error(text.substr(0, data) +
+                     altered(text.substr(data), "\n3\n0\n1\n", "\n3\n0\n1\n2000000000\n")),
+               Contains("NodeData 2000000000"));
+    CHECK_THAT(error(text.substr(0, data)), Contains("no $NodeData"));
+
+    write_by_gmsh(path, true, true);
+    std::string bytes = read_binary_file(path);
+    const std::size_t binary_nodes = bytes.find("$Nodes\n") + 7;
+    const std::uint64_t lie = 2'000'000'000;
+    std::memcpy(&bytes[binary_nodes + 8], &lie, sizeof lie);
+    CHECK_THAT(error(bytes), Contains("box.msh, byte ") && Contains("Nodes 2000000"));
+    CHECK_THAT(error(bytes.substr(0, binary_nodes + 4)), Contains("ends within a count"));
+}

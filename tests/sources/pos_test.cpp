@@ -1,0 +1,97 @@
+#include "sources/pos.h"
+
+#include <catch2/catch.hpp>
+
+#include "sources/files.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+std::vector<PointSource> parsed(const std::string& text, const std::string& view = "") {
+    return parse_pos_sources(text, "v.pos", view);
+}
+std::string error_in(const std::string& text, const std::string& view = "") {
+    return error_of([&] { parsed(text, view); });
+}
+
+}  // namespace
+
+TEST_CASE("scalars are sizes, tensors Riemannian metrics by rows") {
+    const auto sizes = parsed(
+        "// sizes\nView \"h\" {\n  SP(1,-2.5, 3e-1) { 0.25 };\n/* a\n line */ SP "
+        "(0,0,0){0.5};};\n");
+    CHECK(sizes == std::vector<PointSource>{{{1, -2.5, 0.3}, Metric::isotropic(0.25)},
+                                            {{0, 0, 0}, Metric::isotropic(0.5)}});
+    // 𝓜 with 1/4, 1/16 and 1/25 along x, y and z turned by 30 degrees around z: h = 2, 4, 5.
+    const auto tensors = parsed(
+        "View \"m\"{TP(0,0,0){0.203125,0.08118988160479113,0,0.08118988160479113,0.109375,0,"
+        "0,0,0.04};};");
+    REQUIRE(tensors.size() == 1);
+    const Metric& m = tensors[0].metric;
+    const double c = std::sqrt(3) / 2, s = 0.5;
+    CHECK(metric_length(m, {c, s, 0}) == Approx(1 / 2.0));
+    CHECK(metric_length(m, {-s, c, 0}) == Approx(1 / 4.0));
+    CHECK(metric_length(m, {0, 0, 1}) == Approx(1 / 5.0));
+}
+
+TEST_CASE("elements give a source at each corner, and shared corners one") {
+    const auto sources = parsed(
+        "View \"h\" {SS(0,0,0, 1,0,0, 0,1,0, 0,0,1){1,2,3,4};"
+        "SS(1,1,1, 1,0,0, 0,1,0, 0,0,1){5,2,3,9};};");
+    REQUIRE(sources.size() == 6);
+    CHECK(sources[1] == PointSource{{1, 0, 0}, Metric::isotropic(2)});
+    CHECK(sources[4] == PointSource{{1, 1, 1}, Metric::isotropic(5)});
+    // The same place with another value is another source.
+    CHECK(sources[5] == PointSource{{0, 0, 1}, Metric::isotropic(9)});
+    const std::string unit = "1,0,0,0,1,0,0,0,1";
+    CHECK(parsed("View \"m\" {TS(0,0,0,1,0,0,0,1,0,0,0,1){" + unit + "," + unit + "," + unit + "," +
+                 unit + "};};")
+              .size() == 4);
+}
+
+TEST_CASE("of several views one is named") {
+    const std::string two = "View \"a\" {SP(0,0,0){1};};\nView \"b\" {SP(0,0,0){2};};\n";
+    CHECK(parsed(two, "b").front().metric == Metric::isotropic(2));
+    CHECK_THAT(error_in(two), Contains("2 views, the first two 'a' and 'b': name one"));
+    CHECK_THAT(error_in(two, "c"), Contains("no view 'c': its first one is 'a'"));
+}
+
+TEST_CASE("sources that are written as a view are read back") {
+    const ScratchDirectory scratch;
+    std::vector<PointSource> sources{{{0.1, -0.2, 0.3}, {0.3, 0.4, 0.5, 0.02, -0.03, 0.05}},
+                                     {{1e-9, 4, 1e9}, {0.35, 0.45, 0.55, -0.01, 0.06, 0.07}}};
+    write_pos_sources(scratch.path() / "a.pos", sources);
+    const auto read = read_pos_sources(scratch.path() / "a.pos");
+    REQUIRE(read.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+        CHECK(read[i].position == sources[i].position);
+        CHECK(read[i].metric.matrix().isApprox(sources[i].metric.matrix(), 1e-13));
+    }
+    for (PointSource& s : sources) s.metric = Metric::isotropic(s.metric.xx);
+    write_pos_sources(scratch.path() / "a.pos", sources);
+    CHECK(read_pos_sources(scratch.path() / "a.pos") == sources);
+}
+
+TEST_CASE("what is wrong in a view is named with its line") {
+    CHECK_THAT(error_in("// nothing\n"), Contains("v.pos:2: no View"));
+    CHECK_THAT(error_in("solid a\n"), Contains("v.pos:1: 'View' expected, 'solid a?' found"));
+    CHECK_THAT(error_in("View \"h\n{"), Contains("v.pos:1: a name without an end"));
+    CHECK_THAT(error_in("View \"h\" {\n"), Contains("v.pos:2: '' is no element"));
+    CHECK_THAT(error_in("View \"h\" {};"), Contains("holds no sources"));
+    const auto element = [](const std::string& text) {
+        return error_in("View \"h\" {\n" + text + "\n};");
+    };
+    CHECK_THAT(element("VP(0,0,0){1,1,1};"), Contains("v.pos:2: 'VP' is no element"));
+    CHECK_THAT(element("SP(0,0){1};"), Contains("2 numbers instead of 3"));
+    CHECK_THAT(element("SP(0,0,0){1,1};"), Contains("2 numbers instead of 1: of one step in time"));
+    CHECK_THAT(element("SP(0,0,zero){1};"), Contains("v.pos:2: 'zero' is not a number"));
+    CHECK_THAT(element("SP(0,0,0){nan};"), Contains("size nan: a length must be positive"));
+    CHECK_THAT(element("SP(0,0,inf){1};"), Contains("inf cannot be a coordinate"));
+    CHECK_THAT(element("SP(0,0,0){-1};"), Contains("size -1"));
+    CHECK_THAT(element("SP(0,0,0){1}"), Contains("v.pos:3: ';' expected, '};' found"));
+    CHECK_THAT(element("TP(0,0,0){1,2,0,0,1,0,0,0,1};"), Contains("tensor 1 of v.pos is not symm"));
+    CHECK_THAT(element("TP(0,0,0){1,2,0,2,1,0,0,0,1};"),
+               Contains("tensor 1 of v.pos is not positive definite, 1 of 1 are not"));
+}
