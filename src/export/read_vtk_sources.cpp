@@ -4,6 +4,7 @@
 #include <vtkCallbackCommand.h>
 #include <vtkDataArray.h>
 #include <vtkExecutive.h>
+#include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPointSet.h>
@@ -56,28 +57,35 @@ void require_plausible_counts(const std::filesystem::path& path) {
     }
 }
 
-/// Keeps the first error that VTK reports, which would be printed otherwise.
+/// Keeps the first error that VTK's readers report. What they and their helpers say is not printed
+/// meanwhile.
 class ErrorLog {
 public:
-    ErrorLog() {
+    ErrorLog() : verbosity_(vtkLogger::GetCurrentVerbosityCutoff()) {
+        vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
         command_->SetClientData(this);
         command_->SetCallback([](vtkObject*, unsigned long, void* self, void* text) {
             static_cast<ErrorLog*>(self)->add(static_cast<const char*>(text));
         });
     }
+    ~ErrorLog() { vtkLogger::SetStderrVerbosity(verbosity_); }
+    ErrorLog(const ErrorLog&) = delete;
+    ErrorLog& operator=(const ErrorLog&) = delete;
+
     vtkCommand* command() { return command_; }
     const std::string& first() const { return first_; }
 
 private:
-    /// "ERROR: In ...\nvtkX (0x...): what is wrong\n\n" by its last line.
+    /// Of "ERROR: In ...\nvtkX (0x...): what is wrong\n\n" what is wrong.
     void add(std::string_view text) {
         if (!first_.empty()) return;
-        while (text.ends_with('\n')) text.remove_suffix(1);
-        text.remove_prefix(text.rfind('\n') + 1);
         if (const auto colon = text.find("): "); colon != text.npos) text.remove_prefix(colon + 3);
-        first_ = text.empty() ? "it cannot be read" : text;
+        text = text.substr(0, text.find('\n'));
+        // Where no reader, but their pipeline alone complains, it tells of itself.
+        first_ = text.starts_with("Algorithm ") ? "it is malformed" : text;
     }
 
+    const vtkLogger::Verbosity verbosity_;
     vtkNew<vtkCallbackCommand> command_;
     std::string first_;
 };

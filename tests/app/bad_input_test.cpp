@@ -122,6 +122,7 @@ std::vector<BadFile> vtk_files() {
         {"f.vtu", vtu(points, "NumberOfPoints=\"-2\""), "f.vtu:3: NumberOfPoints"},
         {"f.vtu", vtu(points, "NumberOfPoints=\"3\""), "f.vtu: VTK cannot read it: "},
         {"f.vtu", vtu(sizes, "0.5 nan"), "f.vtu: "},
+        {"f.vtu", vtu("Float64", "Float65"), "f.vtu: VTK cannot read it: "},
         {"f.vtu", vtu(sizes, "0.5 -1"), "size 2 of f.vtu is -1: a length must be positive"},
         {"f.vtu", vtu("0 0 0 1", "0 1e99 0 1"), "f.vtu: point 1 has a coordinate 1e+99"},
         {"f.vtu", vtu("a:metric", "a"), "0 arrays of points are named :metric; there are 'a'"},
