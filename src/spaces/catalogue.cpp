@@ -29,6 +29,7 @@ CatalogueEntry entry(const char* id, const char* description) {
     entry.order = Storage::order;
     entry.make = make<Node, Storage, balanced>;
     entry.takes_metrics = !std::is_same_v<Storage, AnchoredValues>;
+    entry.can_freeze = entry.takes_metrics;
     entry.group = entry.takes_metrics ? "trees" : "anchored";
     return entry;
 }

@@ -29,6 +29,7 @@ struct CatalogueEntry {
     bool has_voxels = false;     ///< a grid, made finer by SpaceOptions::voxel
     bool has_levels = false;     ///< a grid of voxels of many sizes: SpaceOptions::voxel_factor
     bool can_prune = false;      ///< joins voxels that are alike: SpaceOptions::prune_delta
+    bool can_freeze = false;     ///< has forms that are only read: ControlSpace::freeze
     double rounding = 1e-12;     ///< δ up to which it answers metrics that it was given
     std::string former_id = {};  ///< still understood in options and study files
 };

@@ -40,6 +40,7 @@ std::string variant_of(const Case& c) {
     if (c.equal_memory) label += fmt::format(", for {:.4g} MB", *c.equal_memory);
     if (c.neighbourhood == Neighbourhood::all) label += ", all neighbours";
     if (c.node_values == NodeValues::exact) label += ", exact at nodes";
+    if (c.frozen != Frozen::no) label += fmt::format(", frozen with {}", name_of(c.frozen));
     return label;
 }
 

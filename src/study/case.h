@@ -30,6 +30,9 @@ enum class NodeValues {
     exact,   ///< the reference at their places: what is left is the error of interpolation alone
 };
 
+/// Whether a structure is made compact, and only read, once it is finished (ControlSpace::freeze).
+enum class Frozen { no, doubles, floats };
+
 /// The sources of one case: a sampled surface (paper §5.1), a file, an analytic field, or such a
 /// field with sources on top.
 struct SourcesChoice {
@@ -68,6 +71,7 @@ struct Case {
     std::optional<double> equal_delta = {};
     std::optional<double> equal_memory = {};
     NodeValues node_values = NodeValues::graded;  ///< structures that hold metrics only
+    Frozen frozen = Frozen::no;                   ///< the paper's trees only
     GradationLaw law = GradationLaw::cone;
     GradationSchedule schedule = GradationSchedule::queue;
     Neighbourhood neighbourhood = Neighbourhood::faces;  ///< structures that hold metrics only

@@ -66,6 +66,11 @@ struct Names<NodeValues> {
     static constexpr std::array<std::pair<NodeValues, std::string_view>, 2> table{
         {{NodeValues::graded, "graded"}, {NodeValues::exact, "exact"}}};
 };
+template <>
+struct Names<Frozen> {
+    static constexpr std::array<std::pair<Frozen, std::string_view>, 3> table{
+        {{Frozen::no, "no"}, {Frozen::doubles, "doubles"}, {Frozen::floats, "floats"}}};
+};
 
 template <class Enum>
 constexpr std::string_view name_of(Enum value) {

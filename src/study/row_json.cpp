@@ -41,6 +41,7 @@ void add_setting(Json& json, const Case& c) {
     json["equal_delta"] = or_null(c.equal_delta);
     json["equal_memory"] = or_null(c.equal_memory);
     json["node_values"] = name_of(c.node_values);
+    json["frozen"] = name_of(c.frozen);
     json["law"] = name_of(c.law);
     json["schedule"] = name_of(c.schedule);
     json["neighbourhood"] = name_of(c.neighbourhood);
@@ -139,6 +140,7 @@ Case setting_from(const Json& json, const SourcesChoice& sources) {
     c.equal_delta = newer_from<double>(json, "equal_delta");
     c.equal_memory = newer_from<double>(json, "equal_memory");
     if (json.contains("node_values")) c.node_values = named<NodeValues>(json, "node_values");
+    if (json.contains("frozen")) c.frozen = named<Frozen>(json, "frozen");
     c.law = named<GradationLaw>(json, "law");
     c.schedule = named<GradationSchedule>(json, "schedule");
     if (json.contains("neighbourhood")) {

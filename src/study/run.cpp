@@ -83,7 +83,9 @@ const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> ca
                          [&](const CatalogueEntry& entry) { return entry.id == c.structure; });
 }
 
-std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
+namespace {
+
+std::unique_ptr<ControlSpace> make_unfrozen(const Study& study, const Case& c,
                                             const CatalogueEntry& entry, const Workload& workload,
                                             Measures& m, const StudyObserver& observer) {
     if (c.target_delta || has_field(c.sources)) {
@@ -120,6 +122,16 @@ std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
         follow_at_nodes(*space, *make_reference(study, c, workload));
     }
     return space;
+}
+
+}  // namespace
+
+std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
+                                            const CatalogueEntry& entry, const Workload& workload,
+                                            Measures& m, const StudyObserver& observer) {
+    auto space = make_unfrozen(study, c, entry, workload, m, observer);
+    if (c.frozen == Frozen::no) return space;
+    return space->freeze(c.frozen == Frozen::floats ? Precision::floats : Precision::doubles);
 }
 
 /// Chooses the voxels of a case that asks for it, and says in the row if they fall short.

@@ -271,6 +271,11 @@ const Setting<Run> run_table[] = {
      "What control nodes hold: graded, as gradation leaves them; exact, the reference there, which "
      "shows the error of interpolation alone",
      set_names<&Run::node_values>, get_names<&Run::node_values>},
+    {"frozen", text_type, 0, "",
+     "Whether the paper's trees are made compact and only read once they are finished, which is "
+     "not "
+     "timed: no; doubles, the same bits; floats, metrics rounded by 6e-8",
+     set_names<&Run::frozen>, get_names<&Run::frozen>},
     {"law", text_type, 0, "", "Law of gradation: cone, mean-length", set_names<&Run::law>,
      get_names<&Run::law>},
     {"schedule", text_type, 0, "",

@@ -217,6 +217,9 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
             if (!c.target_delta) c.node_values = v;  // an adapted tree is exact at nodes
         });
     }
+    if (entry.can_freeze) {
+        multiply(cases, run.frozen, [](Case& c, Frozen frozen) { c.frozen = frozen; });
+    }
     if (entry.can_prune) {
         multiply(cases, run.prune_delta,
                  [](Case& c, double delta) { c.prune_delta = unless_zero(delta); });

@@ -36,6 +36,7 @@ struct Run {
     std::vector<double> equal_delta{0};   ///< 0: voxels as they are set
     std::vector<double> equal_memory{0};  ///< [MB]; 0: voxels as they are set
     std::vector<NodeValues> node_values{NodeValues::graded};
+    std::vector<Frozen> frozen{Frozen::no};
     std::vector<GradationLaw> law{GradationLaw::cone};
     std::vector<GradationSchedule> schedule{GradationSchedule::queue};
     std::vector<Neighbourhood> neighbourhood{Neighbourhood::faces};

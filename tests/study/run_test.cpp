@@ -175,6 +175,26 @@ TEST_CASE("with a field, trees are adapted to it and the sources; without a targ
     check(false);
 }
 
+TEST_CASE("frozen trees answer alike, in less memory; what cannot be frozen is as it was") {
+    Study study = small_study({"K_oV", "K_LA"});
+    study.runs[0].frozen = {Frozen::no, Frozen::doubles, Frozen::floats};
+    const auto trees = tree_catalogue();
+    std::vector<CatalogueEntry> catalogue(trees.begin(), trees.end());
+    const auto anchored = anchored_catalogue();
+    catalogue.insert(catalogue.end(), anchored.begin(), anchored.end());
+    const auto rows = run(study, catalogue);
+    REQUIRE(rows.size() == 4);
+    for (const Row& row : rows) REQUIRE(row.measures);
+    CHECK(structure_label(rows[2].setting) == "K_oV, frozen with floats");
+    const auto bytes = [&](std::size_t i) { return rows[i].measures->footprint.bytes_total(); };
+    CHECK(rows[1].measures->access_random.checksum == rows[0].measures->access_random.checksum);
+    CHECK(rows[2].measures->access_random.checksum != rows[0].measures->access_random.checksum);
+    CHECK(rows[2].measures->accuracy.max == Approx(rows[0].measures->accuracy.max).epsilon(1e-4));
+    CHECK(bytes(1) < bytes(0));
+    CHECK(bytes(2) < bytes(1));
+    CHECK(rows[3].setting.structure == "K_LA");
+}
+
 TEST_CASE("with the reference at their nodes, structures err between nodes only") {
     Study study = small_study({"K_oV", "K_LA"});
     study.runs[0].node_values = {NodeValues::graded, NodeValues::exact};
