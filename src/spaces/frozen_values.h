@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -44,7 +46,8 @@ protected:
     std::vector<StoredMetric<Number>> metrics_;
 };
 
-/// One metric a leaf, interpolated with those of the neighbours.
+/// One metric a leaf, interpolated with those of the neighbours. Each leaf knows where to look for
+/// them: the deepest part of the tree that holds all across a face, mostly a leaf.
 template <class Number, class Plane>
 class FrozenQuadratic : public FrozenLeaves<Number> {
 public:
@@ -52,26 +55,61 @@ public:
     FrozenQuadratic(const Topology<Node>& tree, CutPlanes planes,
                     std::vector<StoredMetric<Number>> metrics, double slope)
         : FrozenLeaves<Number>(std::move(metrics)), planes_(std::move(planes)), slope_(slope) {
-        faces_.reserve(tree.leaves());
-        for_each_faces<Plane>(
-            tree, planes_, [&](LeafIndex, const Faces<Plane>& faces) { faces_.push_back(faces); });
+        leaves_.reserve(tree.leaves());
+        for_each_faces<Plane>(tree, planes_, [&](LeafIndex leaf, const Faces<Plane>& faces) {
+            Leaf& l = leaves_.emplace_back();
+            l.faces = faces;
+            const Box box = faces.box(planes_);
+            for (int face = 0; face < 6; ++face) {
+                l.across[static_cast<std::size_t>(face)] = part_across(tree, leaf, box, face);
+            }
+        });
     }
 
-    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&faces_[leaf]); }
+    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&leaves_[leaf]); }
     template <class Node>
     Metric value_in(const Topology<Node>& tree, LeafIndex leaf, const Point& place) const {
-        return triquadratic_in(tree, leaf, faces_[leaf].box(planes_), place, slope_,
-                               [this](LeafIndex i) -> Metric { return this->metrics_[i]; });
+        const Leaf& l = leaves_[leaf];
+        const Box box = l.faces.box(planes_);
+        return triquadratic_in(box, place, this->metrics_[leaf], slope_, [&](const Point& x) {
+            std::array<Metric, 6> across;
+            for (int face = 0; face < 6; ++face) {
+                Ref part = l.across[static_cast<std::size_t>(face)];
+                if (!part.is_leaf()) {
+                    Point y = x;
+                    step_across(tree.domain(), box, face, y);
+                    part = tree.leaf_in(part, y);
+                }
+                across[static_cast<std::size_t>(face)] = this->metrics_[part.index()];
+            }
+            return across;
+        });
     }
 
     void describe(Footprint& footprint) const {
         FrozenLeaves<Number>::describe(footprint);
-        footprint.bytes_topology += faces_.capacity() * sizeof(Faces<Plane>) + planes_.bytes();
+        footprint.bytes_topology += leaves_.capacity() * sizeof(Leaf) + planes_.bytes();
     }
 
 private:
+    struct Leaf {
+        Faces<Plane> faces;
+        std::array<Ref, 6> across;
+    };
+
+    // At the domain's border the leaf itself.
+    template <class Node>
+    static Ref part_across(const Topology<Node>& tree, LeafIndex leaf, const Box& box, int face) {
+        // All places of the face but for its low edges, which belong to other leaves.
+        Box all = box;
+        for (Axis a = 0; a < 3; ++a) all.low[a] = std::nextafter(box.low[a], box.high[a]);
+        if (!step_across(tree.domain(), box, face, all.low)) return Ref::leaf(leaf);
+        step_across(tree.domain(), box, face, all.high);
+        return tree.deepest_with(all);
+    }
+
     CutPlanes planes_;
-    std::vector<Faces<Plane>> faces_;
+    std::vector<Leaf> leaves_;
     double slope_;
 };
 

@@ -25,27 +25,16 @@ namespace controlspace {
 Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, const Vector& t,
                     double largest_growth);
 
-/// The same at the nearest place to `place` in a leaf of a tree, with this box; nowhere coarser
-/// than the cone of the leaf's own metric of this slope (g_r - 1). metric_at(i) is the metric of
-/// leaf i.
-template <class Node, class MetricAt>
-Metric triquadratic_in(const Topology<Node>& tree, LeafIndex leaf, const Box& box,
-                       const Point& place, double slope, MetricAt&& metric_at) {
+/// The same at the nearest place to `place` in a leaf with this box; nowhere coarser than the cone
+/// of the leaf's own metric of this slope (g_r - 1). across_from(x) are the metrics across the
+/// faces from there.
+template <class AcrossFrom>
+Metric triquadratic_in(const Box& box, const Point& place, const Metric& own, double slope,
+                       AcrossFrom&& across_from) {
     const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
-    std::array<Point, 6> beyond;
-    std::array<LeafIndex, 6> neighbours;
-    for (int face = 0; face < 6; ++face) {
-        Point& y = beyond[static_cast<std::size_t>(face)];
-        y = x;
-        step_across(tree.domain(), box, face, y);
-    }
-    tree.find(beyond, neighbours);
-    std::array<Metric, 6> across;
-    for (std::size_t face = 0; face < 6; ++face) across[face] = metric_at(neighbours[face]);
-    const Metric own = metric_at(leaf);
     const Vector v = x - box.centre();
     const Vector t = 2 * v.cwiseQuotient(box.edges());
-    return triquadratic(own, across, t, 1 + slope * metric_length(own, v));
+    return triquadratic(own, across_from(x), t, 1 + slope * metric_length(own, v));
 }
 
 /// One metric a leaf, interpolated with those of the neighbours when asked (K_Li). Nowhere coarser
@@ -97,8 +86,20 @@ private:
     template <class Node>
     Metric interpolate(const Topology<Node>& tree, LeafIndex leaf, const Point& place,
                        std::span<const Metric> metrics) const {
-        return triquadratic_in(tree, leaf, boxes_[leaf], place, slope_,
-                               [&](LeafIndex i) -> const Metric& { return metrics[i]; });
+        const Box& box = boxes_[leaf];
+        return triquadratic_in(box, place, metrics[leaf], slope_, [&](const Point& x) {
+            std::array<Point, 6> beyond;
+            std::array<LeafIndex, 6> neighbours;
+            for (int face = 0; face < 6; ++face) {
+                Point& y = beyond[static_cast<std::size_t>(face)];
+                y = x;
+                step_across(tree.domain(), box, face, y);
+            }
+            tree.find(beyond, neighbours);
+            std::array<Metric, 6> across;
+            for (std::size_t face = 0; face < 6; ++face) across[face] = metrics[neighbours[face]];
+            return across;
+        });
     }
 
     std::vector<Box> boxes_;  // of the leaves

@@ -159,13 +159,27 @@ public:
     }
 
     /// The number alone of the leaf that holds `x`.
-    LeafIndex find(const Point& x) const {
-        Ref ref = jumps_.at(x);
-        while (!ref.is_leaf()) ref = child_with(ref, x);
-        return ref.index();
+    LeafIndex find(const Point& x) const { return leaf_in(jumps_.at(x), x).index(); }
+
+    /// The leaf of a part of the tree that holds `x`, which must be in that part.
+    Ref leaf_in(Ref part, const Point& x) const {
+        while (!part.is_leaf()) part = child_with(part, x);
+        return part;
     }
 
-    /// The same for at most `most_found` places at a time, whose descents go side by side: while
+    /// The deepest part of the tree that holds all of `box`, which may be flat.
+    Ref deepest_with(const Box& box) const {
+        Ref ref = root_;
+        while (!ref.is_leaf()) {
+            const Node& inner = node(ref);
+            const int c = inner.child_with(box.low);
+            if (inner.child_with(box.high) != c) break;
+            ref = inner.children[static_cast<std::size_t>(c)];
+        }
+        return ref;
+    }
+
+    /// As `find`, for at most `most_found` places at a time, whose descents go side by side: while
     /// one waits for memory, others compare.
     static constexpr std::size_t most_found = 32;
     void find(std::span<const Point> x, std::span<LeafIndex> leaves) const {
