@@ -1,10 +1,14 @@
 #include "gradation/grade.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_reduce.h>
 
 #include "error.h"
+#include "geometry/threads.h"
+#include "gradation/parallel_queue.h"
 #include "gradation/passes.h"
 #include "gradation/queue.h"
+#include "gradation/sizes.h"
 
 namespace controlspace {
 
@@ -15,34 +19,80 @@ void require_valid(const GradationOptions& options) {
     }
 }
 
-double largest_gradation(const ControlGraph& graph, std::span<const Metric> metrics,
-                         GradationLaw law) {
-    double largest = 1;
-    std::visit(
-        [&](const auto& nodes) {
-            for (NodeIndex i = 0; i < nodes.size(); ++i) {
-                nodes.for_each_link(i, [&](NodeIndex j, const Vector& v) {
-                    const Growth growth = growth_between(law, metrics[i], metrics[j], v);
-                    largest = std::max(largest, growth.gradation());
-                });
-            }
-        },
-        graph);
-    return largest;
+namespace {
+
+// Returns the number of metrics made smaller.
+template <class Graph>
+std::uint64_t grade_by_sizes(const Graph& graph, OrderedMetrics metrics, double g) {
+    std::vector<double> sizes(metrics.size());
+    for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = metrics[i].xx;
+    SizeRounds(graph, sizes, g).run();
+    std::uint64_t operations = 0;
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+        if (sizes[i] == metrics[i].xx) continue;
+        metrics[i] = Metric::isotropic(sizes[i]);
+        ++operations;
+    }
+    return operations;
 }
 
-GradationReport grade(const ControlGraph& graph, std::span<Metric> metrics,
+template <class Graph>
+std::uint64_t grade_nodes(const Graph& graph, OrderedMetrics metrics,
+                          const GradationOptions& options) {
+    const auto [law, schedule, g, neighbourhood] = options;
+    if (schedule == GradationSchedule::passes) return PassSchedule(graph, metrics, law, g).run();
+    const auto all = metrics.all();
+    const bool isotropic = std::all_of(all.begin(), all.end(), is_isotropic);
+    if (isotropic && law == GradationLaw::cone) return grade_by_sizes(graph, metrics, g);
+    if (isotropic || threads_allowed() == 1) {
+        return grade_by_queue(graph, metrics, law, g);
+    }
+    return ParallelQueue(graph, metrics, law, g).run();
+}
+
+// Metrics may be a span, or OrderedMetrics.
+template <class Metrics>
+double largest_gradation_of(const ControlGraph& graph, const Metrics& metrics, GradationLaw law) {
+    constexpr std::size_t nodes_per_task = 1024;
+    const auto largest_among = [&](const auto& nodes, const auto& range, double largest) {
+        for (NodeIndex i = range.begin(); i < range.end(); ++i) {
+            const Metric& from = metrics[i];
+            nodes.for_each_link(i, [&](NodeIndex j, const Vector& v) {
+                const Metric& to = metrics[j];
+                const bool shrinks = is_isotropic(from) && is_isotropic(to) && to.xx <= from.xx;
+                if (shrinks) return;  // half of all pairs
+                largest = std::max(largest, growth_between(law, from, to, v).gradation());
+            });
+        }
+        return largest;
+    };
+    return std::visit(
+        [&](const auto& nodes) {
+            using Range = tbb::blocked_range<NodeIndex>;
+            return tbb::parallel_reduce(
+                Range(0, static_cast<NodeIndex>(nodes.size()), nodes_per_task), 1.0,
+                [&](const Range& range, double largest) {
+                    return largest_among(nodes, range, largest);
+                },
+                [](double a, double b) { return std::max(a, b); });
+        },
+        graph);
+}
+
+}  // namespace
+
+double largest_gradation(const ControlGraph& graph, std::span<const Metric> metrics,
+                         GradationLaw law) {
+    return largest_gradation_of(graph, metrics, law);
+}
+
+GradationReport grade(const ControlGraph& graph, OrderedMetrics metrics,
                       const GradationOptions& options) {
     require_valid(options);
     GradationReport report;
-    report.operations = std::visit(
-        [&](const auto& nodes) {
-            return options.schedule == GradationSchedule::queue
-                       ? grade_by_queue(nodes, metrics, options.law, options.ratio)
-                       : PassSchedule(nodes, metrics, options.law, options.ratio).run();
-        },
-        graph);
-    report.largest_ratio_left = largest_gradation(graph, metrics, options.law);
+    report.operations =
+        std::visit([&](const auto& nodes) { return grade_nodes(nodes, metrics, options); }, graph);
+    report.largest_ratio_left = largest_gradation_of(graph, metrics, options.law);
     return report;
 }
 

@@ -6,6 +6,7 @@
 
 #include "gradation/law.h"
 #include "gradation/node_graph.h"
+#include "gradation/ordered_metrics.h"
 #include "metric/metric.h"
 
 namespace controlspace {
@@ -31,7 +32,9 @@ struct GradationOptions {
 };
 
 struct GradationReport {
-    std::uint64_t operations = 0;  ///< metrics made smaller
+    /// Metrics made smaller. One is counted as often as that happened to it; once where all are
+    /// isotropic, under the cone law and by the queue.
+    std::uint64_t operations = 0;
     /// Over all neighbours, under the law that was applied. Where only what had changed was graded
     /// (gradation/regrade.h): over the nodes visited and all neighbours of the time before, so that
     /// it may be more than is left.
@@ -54,9 +57,11 @@ void require_valid(const GradationOptions& options);
 double largest_gradation(const ControlGraph& graph, std::span<const Metric> metrics,
                          GradationLaw law);
 
-/// Makes the metrics of the control nodes grow smoothly, in place; they only ever get smaller.
-/// `metrics.size()` must be the graph's size. Throws as require_valid does.
-GradationReport grade(const ControlGraph& graph, std::span<Metric> metrics,
+/// Makes the metrics of the control nodes grow smoothly, in place; they only ever get smaller. On
+/// all of TBB's threads, with a result that does not depend on their number.
+/// `metrics.size()` must be the graph's size; for the queue, neighbours must be mutual. Throws as
+/// require_valid does.
+GradationReport grade(const ControlGraph& graph, OrderedMetrics metrics,
                       const GradationOptions& options);
 
 }  // namespace controlspace

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
-#include <span>
 #include <vector>
 
 #include "gradation/law.h"
 #include "gradation/node_graph.h"
+#include "gradation/ordered_metrics.h"
 #include "metric/intersection.h"
 #include "metric/nonconformity.h"
 
@@ -20,7 +20,7 @@ namespace controlspace {
 template <class Graph>
 class PassSchedule {
 public:
-    PassSchedule(const Graph& graph, std::span<Metric> metrics, GradationLaw law, double g)
+    PassSchedule(const Graph& graph, OrderedMetrics metrics, GradationLaw law, double g)
         : graph_(graph), metrics_(metrics), law_(law), g_(g) {}
 
     /// Returns the number of metrics made smaller.
@@ -86,7 +86,7 @@ private:
     }
 
     const Graph& graph_;
-    std::span<Metric> metrics_;
+    OrderedMetrics metrics_;
     GradationLaw law_;
     double g_;
     std::vector<Link> links_;

@@ -7,8 +7,21 @@
 
 #include "gradation/law.h"
 #include "gradation/node_graph.h"
+#include "gradation/ordered_metrics.h"
 
 namespace controlspace {
+
+/// One node's turn: applies the law to it and its neighbours, and calls changed(node) for each
+/// metric made smaller.
+template <class Graph, class Changed>
+void take_turn(const Graph& graph, OrderedMetrics metrics, GradationLaw law, double g, NodeIndex i,
+               Changed&& changed) {
+    graph.for_each_link(i, [&](NodeIndex j, const Vector& v) {
+        const Limited limited = limit_growth(law, g, v, metrics[i], metrics[j]);
+        if (limited.first) changed(i);
+        if (limited.second) changed(j);
+    });
+}
 
 /// First in, first out; every node is in it at most once, so a ring of as many places as nodes
 /// never overflows.
@@ -25,12 +38,19 @@ public:
     }
     bool empty() const { return size_ == 0; }
     NodeIndex pop() {
+        const NodeIndex node = take();
+        let_return(node);
+        return node;
+    }
+    /// The same in two steps: the node is the next one; from now on it may be pushed again.
+    NodeIndex take() {
         const NodeIndex node = ring_[head_];
         head_ = next(head_);
         --size_;
-        waits_[node] = 0;
         return node;
     }
+    void let_return(NodeIndex node) { waits_[node] = 0; }
+    std::size_t size() const { return size_; }
     void push(NodeIndex node) {
         if (waits_[node] != 0) return;
         waits_[node] = 1;
@@ -50,22 +70,14 @@ private:
 /// The queue schedule (paper §3.2): applies the law to every node and its neighbours, and again to
 /// those that changed, until nothing changes. Returns the number of metrics made smaller.
 template <class Graph>
-std::uint64_t grade_by_queue(const Graph& graph, std::span<Metric> metrics, GradationLaw law,
+std::uint64_t grade_by_queue(const Graph& graph, OrderedMetrics metrics, GradationLaw law,
                              double g) {
     std::uint64_t operations = 0;
     NodeQueue queue(graph.size());
     while (!queue.empty()) {
-        const NodeIndex i = queue.pop();
-        graph.for_each_link(i, [&](NodeIndex j, const Vector& v) {
-            const Limited limited = limit_growth(law, g, v, metrics[i], metrics[j]);
-            if (limited.first) {
-                ++operations;
-                queue.push(i);
-            }
-            if (limited.second) {
-                ++operations;
-                queue.push(j);
-            }
+        take_turn(graph, metrics, law, g, queue.pop(), [&](NodeIndex changed) {
+            ++operations;
+            queue.push(changed);
         });
     }
     return operations;

@@ -86,7 +86,16 @@ bool is_within(const Metric& a, double factor, const Metric& b) {
     slack.zz += k * k;
     if (slack.xx > 0 && Cholesky(slack).is_positive_definite()) return true;
     const double worst = std::max(condition(a, Cholesky(a)), condition(b, of_b));
-    return svd(c).s[0] <= factor * (1 + rounding * worst);
+    const double longest = factor * (1 + rounding * worst);
+    // For no as well, one vector that grows by more is enough: the longest column, turned once
+    // more towards the largest singular value.
+    int column = 0;
+    c.colwise().squaredNorm().maxCoeff(&column);
+    const Vector v = c.transpose() * c.col(column);
+    const Vector w = c * v;
+    constexpr double clearly = 1 + 1e-12;
+    if (w.squaredNorm() > clearly * longest * longest * v.squaredNorm()) return false;
+    return svd(c).s[0] <= longest;
 }
 
 }  // namespace controlspace

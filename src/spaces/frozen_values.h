@@ -9,6 +9,7 @@
 #include "spaces/control_space.h"
 #include "spaces/corners.h"
 #include "spaces/leaf_faces.h"
+#include "spaces/leaf_graph.h"
 #include "spaces/quadratic_values.h"
 #include "spaces/vertex_values.h"
 

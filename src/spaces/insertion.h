@@ -22,4 +22,8 @@ struct InsertionReport {
 /// least the tolerance as well.
 bool calls_for_change(const Metric& asked, const Metric& held, double tolerance);
 
+/// How many times longer than an isotropic source a metric may be, in any direction, and
+/// calls_for_change still be false; less by a millionth, in which rounding has room.
+double length_let_pass(double tolerance);
+
 }  // namespace controlspace

@@ -58,6 +58,7 @@ public:
     /// `node_of(ref)` is the inner node of a reference.
     template <class NodeOf>
     void enter(Ref ref, const Box& box, NodeOf&& node_of) {
+        if (!may_hold_cells(box)) return;
         Range range;
         for (Axis a = 0; a < 3; ++a) {
             const AxisCells& axis = axes_[index(a)];
@@ -70,6 +71,16 @@ public:
 
 private:
     static std::size_t index(Axis a) { return static_cast<std::size_t>(a); }
+
+    // Whether the box is as long as a cell along all axes, or shorter by rounding alone.
+    bool may_hold_cells(const Box& box) const {
+        constexpr double shortest = 0.99;  // in cells
+        for (Axis a = 0; a < 3; ++a) {
+            const double length = box.high[a] - box.low[a];
+            if (length * axes_[index(a)].per_length < shortest) return false;
+        }
+        return true;
+    }
 
     /// The cells along one axis. The outermost planes are no numbers: nothing lies beyond them.
     struct AxisCells {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "spaces/control_space.h"
 #include "spaces/frozen_tree.h"
 #include "spaces/leaf_changes.h"
+#include "spaces/leaf_graph.h"
 #include "spaces/node_metrics.h"
 #include "spaces/space_options.h"
 #include "spaces/topology.h"
@@ -22,6 +24,9 @@ namespace controlspace {
 //   value_in(tree, leaf, x)              the same where the leaf that holds x is known
 //   prefetch(leaf)                       what value_in will read first
 //   asked(tree, x)                       the same before gradation (see NodeMetrics)
+//   ceiling(leaf, x)                     length that what is asked for at x, in this leaf, will
+//                                        not exceed by more than rounding as long as isotropic
+//                                        sources come; infinite where that is not known
 //   split(subdivision, leaf, first_new)  a leaf was cut; the field stays as it was
 //   lower(place, source)                 intersects what governs the leaf with the source
 //   fit(tree, leaves, field, proved)     sets the control nodes of these leaves to the field; if
@@ -30,6 +35,7 @@ namespace controlspace {
 //   learn(leaf, x, field)                follows the field better at x, or returns false
 //   control_nodes(tree, neighbourhood), assign(tree, metrics), describe(footprint), shrink_to_fit()
 // and, if it holds metrics,
+//   grade(tree, options)                 the same as grading control_nodes and assigning them
 //   freeze(tree, precision)              see ControlSpace::freeze
 // and for sources that come after gradation:
 //   release_asked(), keep_asked(metrics) see NodeMetrics; from the latter on, changes are recorded
@@ -59,6 +65,11 @@ public:
         return metrics_.asked()[tree.find(x)];
     }
 
+    double ceiling(LeafIndex leaf, const Point&) const {
+        const Metric& m = metrics_.asked()[leaf];
+        return is_isotropic(m) ? m.xx : std::numeric_limits<double>::infinity();
+    }
+
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex) {
         if (keeps_asked()) changes_.cut(subdivision.box, leaf, metrics_[leaf].xx);
         metrics_.repeat(leaf, static_cast<std::size_t>(subdivision.children() - 1));
@@ -77,6 +88,14 @@ public:
         metrics_.forget_asked();
         auto next = metrics.begin();
         tree.for_each_leaf([&](LeafIndex leaf, const Box&) { metrics_.set(leaf, *next++); });
+    }
+
+    template <class Node>
+    GradationReport grade(const Topology<Node>& tree, const GradationOptions& options) {
+        LeafGraph leaves = leaf_graph(tree, neighbourhood_of(options));
+        metrics_.forget_asked();
+        return controlspace::grade(std::move(leaves.graph), {metrics_.field(), leaves.order},
+                                   options);
     }
 
     /// Sets the leaves to the field.

@@ -4,12 +4,14 @@
 #include <utility>
 
 #include "metric/intersection.h"
+#include "spaces/make_room.h"
 
 namespace controlspace {
 
 void NodeMetrics::repeat(std::size_t node, std::size_t times) {
     const auto append_copies = [&](std::vector<Metric>& metrics) {
         const Metric copied = metrics[node];
+        make_room(metrics, times);
         metrics.insert(metrics.end(), times, copied);
     };
     append_copies(field_);
@@ -17,8 +19,12 @@ void NodeMetrics::repeat(std::size_t node, std::size_t times) {
 }
 
 void NodeMetrics::append(const Metric& asked, const Metric& field) {
-    field_.push_back(field);
-    if (keeps_asked()) asked_.push_back(asked);
+    const auto append_one = [](std::vector<Metric>& metrics, const Metric& m) {
+        make_room(metrics, 1);
+        metrics.push_back(m);
+    };
+    append_one(field_, field);
+    if (keeps_asked()) append_one(asked_, asked);
 }
 
 void NodeMetrics::lower(std::size_t node, const Metric& m) {

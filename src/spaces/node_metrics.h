@@ -19,6 +19,7 @@ public:
     std::size_t size() const { return field_.size(); }
     const Metric& operator[](std::size_t node) const { return field_[node]; }
     std::span<const Metric> field() const { return field_; }
+    std::span<Metric> field() { return field_; }
     /// What the sources alone ask for: the same as the field unless that is kept apart.
     std::span<const Metric> asked() const { return keeps_asked() ? asked_ : field_; }
     bool keeps_asked() const { return !asked_.empty(); }

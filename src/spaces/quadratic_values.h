@@ -3,6 +3,7 @@
 #include <array>
 
 #include "spaces/leaf_values.h"
+#include "spaces/make_room.h"
 
 namespace controlspace {
 
@@ -67,8 +68,13 @@ public:
         return freeze_quadratic(tree, metrics_.field(), slope_, precision);
     }
 
+    double ceiling(LeafIndex leaf, const Point& x) const {
+        return LeafValues::ceiling(leaf, x) + slope_ * boxes_[leaf].half_diagonal();
+    }
+
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new) {
         LeafValues::split(subdivision, leaf, first_new);
+        make_room(boxes_, static_cast<std::size_t>(subdivision.children() - 1));
         boxes_[leaf] = subdivision.child(0);
         for (int c = 1; c < subdivision.children(); ++c) boxes_.push_back(subdivision.child(c));
     }

@@ -11,6 +11,7 @@
 #include "geometry/box.h"
 #include "spaces/control_space.h"
 #include "spaces/jump_table.h"
+#include "spaces/make_room.h"
 #include "spaces/subdivision.h"
 
 namespace controlspace {
@@ -47,10 +48,17 @@ private:
     std::uint32_t bits_;
 };
 
+/// A leaf, or an inner node with all below it, and its box.
+struct TreePart {
+    Ref ref;
+    Box box;
+};
+
 /// Inner node of a kd-tree: a plane and two children, 16 bytes. The axis sits in the spare bits of
 /// the children's references.
 struct KdNode {
     static constexpr int arity = 2;
+    static constexpr bool is_octant = false;
     double at = 0;
     std::array<Ref, 2> children;
 
@@ -77,15 +85,18 @@ struct KdNode {
     /// The same, and narrows `box` to that child.
     int descend(const Point& x, Box& box) const {
         const int c = child_with(x);
-        (c == 1 ? box.low : box.high)[axis()] = at;
+        narrow(box, c);
         return c;
     }
+    /// Makes the node's box that of child `c`.
+    void narrow(Box& box, int c) const { (c == 1 ? box.low : box.high)[axis()] = at; }
 };
 
 /// Inner node of an octree: eight children and the planes, which go through the middle of the box;
 /// one line of a cache.
 struct alignas(64) OctreeNode {
     static constexpr int arity = 8;
+    static constexpr bool is_octant = true;
     std::array<Ref, 8> children;
     std::array<double, 3> at{};
 
@@ -105,10 +116,13 @@ struct alignas(64) OctreeNode {
     }
     int descend(const Point& x, Box& box) const {
         const int c = child_with(x);
+        narrow(box, c);
+        return c;
+    }
+    void narrow(Box& box, int c) const {
         for (Axis a = 0; a < 3; ++a) {
             ((c >> a & 1) != 0 ? box.low : box.high)[a] = at[static_cast<std::size_t>(a)];
         }
-        return c;
     }
 };
 
@@ -145,6 +159,10 @@ public:
         if (jumps_.cells() == std::size_t{1} << halvings) return;
         jumps_.resize(halvings);
         enter_jumps(root_, domain_);
+    }
+    /// The same while the tree grows, now and then.
+    void fit_jumps_roughly() {
+        if (leaves_ > 16 * jumps_.cells()) fit_jumps();
     }
 
     /// The leaf that holds `x`; a place outside the domain is taken for the nearest one inside.
@@ -218,6 +236,7 @@ public:
         Node node(subdivision);
         node.set_child(0, Ref::leaf(place.leaf));
         for (int c = 1; c < arity; ++c) node.set_child(c, Ref::leaf(leaves_++));
+        make_room(nodes_, 1);
         nodes_.push_back(node);
         if (place.slot == root_slot) {
             root_ = inner;
@@ -247,7 +266,19 @@ public:
     /// Calls visit(leaf, box) for all leaves, depth first, children in their order.
     template <class Visit>
     void for_each_leaf(Visit&& visit) const {
-        visit_leaves(root_, domain_, visit);
+        visit_leaves({root_, domain_}, visit);
+    }
+    /// The same in a part of the tree.
+    template <class Visit>
+    void for_each_leaf_in(const TreePart& part, Visit&& visit) const {
+        visit_leaves(part, visit);
+    }
+    /// Child `c` of an inner node.
+    TreePart child(const TreePart& inner, int c) const {
+        const Node& parent = node(inner.ref);
+        TreePart part{parent.children[static_cast<std::size_t>(c)], inner.box};
+        parent.narrow(part.box, c);
+        return part;
     }
 
 private:
@@ -292,16 +323,12 @@ private:
     }
 
     template <class Visit>
-    void visit_leaves(Ref ref, const Box& box, Visit& visit) const {
-        if (ref.is_leaf()) {
-            visit(LeafIndex{ref.index()}, box);
+    void visit_leaves(const TreePart& part, Visit& visit) const {
+        if (part.ref.is_leaf()) {
+            visit(LeafIndex{part.ref.index()}, part.box);
             return;
         }
-        const Node& inner = node(ref);
-        const Subdivision subdivision = inner.subdivision(box);
-        for (int c = 0; c < arity; ++c) {
-            visit_leaves(inner.children[static_cast<std::size_t>(c)], subdivision.child(c), visit);
-        }
+        for (int c = 0; c < arity; ++c) visit_leaves(child(part, c), visit);
     }
 
     Box domain_;

@@ -15,6 +15,7 @@
 #include "spaces/catalogue.h"
 #include "spaces/control_space.h"
 #include "spaces/leaf_values.h"
+#include "spaces/met_sources.h"
 #include "spaces/published_bytes.h"
 #include "spaces/sample_leaves.h"
 #include "spaces/split_rule.h"
@@ -43,9 +44,17 @@ public:
 
     InsertionReport insert(std::span<const PointSource> sources) override {
         InsertionReport report;
-        for (const PointSource& source : sources) {
-            require_valid(source, report.sources++, domain());
-            if (insert_valid(source) == Insertion::inserted) ++report.inserted;
+        MetSources met;
+        while (report.sources < sources.size()) {
+            const auto part = met.next_part(sources.subspan(report.sources));
+            if constexpr (!keeps_sources) {
+                met.look(topology_, storage_, options_.tolerance, part);
+            }
+            for (std::size_t k = 0; k < part.size(); ++k, ++report.sources) {
+                if (met.is_met(k)) continue;
+                require_valid(part[k], report.sources, domain());
+                if (insert_valid(part[k]) == Insertion::inserted) ++report.inserted;
+            }
         }
         // Copying everything would be out of proportion to a few sources more.
         if (!options_.takes_later_sources) settle();
@@ -72,7 +81,7 @@ public:
             if (options.neighbourhood == Neighbourhood::all) require_memory(options.neighbourhood);
             topology_.fit_jumps();
             return options_.takes_later_sources ? grade_beside_asked(options)
-                                                : ControlSpace::grade(options);
+                                                : storage_.grade(topology_, options);
         }
     }
 
@@ -162,7 +171,7 @@ private:
             report = storage_.regrade(topology_, *past_);
         } else {
             std::vector<Metric> asked = storage_.release_asked();
-            report = ControlSpace::grade(options);
+            report = storage_.grade(topology_, options);
             storage_.keep_asked(std::move(asked));
         }
         past_ = {options, report.largest_ratio_left};
@@ -238,6 +247,7 @@ private:
         }
         const auto first_new = static_cast<LeafIndex>(topology_.leaves());
         topology_.split(place, subdivision);
+        topology_.fit_jumps_roughly();
         storage_.split(subdivision, place.leaf, first_new);
         if (cut != nullptr) cut->push_back(place.leaf);
     }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "spaces/make_room.h"
+
 namespace controlspace {
 
 VertexValues::VertexValues(const SpaceOptions& options)
@@ -23,6 +25,7 @@ NodeIndex VertexValues::vertex_at(const Point& x, const Box& box, const Corners&
     const auto next = static_cast<NodeIndex>(positions_.size());
     const NodeIndex node = places_.find_or_enter(x, next, positions_);
     if (node == next) {
+        make_room(positions_, 1);
         positions_.push_back(x);
         metrics_.append(asked,
                         keeps_asked() ? interpolate(corners, weights, metrics_.field()) : asked);
@@ -58,6 +61,7 @@ void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafInd
     };
 
     const int children = subdivision.children();
+    make_room(corners_, static_cast<std::size_t>(children - 1));
     corners_.resize(corners_.size() + static_cast<std::size_t>(children - 1));
     for (int c = 0; c < children; ++c) {
         const LeafIndex child = c == 0 ? leaf : first_new + static_cast<LeafIndex>(c - 1);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -63,6 +64,11 @@ public:
         return interpolate(tree.find(place), place, metrics_.asked());
     }
 
+    double ceiling(LeafIndex leaf, const Point& x) const {
+        const Metric m = interpolate(leaf, x, metrics_.asked());
+        return is_isotropic(m) ? m.xx : std::numeric_limits<double>::infinity();
+    }
+
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new);
     void lower(const LeafPlace& place, const PointSource& source);
 
@@ -80,6 +86,13 @@ public:
     template <class Node>
     std::unique_ptr<ControlSpace> freeze(const Topology<Node>& tree, Precision precision) const {
         return freeze_vertices(tree, corners_, metrics_.field(), precision);
+    }
+
+    template <class Node>
+    GradationReport grade(const Topology<Node>&, const GradationOptions& options) {
+        metrics_.forget_asked();
+        return controlspace::grade(vertex_graph(corners_, positions_, neighbourhood_of(options)),
+                                   metrics_.field(), options);
     }
 
     bool keeps_asked() const { return metrics_.keeps_asked(); }

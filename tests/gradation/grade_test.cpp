@@ -5,6 +5,8 @@
 #include <set>
 
 #include "error.h"
+#include "gradation/queue.h"
+#include "gradation/sizes.h"
 #include "metric/draw.h"
 #include "metric/intersection.h"
 
@@ -168,6 +170,18 @@ TEST_CASE("the isotropic cone law has one fixed point, to the bit, whatever the 
         grade(renamed(lattice, names), metrics, {});
         for (NodeIndex i = 0; i < names.size(); ++i) CHECK(metrics[names[i]] == reference[i]);
     }
+}
+
+TEST_CASE("sizes in rounds end as one queue of metrics does, to the bit") {
+    Lattice lattice{Point::Zero(), Vector(0.1, 0.23, 0.07), {13, 17, 15}};
+    lattice.neighbourhood = GENERATE(Neighbourhood::faces, Neighbourhood::all);
+    const double g = GENERATE(1.0, 1.1, 2.0);
+    std::vector<Metric> queued = random_isotropic(lattice.size(), 11);
+    std::vector<double> sizes;
+    for (const Metric& m : queued) sizes.push_back(m.xx);
+    grade_by_queue(lattice, queued, GradationLaw::cone, g);
+    SizeRounds(lattice, sizes, g).run();
+    for (std::size_t i = 0; i < sizes.size(); ++i) CHECK(Metric::isotropic(sizes[i]) == queued[i]);
 }
 
 TEST_CASE("passes stop at ten, and say what they left") {

@@ -100,7 +100,8 @@ TEST_CASE("sources of one metric share it; idle ones go") {
     CHECK(table.all_isotropic());
     CHECK(renamed[42] == 1);
     CHECK(table.source(0) == PointSource{Point(7, 0, 0), m});
-    CHECK(table.bytes() == 2 * (sizeof(Point) + sizeof(std::uint32_t)) + sizeof(Metric) + sizeof(double));
+    CHECK(table.bytes() ==
+          2 * (sizeof(Point) + sizeof(std::uint32_t)) + sizeof(Metric) + sizeof(double));
     CHECK(table.factor(1, g, Point(42, 3, 4)) == Approx(1 + 0.25 * 50));
     CHECK(table.smallest_length(1) == Approx(0.1));
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "counting_allocator.h"
@@ -24,6 +25,24 @@ TEST_CASE("the footprint of a tree is what it has allocated") {
         CHECK(footprint.bytes_payload == footprint.control_nodes * sizeof(Metric));
         space.reset();
         CHECK(live_bytes() == before);
+    }
+}
+
+TEST_CASE("creation takes at most two and a half times the memory that a tree ends up with") {
+    const std::vector<PointSource> sources = sample_sphere({.h = 0.02});
+    for (const CatalogueEntry& entry : tree_catalogue()) {
+        CAPTURE(entry.id);
+        const std::size_t before = live_bytes();
+        reset_peak_bytes();
+        auto space = entry.make({.domain = {Point::Constant(-1), Point::Constant(1)}});
+        space->insert(sources);
+        const std::size_t inserting = peak_bytes() - before;
+        reset_peak_bytes();
+        space->grade({});
+        const std::size_t grading = peak_bytes() - before;
+        const auto last = static_cast<double>(live_bytes() - before);
+        CAPTURE(static_cast<double>(inserting) / last, static_cast<double>(grading) / last);
+        CHECK(static_cast<double>(std::max(inserting, grading)) < 2.5 * last);
     }
 }
 

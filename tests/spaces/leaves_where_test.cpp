@@ -4,7 +4,8 @@
 #include <random>
 #include <set>
 
-#include "spaces/adjacency.h"
+#include "spaces/face_pairs.h"
+#include "spaces/touching_pairs.h"
 
 using namespace controlspace;
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "spaces/adjacency.h"
+#include "spaces/face_pairs.h"
 #include "spaces/split_rule.h"
 
 using namespace controlspace;

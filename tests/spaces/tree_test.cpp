@@ -5,6 +5,7 @@
 #include <set>
 
 #include "metric/nonconformity.h"
+#include "spaces/face_pairs.h"
 #include "spaces/quadratic_values.h"
 #include "spaces/vertex_values.h"
 

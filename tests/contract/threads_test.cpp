@@ -1,0 +1,57 @@
+// One answer whatever the number of threads, to the bit.
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <catch2/catch.hpp>
+
+#include "contract/structures_under_test.h"
+#include "measure/access_time.h"
+
+using namespace controlspace;
+
+namespace {
+
+struct Answers {
+    InsertionReport insertion;
+    GradationReport gradation;
+    std::vector<Metric> nodes, places;
+};
+
+Answers answers(const Structure& structure, const Work& work, const GradationOptions& options,
+                int threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(threads));
+    Answers a;
+    tbb::task_arena(threads).execute([&] {
+        const auto space = structure.entry->make(work.options(structure.split));
+        a.insertion = space->insert(work.sources);
+        a.gradation = space->grade(options);
+        a.nodes = space->control_nodes(Neighbourhood::faces).metrics;
+        a.places.resize(3000);
+        space->sample(random_points(work.domain, a.places.size(), 3), a.places);
+    });
+    return a;
+}
+
+}  // namespace
+
+TEST_CASE("one, two and three threads make the same field, to the bit") {
+    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+    const GradationOptions options =
+        GENERATE(GradationOptions{}, GradationOptions{.law = GradationLaw::mean_length},
+                 GradationOptions{.schedule = GradationSchedule::passes},
+                 GradationOptions{.neighbourhood = Neighbourhood::all});
+    for (const Structure& structure : all_structures()) {
+        if (structure.split != SplitRule::middle) continue;
+        CAPTURE(structure.name(), work.name);
+        const Answers one = answers(structure, work, options, 1);
+        for (const int threads : {2, 3}) {
+            const Answers many = answers(structure, work, options, threads);
+            CHECK(many.insertion.inserted == one.insertion.inserted);
+            CHECK(many.gradation.operations == one.gradation.operations);
+            CHECK(many.gradation.largest_ratio_left == one.gradation.largest_ratio_left);
+            CHECK(many.nodes == one.nodes);
+            CHECK(many.places == one.places);
+        }
+    }
+}
