@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <tbb/parallel_reduce.h>
 
+#include <type_traits>
+
 #include "error.h"
 #include "geometry/threads.h"
 #include "gradation/parallel_queue.h"
@@ -41,13 +43,16 @@ std::uint64_t grade_nodes(const Graph& graph, OrderedMetrics metrics,
                           const GradationOptions& options) {
     const auto [law, schedule, g, neighbourhood] = options;
     if (schedule == GradationSchedule::passes) return PassSchedule(graph, metrics, law, g).run();
-    const auto all = metrics.all();
-    const bool isotropic = std::all_of(all.begin(), all.end(), is_isotropic);
-    if (isotropic && law == GradationLaw::cone) return grade_by_sizes(graph, metrics, g);
-    if (isotropic || threads_allowed() == 1) {
-        return grade_by_queue(graph, metrics, law, g);
+    // Grids are as fine as memory allows, the queue included: nothing is left for more threads.
+    if constexpr (std::is_same_v<Graph, NodeGraph>) {
+        const auto all = metrics.all();
+        const bool isotropic = std::all_of(all.begin(), all.end(), is_isotropic);
+        if (isotropic && law == GradationLaw::cone) return grade_by_sizes(graph, metrics, g);
+        if (!isotropic && threads_allowed() > 1) {
+            return ParallelQueue(graph, metrics, law, g).run();
+        }
     }
-    return ParallelQueue(graph, metrics, law, g).run();
+    return grade_by_queue(graph, metrics, law, g);
 }
 
 // Metrics may be a span, or OrderedMetrics.
