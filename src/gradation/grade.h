@@ -32,8 +32,8 @@ struct GradationOptions {
 };
 
 struct GradationReport {
-    /// Metrics made smaller. One is counted as often as that happened to it; once where all are
-    /// isotropic, under the cone law and by the queue.
+    /// Metrics made smaller, each counted as often as that happened to it; but once where those of
+    /// a NodeGraph are all isotropic, under the cone law and by the queue.
     std::uint64_t operations = 0;
     /// Over all neighbours, under the law that was applied. Where only what had changed was graded
     /// (gradation/regrade.h): over the nodes visited and all neighbours of the time before, so that
