@@ -24,7 +24,7 @@ CatalogueEntry grid(std::string id, std::string description) {
     entry.id = std::move(id);
     entry.description = std::move(description);
     entry.order = interpolation == Interpolation::nearest ? 0 : 1;
-    entry.make = [](const SpaceOptions& options) { return make(options, interpolation); };
+    entry.construct = [](const SpaceOptions& options) { return make(options, interpolation); };
     return entry;
 }
 
@@ -49,7 +49,7 @@ std::vector<CatalogueEntry> openvdb_structures() {
     entries.push_back({.id = "openvdb-vec3s-trilinear",
                        .description = "two of OpenVDB's Vec3S trees, dense, in floats, trilinear",
                        .order = 1,
-                       .make = make_openvdb_vec3s,
+                       .construct = make_openvdb_vec3s,
                        .has_voxels = true,
                        .rounding = 1e-6});
     return entries;
@@ -71,7 +71,7 @@ std::vector<CatalogueEntry> all_structures() {
     all.push_back({.id = "direct",
                    .description = "no structure: the sources, searched; exact everywhere",
                    .exact_at_nodes = false,
-                   .make = make_direct,
+                   .construct = make_direct,
                    .graded_from_start = true});
     return all;
 }

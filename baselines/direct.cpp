@@ -14,6 +14,8 @@
 #include "cones/cone_field.h"
 #include "error.h"
 #include "metric/intersection.h"
+#include "spaces/goal_field.h"
+#include "spaces/state.h"
 
 namespace controlspace {
 
@@ -99,6 +101,38 @@ public:
         report.reached = wanted.largest_departure(*this);
         report.met = report.reached <= goal.target;
         return report;
+    }
+
+    void save(StateWriter& state) const override {
+        if (continuous_) {
+            throw InputError(
+                "`direct` cannot be saved with a continuous field: save a structure that holds "
+                "metrics");
+        }
+        std::vector<Point> positions;
+        std::vector<Metric> metrics;
+        for (const auto& [position, metric] : sources_) {
+            positions.push_back(position);
+            metrics.push_back(metric);
+        }
+        state("sources.positions", positions);
+        state("sources.metrics", metrics);
+        state("sources.ratio", ratio_);
+    }
+
+    void load(const StateReader& state) override {
+        std::vector<Point> positions;
+        std::vector<Metric> metrics;
+        double ratio = 1;
+        state("sources.positions", positions);
+        state("sources.metrics", metrics);
+        state("sources.ratio", ratio);
+        state.require(positions.size() == metrics.size(), "sources.metrics", "has another length");
+        ratio_ = require_ratio(ratio);
+        sources_.clear();
+        for (std::size_t i = 0; i < positions.size(); ++i) append({positions[i], metrics[i]}, i);
+        sources_.shrink_to_fit();
+        built_ = false;
     }
 
     const Box& domain() const override { return domain_; }

@@ -18,6 +18,8 @@
 #include "metric/intersection.h"
 #include "spaces/catalogue.h"
 #include "spaces/control_space.h"
+#include "spaces/past_state.h"
+#include "spaces/state.h"
 
 namespace controlspace {
 
@@ -106,6 +108,30 @@ public:
         return report;
     }
 
+    void save(StateWriter& state) const override {
+        state("grid.field", metrics_of(storage_));
+        state("grid.asked", asked_ ? metrics_of(*asked_) : std::vector<Metric>());
+        exchange_changes(*this, state);
+    }
+    void load(const StateReader& state) override {
+        const auto set = [&](const char* name, Storage& storage) {
+            std::vector<Metric> metrics;
+            state(name, metrics);
+            require_metrics(state, name, metrics);
+            if (metrics.empty()) return false;
+            state.require(metrics.size() == stencil_.lattice().size(), name,
+                          "has another number of nodes than this grid");
+            set_metrics(storage, metrics);
+            return true;
+        };
+        state.require(set("grid.field", storage_), "grid.field", "is empty");
+        auto asked = std::make_unique<Storage>(storage_);
+        asked_.reset();
+        if (set("grid.asked", *asked)) asked_ = std::move(asked);
+        exchange_changes(*this, state);
+        require_below(state, "grid.lowered", lowered_, stencil_.lattice().size());
+    }
+
     const Box& domain() const override { return stencil_.domain(); }
     Box element_at(const Point& x) const override { return stencil_.cell_at(x); }
 
@@ -151,10 +177,18 @@ private:
         return metrics;
     }
 
-    void set_field(std::span<const Metric> metrics) {
-        auto nodes = storage_.writer();
+    void set_field(std::span<const Metric> metrics) { set_metrics(storage_, metrics); }
+    void set_metrics(Storage& storage, std::span<const Metric> metrics) {
+        auto nodes = storage.writer();
         auto next = metrics.begin();
         for_each_node([&](auto i, auto j, auto k) { nodes.set(i, j, k, *next++); });
+    }
+
+    template <class Self, class State>
+    static void exchange_changes(Self& self, State& state) {
+        exchange_past(self.past_, state);
+        state("grid.lowered", self.lowered_);
+        state("grid.asks_isotropic", self.asks_isotropic_);
     }
 
     /// act(field, asked): writers to the field and to what sources ask for, which may be the same.

@@ -16,7 +16,7 @@ namespace {
 const std::map<std::string, int> layers{
     {"geometry", 0}, {"metric", 1}, {"sources", 2},   {"gradation", 2}, {"cones", 3},
     {"fields", 3},   {"spaces", 4}, {"baselines", 5}, {"measure", 5},   {"study", 6},
-    {"mesh", 7},     {"export", 7}, {"report", 8},    {"app", 9}};
+    {"c", 7},        {"mesh", 7},   {"export", 7},    {"report", 8},    {"app", 9}};
 
 bool is_source(const fs::path& path) {
     return path.extension() == ".h" || path.extension() == ".cpp";

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "metric/nonconformity.h"
-#include "spaces/adaptation.h"
+#include "spaces/goal_field.h"
 #include "spaces/topology.h"
 
 namespace controlspace {

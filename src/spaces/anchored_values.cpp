@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "error.h"
 #include "metric/nonconformity.h"
 
 namespace controlspace {
@@ -111,6 +112,24 @@ bool AnchoredValues::learn(LeafIndex leaf, const Point& x, const GoalField& fiel
 void AnchoredValues::drop_idle_sources() {
     anchors_.shrink_to_fit();
     anchors_.rename(sources_.keep(anchors_.used(sources_.size())));
+}
+
+void AnchoredValues::save(StateWriter& state) const {
+    if (continuous_) {
+        throw InputError(
+            "a tree that keeps a continuous field cannot be saved: save one that holds metrics");
+    }
+    sources_.save(state);
+    anchors_.save(state);
+    state("anchors.ratio", ratio_);
+    state("anchors.fits_tensors_loosely", fits_tensors_loosely_);
+}
+
+void AnchoredValues::load(std::size_t leaves, const StateReader& state) {
+    sources_.load(state);
+    anchors_.load(state, leaves, sources_.size());
+    state("anchors.ratio", ratio_);
+    state("anchors.fits_tensors_loosely", fits_tensors_loosely_);
 }
 
 void AnchoredValues::describe(Footprint& footprint) const {

@@ -13,6 +13,7 @@
 #include "spaces/leaf_graph.h"
 #include "spaces/source_table.h"
 #include "spaces/space_options.h"
+#include "spaces/state.h"
 #include "spaces/topology.h"
 
 namespace controlspace {
@@ -83,6 +84,13 @@ public:
     /// Forgets sources that are no leaf's anchor.
     void drop_idle_sources();
 
+    /// Throws InputError where a continuous source is kept: it is a program's own.
+    void save(StateWriter& state) const;
+    template <class Node>
+    void load(const Topology<Node>& tree, const StateReader& state) {
+        load(tree.leaves(), state);
+    }
+
     void describe(Footprint& footprint) const;
     void shrink_to_fit();
 
@@ -92,6 +100,7 @@ private:
 
     // At so many places, the centre first.
     void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field, std::size_t places);
+    void load(std::size_t leaves, const StateReader& state);
     Metric cones_at(const Point& x, std::span<const SourceIndex> anchors) const;
 
     AnchorLists anchors_;

@@ -45,6 +45,29 @@ void AnchorLists::rename(std::span<const SourceIndex> new_names) {
     for (SourceIndex& source : sources_) source = new_names[source];
 }
 
+void AnchorLists::save(StateWriter& state) const {
+    std::vector<std::array<std::uint32_t, 2>> lists;
+    lists.reserve(lists_.size());
+    for (const List& list : lists_) lists.push_back({list.first, list.count});
+    state("anchors.lists", lists);
+    state("anchors.sources", sources_);
+}
+
+void AnchorLists::load(const StateReader& state, std::size_t leaves, std::size_t sources) {
+    std::vector<std::array<std::uint32_t, 2>> lists;
+    state("anchors.lists", lists);
+    state("anchors.sources", sources_);
+    state.require(lists.size() == leaves, "anchors.lists", "has another number of leaves");
+    require_below(state, "anchors.sources", sources_, sources);
+    lists_.clear();
+    lists_.reserve(lists.size());
+    for (const auto& [first, count] : lists) {
+        state.require(std::uint64_t{first} + count <= sources_.size(), "anchors.lists",
+                      "names what is not there");
+        lists_.push_back({first, count});
+    }
+}
+
 void AnchorLists::shrink_to_fit() {
     AnchorLists dense;
     dense.lists_.clear();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "spaces/source_table.h"
+#include "spaces/state.h"
 #include "spaces/topology.h"
 
 namespace controlspace {
@@ -27,6 +28,10 @@ public:
     /// Marks the sources that stand in any list.
     std::vector<std::uint8_t> used(std::size_t sources) const;
     void rename(std::span<const SourceIndex> new_names);
+
+    void save(StateWriter& state) const;
+    /// Lists of so many leaves, of so many sources.
+    void load(const StateReader& state, std::size_t leaves, std::size_t sources);
 
     std::size_t bytes() const {
         return lists_.capacity() * sizeof(List) + sources_.capacity() * sizeof(SourceIndex);

@@ -27,7 +27,7 @@ CatalogueEntry entry(const char* id, const char* description) {
     entry.has_split_rules = std::is_same_v<Node, KdNode>;
     entry.exact_at_nodes = Storage::exact_at_nodes;
     entry.order = Storage::order;
-    entry.make = make<Node, Storage, balanced>;
+    entry.construct = make<Node, Storage, balanced>;
     entry.takes_metrics = !std::is_same_v<Storage, AnchoredValues>;
     entry.can_freeze = entry.takes_metrics;
     entry.group = entry.takes_metrics ? "trees" : "anchored";
@@ -35,6 +35,12 @@ CatalogueEntry entry(const char* id, const char* description) {
 }
 
 }  // namespace
+
+std::unique_ptr<ControlSpace> CatalogueEntry::make(const SpaceOptions& options) const {
+    auto space = construct(options);
+    space->set_making({id, options});
+    return space;
+}
 
 std::span<const CatalogueEntry> tree_catalogue() {
     static const std::array<CatalogueEntry, 6> trees{

@@ -19,7 +19,7 @@ struct CatalogueEntry {
     bool has_split_rules = false;  ///< a kd-tree: to be run with each SplitRule
     bool exact_at_nodes = true;    ///< answers a control node's own metric at its position
     int order = 0;                 ///< of interpolation: 0 constant, 1 linear, 2 quadratic
-    std::unique_ptr<ControlSpace> (*make)(const SpaceOptions&) = nullptr;
+    std::unique_ptr<ControlSpace> (*construct)(const SpaceOptions&) = nullptr;
     /// How it is chosen with others: "trees" (the paper's), "anchored", "baselines".
     std::string group = "baselines";
     /// Holds metrics, so that assign() sets them; otherwise sources, and assign() is refused.
@@ -32,6 +32,9 @@ struct CatalogueEntry {
     bool can_freeze = false;     ///< has forms that are only read: ControlSpace::freeze
     double rounding = 1e-12;     ///< δ up to which it answers metrics that it was given
     std::string former_id = {};  ///< still understood in options and study files
+
+    /// A new structure. Throws InputError where options are invalid.
+    std::unique_ptr<ControlSpace> make(const SpaceOptions& options) const;
 };
 
 /// The six trees of the paper.

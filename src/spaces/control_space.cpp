@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "error.h"
+#include "spaces/goal_field.h"
 
 namespace controlspace {
 
@@ -17,6 +18,16 @@ GradationReport ControlSpace::grade(const GradationOptions& options) {
     const GradationReport report = controlspace::grade(nodes.graph, nodes.metrics, options);
     assign(nodes.metrics);
     return report;
+}
+
+void ControlSpace::save(StateWriter&) const {
+    throw InputError(
+        "this structure cannot be saved: trees, grids of equal voxels and `direct` can");
+}
+
+void ControlSpace::load(const StateReader&) {
+    throw InputError(
+        "this structure cannot be loaded: trees, grids of equal voxels and `direct` can");
 }
 
 AdaptationReport ControlSpace::adapt(const AdaptationGoal& goal) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "geometry/box.h"
@@ -16,6 +17,7 @@
 #include "sources/point_source.h"
 #include "spaces/adaptation.h"
 #include "spaces/insertion.h"
+#include "spaces/space_options.h"
 
 namespace controlspace {
 
@@ -42,6 +44,15 @@ struct ControlNodes {
     ControlGraph graph;
     std::vector<Metric> metrics;
 };
+
+/// How a structure was made.
+struct Making {
+    std::string structure;  ///< id in the catalogue
+    SpaceOptions options;
+};
+
+class StateWriter;
+class StateReader;
 
 /// A metric at every point of a box, learnt from point sources (paper §2-3).
 ///
@@ -85,11 +96,25 @@ public:
     /// (beyond 1e-38 to 3e38, or with lengths in ratios above about 1e4).
     virtual std::unique_ptr<ControlSpace> freeze(Precision precision) const;
 
+    /// Writes all that it holds, but for what it was made with; and takes that back, in a structure
+    /// made alike. To be called through `save_control_space` and `load_control_space`. Throw
+    /// InputError where a structure cannot be saved, and where what is read is not sound; the field
+    /// is undefined then.
+    virtual void save(StateWriter& state) const;
+    virtual void load(const StateReader& state);
+
+    /// Name and options in the catalogue that it was made by; none if it was made in another way.
+    const std::optional<Making>& making() const { return making_; }
+    void set_making(Making making) { making_ = std::move(making); }
+
     virtual const Box& domain() const = 0;
 
     /// The element that answers for `x`: a leaf of a tree, a cell of a grid.
     virtual Box element_at(const Point& x) const = 0;
     virtual Footprint footprint() const = 0;
+
+private:
+    std::optional<Making> making_;
 };
 
 /// Metric at one point; for many, `sample` is far faster.

@@ -7,6 +7,7 @@
 #include "spaces/cut_leaves.h"
 #include "spaces/leaves_where.h"
 #include "spaces/node_metrics.h"
+#include "spaces/state.h"
 #include "spaces/topology.h"
 
 namespace controlspace {
@@ -22,6 +23,10 @@ public:
     void lower(const LeafPlace& place);
     /// How many of so many leaves are concerned.
     std::size_t count(std::size_t leaves) const { return lowered_.size() + cut_.made(leaves); }
+
+    void save(StateWriter& state) const;
+    /// What was saved of a tree of so many leaves.
+    void load(const StateReader& state, std::size_t leaves);
 
     /// See Regradation; `past` is the gradation before.
     template <class Node>

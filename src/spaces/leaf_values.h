@@ -14,6 +14,7 @@
 #include "spaces/leaf_graph.h"
 #include "spaces/node_metrics.h"
 #include "spaces/space_options.h"
+#include "spaces/state.h"
 #include "spaces/topology.h"
 
 namespace controlspace {
@@ -34,6 +35,7 @@ namespace controlspace {
 //   is_fitted(leaf)                      is known to follow the field at the leaf's own places
 //   learn(leaf, x, field)                follows the field better at x, or returns false
 //   control_nodes(tree, neighbourhood), assign(tree, metrics), describe(footprint), shrink_to_fit()
+//   save(state), load(tree, state)       all that it holds, but for what options give
 // and, if it holds metrics,
 //   grade(tree, options)                 the same as grading control_nodes and assigning them
 //   freeze(tree, precision)              see ControlSpace::freeze
@@ -132,6 +134,17 @@ public:
         const GradationReport report = changes_.regrade(tree, metrics_, past);
         changes_.begin(metrics_.size());
         return report;
+    }
+
+    void save(StateWriter& state) const {
+        NodeMetrics::exchange(metrics_, state);
+        changes_.save(state);
+    }
+    template <class Node>
+    void load(const Topology<Node>& tree, const StateReader& state) {
+        NodeMetrics::exchange(metrics_, state);
+        metrics_.require_sound(state, tree.leaves());
+        changes_.load(state, tree.leaves());
     }
 
     void describe(Footprint& footprint) const { metrics_.describe(footprint); }

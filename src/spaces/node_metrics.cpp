@@ -45,6 +45,14 @@ void NodeMetrics::keep_asked(std::vector<Metric> asked) {
     asks_isotropic_ = std::all_of(asked_.begin(), asked_.end(), is_isotropic);
 }
 
+void NodeMetrics::require_sound(const StateReader& state, std::size_t nodes) const {
+    state.require(field_.size() == nodes, "nodes.field", "has another number of nodes");
+    state.require(!keeps_asked() || asked_.size() == nodes, "nodes.asked",
+                  "has another number of nodes");
+    require_metrics(state, "nodes.field", field_);
+    require_metrics(state, "nodes.asked", asked_);
+}
+
 void NodeMetrics::describe(Footprint& footprint) const {
     footprint.control_nodes = field_.size();
     footprint.bytes_payload = field_.capacity() * sizeof(Metric);

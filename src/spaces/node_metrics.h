@@ -6,6 +6,7 @@
 
 #include "metric/metric.h"
 #include "spaces/control_space.h"
+#include "spaces/state.h"
 
 namespace controlspace {
 
@@ -40,6 +41,15 @@ public:
     void keep_asked(std::vector<Metric> asked);
     /// From now on the field is what is asked for.
     void forget_asked() { asked_.clear(); }
+
+    template <class Self, class State>
+    static void exchange(Self& self, State& state) {
+        state("nodes.field", self.field_);
+        state("nodes.asked", self.asked_);
+        state("nodes.asks_isotropic", self.asks_isotropic_);
+    }
+    /// Throws InputError unless what was loaded are metrics, of so many nodes.
+    void require_sound(const StateReader& state, std::size_t nodes) const;
 
     void describe(Footprint& footprint) const;
     void shrink_to_fit();

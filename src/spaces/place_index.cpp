@@ -28,6 +28,10 @@ std::size_t PlaceIndex::slot_of(const Point& x, std::span<const Point> positions
     return slot;
 }
 
+PlaceIndex::PlaceIndex(std::span<const Point> positions) : used_(positions.size()) {
+    enter_all(std::max(smallest_table, std::bit_ceil(2 * positions.size())), positions);
+}
+
 NodeIndex PlaceIndex::find_or_enter(const Point& x, NodeIndex next,
                                     std::span<const Point> positions) {
     if (2 * used_ >= table_.size()) grow(positions);
@@ -40,7 +44,11 @@ NodeIndex PlaceIndex::find_or_enter(const Point& x, NodeIndex next,
 }
 
 void PlaceIndex::grow(std::span<const Point> positions) {
-    table_.assign(std::max(smallest_table, 2 * table_.size()), nobody);
+    enter_all(std::max(smallest_table, 2 * table_.size()), positions);
+}
+
+void PlaceIndex::enter_all(std::size_t slots, std::span<const Point> positions) {
+    table_.assign(slots, nobody);
     for (NodeIndex i = 0; i < positions.size(); ++i) table_[slot_of(positions[i], positions)] = i;
 }
 

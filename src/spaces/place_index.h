@@ -13,6 +13,10 @@ namespace controlspace {
 /// half full at most. The positions stay with the owner, who passes them along.
 class PlaceIndex {
 public:
+    PlaceIndex() = default;
+    /// Of places that all differ.
+    explicit PlaceIndex(std::span<const Point> positions);
+
     /// The node at `x`. If there is none: `next`, which is entered for it; the owner must then
     /// append `x` to its positions as number `next` before the next call.
     NodeIndex find_or_enter(const Point& x, NodeIndex next, std::span<const Point> positions);
@@ -21,6 +25,7 @@ public:
 
 private:
     void grow(std::span<const Point> positions);
+    void enter_all(std::size_t slots, std::span<const Point> positions);
     std::size_t slot_of(const Point& x, std::span<const Point> positions) const;
 
     std::vector<NodeIndex> table_;

@@ -79,6 +79,13 @@ public:
         for (int c = 1; c < subdivision.children(); ++c) boxes_.push_back(subdivision.child(c));
     }
 
+    template <class Node>
+    void load(const Topology<Node>& tree, const StateReader& state) {
+        LeafValues::load(tree, state);
+        boxes_.resize(tree.leaves());
+        tree.for_each_leaf([&](LeafIndex leaf, const Box& box) { boxes_[leaf] = box; });
+    }
+
     void describe(Footprint& footprint) const {
         LeafValues::describe(footprint);
         footprint.bytes_auxiliary += boxes_.capacity() * sizeof(Box);

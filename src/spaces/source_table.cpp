@@ -31,6 +31,27 @@ std::vector<SourceIndex> SourceTable::keep(const std::vector<std::uint8_t>& kept
     return renamed;
 }
 
+void SourceTable::save(StateWriter& state) const {
+    state("sources.positions", positions_);
+    state("sources.metric_of", metric_of_);
+    state("sources.metrics", metrics_);
+}
+
+void SourceTable::load(const StateReader& state) {
+    std::vector<Point> positions;
+    std::vector<std::uint32_t> metric_of;
+    std::vector<Metric> metrics;
+    state("sources.positions", positions);
+    state("sources.metric_of", metric_of);
+    state("sources.metrics", metrics);
+    state.require(metric_of.size() == positions.size(), "sources.metric_of", "has another length");
+    require_below(state, "sources.metric_of", metric_of, metrics.size());
+    require_metrics(state, "sources.metrics", metrics);
+    *this = {};
+    for (std::size_t i = 0; i < positions.size(); ++i) add({positions[i], metrics[metric_of[i]]});
+    shrink_to_fit();
+}
+
 void SourceTable::shrink_to_fit() {
     positions_.shrink_to_fit();
     metric_of_.shrink_to_fit();

@@ -5,6 +5,7 @@
 
 #include "metric/metric.h"
 #include "sources/point_source.h"
+#include "spaces/state.h"
 
 namespace controlspace {
 
@@ -32,6 +33,9 @@ public:
     /// Keeps only the sources for which `kept` is not 0, in their order; returns the new index of
     /// each old one.
     std::vector<SourceIndex> keep(const std::vector<std::uint8_t>& kept);
+
+    void save(StateWriter& state) const;
+    void load(const StateReader& state);
 
     std::size_t bytes() const {
         return positions_.capacity() * sizeof(Point) + metrics_.capacity() * sizeof(Metric) +

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "geometry/box.h"
@@ -38,6 +39,8 @@ public:
     static Ref inner(std::size_t i) { return Ref(static_cast<std::uint32_t>(i)); }
     Ref() : bits_(leaf_bit) {}
 
+    static Ref from_bits(std::uint32_t bits) { return Ref(bits); }
+    std::uint32_t bits() const { return bits_; }
     bool is_leaf() const { return (bits_ & leaf_bit) != 0; }
     std::uint32_t index() const { return bits_ & max_index; }
     bool spare() const { return (bits_ & spare_bit) != 0; }
@@ -69,6 +72,9 @@ struct KdNode {
         children = {Ref().with_spare((axis & 1) != 0), Ref().with_spare((axis & 2) != 0)};
     }
     Axis axis() const { return (children[0].spare() ? 1 : 0) + (children[1].spare() ? 2 : 0); }
+    /// Where the planes stand.
+    std::span<const double> planes() const { return {&at, 1}; }
+    std::span<double> planes() { return {&at, 1}; }
     void set_child(int c, Ref ref) {
         Ref& child = children[static_cast<std::size_t>(c)];
         child = ref.with_spare(child.spare());
@@ -102,6 +108,8 @@ struct alignas(64) OctreeNode {
 
     OctreeNode() = default;
     OctreeNode(const Subdivision& s) : at{s.at.x(), s.at.y(), s.at.z()} {}
+    std::span<const double> planes() const { return at; }
+    std::span<double> planes() { return at; }
     void set_child(int c, Ref ref) { children[static_cast<std::size_t>(c)] = ref; }
     Subdivision subdivision(const Box& box) const {
         return {box, {at[0], at[1], at[2]}, {true, true, true}};
@@ -134,10 +142,26 @@ public:
     static constexpr int arity = Node::arity;
 
     explicit Topology(const Box& domain) : domain_(domain), jumps_(domain) {}
+    /// Of nodes that make a tree, the root first.
+    Topology(const Box& domain, std::vector<Node> nodes)
+        : domain_(domain), nodes_(std::move(nodes)), jumps_(domain) {
+        if (nodes_.empty()) return;
+        root_ = Ref::inner(0);
+        leaves_ = static_cast<LeafIndex>(nodes_.size() * (arity - 1) + 1);
+        std::vector<int> level(nodes_.size(), 0);
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            deepest_ = std::max(deepest_, level[i] + 1);
+            for (const Ref child : nodes_[i].children) {
+                if (!child.is_leaf()) level[child.index()] = level[i] + 1;
+            }
+        }
+        fit_jumps();
+    }
 
     const Box& domain() const { return domain_; }
     Ref root() const { return root_; }
     const Node& node(Ref inner) const { return nodes_[inner.index()]; }
+    std::span<const Node> nodes() const { return nodes_; }
     std::size_t leaves() const { return leaves_; }
     std::size_t inner_nodes() const { return nodes_.size(); }
     std::size_t bytes_of_jumps() const { return jumps_.bytes(); }

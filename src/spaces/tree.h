@@ -16,10 +16,12 @@
 #include "spaces/control_space.h"
 #include "spaces/leaf_values.h"
 #include "spaces/met_sources.h"
+#include "spaces/past_state.h"
 #include "spaces/published_bytes.h"
 #include "spaces/sample_leaves.h"
 #include "spaces/split_rule.h"
 #include "spaces/topology.h"
+#include "spaces/topology_state.h"
 
 namespace controlspace {
 
@@ -116,6 +118,17 @@ public:
         }
         settle();
         return report;
+    }
+
+    void save(StateWriter& state) const override {
+        controlspace::save(topology_, state);
+        storage_.save(state);
+        exchange_past(past_, state);
+    }
+    void load(const StateReader& state) override {
+        topology_ = load_topology<Node>(domain(), state);
+        storage_.load(topology_, state);
+        exchange_past(past_, state);
     }
 
     const Box& domain() const override { return topology_.domain(); }

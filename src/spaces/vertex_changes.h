@@ -9,6 +9,7 @@
 #include "spaces/cut_leaves.h"
 #include "spaces/leaves_where.h"
 #include "spaces/node_metrics.h"
+#include "spaces/state.h"
 #include "spaces/topology.h"
 
 namespace controlspace {
@@ -24,6 +25,19 @@ public:
     void touch(NodeIndex vertex) { touched_.push_back(vertex); }
     /// How many vertices are concerned.
     std::size_t count();
+
+    template <class Self, class State>
+    static void exchange(Self& self, State& state) {
+        CutLeaves::exchange(self.cut_, state);
+        state("changes.vertices", self.vertices_);
+        state("changes.cut_corners", self.cut_corners_);
+        state("changes.touched", self.touched_);
+    }
+    /// Whether what was loaded names vertices below this number only.
+    void require_sound(const StateReader& state, std::size_t vertices) const {
+        require_below(state, "changes.cut_corners", cut_corners_, vertices);
+        require_below(state, "changes.touched", touched_, vertices);
+    }
 
     /// See Regradation; `past` is the gradation before. To be called after `count`.
     template <class Node>

@@ -103,6 +103,14 @@ void VertexValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& fie
     });
 }
 
+void VertexValues::complete(const StateReader& state, std::size_t leaves) {
+    state.require(corners_.size() == leaves, "vertices.of_leaves", "has another number of leaves");
+    require_below(state, "vertices.of_leaves", corners_, positions_.size());
+    metrics_.require_sound(state, positions_.size());
+    changes_.require_sound(state, positions_.size());
+    places_ = PlaceIndex(positions_);
+}
+
 void VertexValues::describe(Footprint& footprint) const {
     metrics_.describe(footprint);
     footprint.bytes_topology += corners_.capacity() * sizeof(Corners);

@@ -14,6 +14,7 @@
 #include "spaces/node_metrics.h"
 #include "spaces/place_index.h"
 #include "spaces/space_options.h"
+#include "spaces/state.h"
 #include "spaces/topology.h"
 #include "spaces/vertex_changes.h"
 
@@ -120,6 +121,13 @@ public:
     static constexpr bool is_fitted(LeafIndex) { return false; }
     static constexpr bool learn(LeafIndex, const Point&, const GoalField&) { return false; }
 
+    void save(StateWriter& state) const { exchange(*this, state); }
+    template <class Node>
+    void load(const Topology<Node>& tree, const StateReader& state) {
+        exchange(*this, state);
+        complete(state, tree.leaves());
+    }
+
     void describe(Footprint& footprint) const;
     void shrink_to_fit();
 
@@ -138,6 +146,15 @@ private:
     }
     void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field);
     NodeIndex vertex_at(const Point& x, const Box& box, const Corners& corners);
+    template <class Self, class State>
+    static void exchange(Self& self, State& state) {
+        NodeMetrics::exchange(self.metrics_, state);
+        state("vertices.of_leaves", self.corners_);
+        state("vertices.positions", self.positions_);
+        VertexChanges::exchange(self.changes_, state);
+    }
+    // Checks what was loaded, and makes the index of places.
+    void complete(const StateReader& state, std::size_t leaves);
 
     std::vector<Corners> corners_;  // of a leaf, in the order of controlspace::corner
     NodeMetrics metrics_;

@@ -1,4 +1,4 @@
-#include "spaces/adaptation.h"
+#include "spaces/goal_field.h"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>

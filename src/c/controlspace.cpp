@@ -1,0 +1,170 @@
+#include "c/controlspace.h"
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "baselines/catalogue.h"
+#include "c/option_text.h"
+#include "error.h"
+#include "spaces/control_space_file.h"
+#include "version.h"
+
+struct cspace {
+    std::unique_ptr<controlspace::ControlSpace> space;
+};
+
+namespace {
+
+using namespace controlspace;
+
+// What the caller of this thread may ask for: the one thing that outlives a call.
+thread_local std::string last_error;
+
+cspace_status fail(cspace_status status, const char* what) noexcept {
+    try {
+        last_error = what;
+    } catch (...) {
+        last_error.clear();
+    }
+    return status;
+}
+
+// Runs `action`; what it throws becomes a status.
+template <class Action>
+cspace_status guarded(Action&& action) noexcept {
+    try {
+        action();
+        return CSPACE_OK;
+    } catch (const InputError& error) {
+        return fail(CSPACE_BAD_INPUT, error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(CSPACE_FAILURE, "out of memory");
+    } catch (const std::exception& error) {
+        return fail(CSPACE_FAILURE, error.what());
+    } catch (...) {
+        return fail(CSPACE_FAILURE, "unknown failure");
+    }
+}
+
+void require(const void* argument, const char* name) {
+    if (argument == nullptr) throw InputError(fmt::format("{} is NULL", name));
+}
+
+ControlSpace& space_of(const cspace* handle) {
+    require(handle, "space");
+    return *handle->space;
+}
+
+Point point_at(const double* positions, std::size_t i) {
+    return {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
+}
+
+// `metric_at(i)` of each source.
+template <class MetricAt>
+void insert(cspace* handle, std::size_t n, const double* positions, MetricAt&& metric_at) {
+    std::vector<PointSource> sources;
+    sources.reserve(n);
+    for (std::size_t i = 0; i < n; ++i) sources.push_back({point_at(positions, i), metric_at(i)});
+    space_of(handle).insert(sources);
+}
+
+const CatalogueEntry& entry_named(std::string_view name) {
+    for (const CatalogueEntry& entry : structures()) {
+        if (entry.id == name) return entry;
+    }
+    throw InputError(fmt::format("there is no structure {}: cspace_structure lists them", name));
+}
+
+}  // namespace
+
+const char* cspace_version(void) { return version().data(); }
+
+const char* cspace_last_error(void) { return last_error.c_str(); }
+
+cspace_status cspace_create(const char* structure, const double* domain, const char* options,
+                            cspace** space) {
+    return guarded([&] {
+        require(space, "space");
+        *space = nullptr;
+        require(structure, "structure");
+        require(domain, "domain");
+        const SpaceOptions given = options_from_text({point_at(domain, 0), point_at(domain, 1)},
+                                                     options == nullptr ? "" : options);
+        *space = new cspace{entry_named(structure).make(given)};
+    });
+}
+
+const char* cspace_structure(size_t i) {
+    return i < structures().size() ? structures()[i].id.c_str() : nullptr;
+}
+
+void cspace_free(cspace* space) { delete space; }
+
+cspace_status cspace_insert(cspace* space, size_t n, const double* positions,
+                            const double* metrics) {
+    return guarded([&] {
+        if (n > 0) require(positions, "positions");
+        if (n > 0) require(metrics, "metrics");
+        insert(space, n, positions, [&](std::size_t i) {
+            const double* m = metrics + 6 * i;
+            return Metric{m[0], m[1], m[2], m[3], m[4], m[5]};
+        });
+    });
+}
+
+cspace_status cspace_insert_lengths(cspace* space, size_t n, const double* positions,
+                                    const double* lengths) {
+    return guarded([&] {
+        if (n > 0) require(positions, "positions");
+        if (n > 0) require(lengths, "lengths");
+        insert(space, n, positions, [&](std::size_t i) { return Metric::isotropic(lengths[i]); });
+    });
+}
+
+cspace_status cspace_grade(cspace* space, double ratio) {
+    return guarded([&] { space_of(space).grade({.ratio = ratio}); });
+}
+
+cspace_status cspace_sample(const cspace* space, size_t n, const double* positions,
+                            double* metrics) {
+    return guarded([&] {
+        if (n > 0) require(positions, "positions");
+        if (n > 0) require(metrics, "metrics");
+        // Point and Metric are three and six numbers without gaps (spaces/state.h).
+        space_of(space).sample({reinterpret_cast<const Point*>(positions), n},
+                               {reinterpret_cast<Metric*>(metrics), n});
+    });
+}
+
+cspace_status cspace_domain(const cspace* space, double* domain) {
+    return guarded([&] {
+        require(domain, "domain");
+        const Box& box = space_of(space).domain();
+        for (Axis a = 0; a < 3; ++a) {
+            domain[a] = box.low[a];
+            domain[3 + a] = box.high[a];
+        }
+    });
+}
+
+cspace_status cspace_save(const cspace* space, const char* file) {
+    return guarded([&] {
+        require(file, "file");
+        save_control_space(file, space_of(space));
+    });
+}
+
+cspace_status cspace_load(const char* file, cspace** space) {
+    return guarded([&] {
+        require(space, "space");
+        *space = nullptr;
+        require(file, "file");
+        *space = new cspace{load_control_space(file, structures())};
+    });
+}

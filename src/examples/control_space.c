@@ -1,0 +1,38 @@
+/* A control space from C: sources say how long edges are to be at some places, and the control
+ * space says it everywhere, before and after it was saved. */
+#include <controlspace/controlspace.h>
+#include <stdio.h>
+
+static int fail(cspace* space) {
+    fprintf(stderr, "controlspace %s: %s\n", cspace_version(), cspace_last_error());
+    cspace_free(space);
+    return 1;
+}
+
+int main(void) {
+    const double domain[6] = {-1, -1, -1, 1, 1, 1};
+    const double positions[6] = {0.3, 0.2, 0, -1, -1, -1};
+    const double lengths[2] = {0.02, 0.05};
+    const double places[6] = {0.3, 0.2, 0, 0.9, 0.9, 0.9};
+    double metrics[12];
+    double again[12];
+    cspace* space = NULL;
+    int i;
+
+    if (cspace_create("K_oV", domain, "tau=1", &space) != CSPACE_OK) return fail(space);
+    if (cspace_insert_lengths(space, 2, positions, lengths) != CSPACE_OK) return fail(space);
+    if (cspace_grade(space, 1.25) != CSPACE_OK) return fail(space);
+    if (cspace_sample(space, 2, places, metrics) != CSPACE_OK) return fail(space);
+    printf("length at the source: %.3f, far from it: %.3f\n", metrics[0], metrics[6]);
+
+    if (cspace_save(space, "field.ctrl") != CSPACE_OK) return fail(space);
+    cspace_free(space);
+    if (cspace_load("field.ctrl", &space) != CSPACE_OK) return fail(space);
+    if (cspace_sample(space, 2, places, again) != CSPACE_OK) return fail(space);
+    for (i = 0; i < 12; ++i) {
+        if (again[i] != metrics[i]) return 1;
+    }
+    printf("the same after loading\n");
+    cspace_free(space);
+    return 0;
+}

@@ -1,0 +1,156 @@
+#include "spaces/control_space_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "error.h"
+#include "sources/output_file.h"
+#include "sources/text_file.h"
+#include "spaces/state.h"
+#include "version.h"
+
+namespace controlspace {
+
+namespace {
+
+// As that of PNG: a transfer as text, or by 7 bits, shows.
+constexpr std::string_view signature =
+    "\x89"
+    "CTRL\r\n\x1a";
+constexpr std::uint32_t order_mark = 0x01020304;
+
+struct Header {
+    std::uint32_t version = control_space_file_version;
+    std::uint32_t order = order_mark;
+    std::uint64_t size = 0;
+};
+constexpr std::size_t header_size = signature.size() + sizeof(Header);
+constexpr std::size_t checksum_size = sizeof(std::uint64_t);
+
+std::string_view bytes_of(const auto& value) {
+    return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+class Fnv1a {
+public:
+    void add(std::string_view bytes) {
+        for (const char c : bytes) {
+            hash_ = (hash_ ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+        }
+    }
+    std::uint64_t value() const { return hash_; }
+
+private:
+    std::uint64_t hash_ = 0xcbf29ce484222325u;
+};
+
+void require_little_endian() {
+    if constexpr (std::endian::native != std::endian::little) {
+        throw InputError("control spaces are saved and loaded on little-endian machines only");
+    }
+}
+
+template <class Self, class State>
+void exchange(Self& options, State& state) {
+    state("options.domain", options.domain);
+    state("options.split", options.split, SplitRule::exact_golden);
+    state("options.l_min", options.l_min);
+    state("options.tolerance", options.tolerance);
+    state("options.kd_depth", options.kd_depth);
+    state("options.octree_depth", options.octree_depth);
+    state("options.finest_length", options.finest_length);
+    state("options.voxel", options.voxel);
+    state("options.voxel_factor", options.voxel_factor);
+    state("options.prune_delta", options.prune_delta);
+    state("options.ratio", options.ratio);
+    state("options.takes_later_sources", options.takes_later_sources);
+    state("options.max_bytes", options.max_bytes);
+}
+
+// What lies between the header and the checksum.
+std::string_view checked_body(std::string_view bytes, const std::string& name) {
+    const auto fail = [&](const std::string& what) { throw InputError(name + " " + what); };
+    if (!bytes.starts_with(signature.substr(0, bytes.size()))) {
+        fail("is no control space: give a .ctrl file that was saved by this program");
+    }
+    if (bytes.size() < header_size + checksum_size) {
+        fail("is truncated: copy it again, or save the control space again");
+    }
+    Header header;
+    std::memcpy(&header, bytes.data() + signature.size(), sizeof header);
+    if (header.order != order_mark) {
+        fail("is altered (its order of bytes): copy it again, or save the control space again");
+    }
+    if (header.version > control_space_file_version) {
+        fail(fmt::format("has format version {}, this program reads up to {}: take a newer one",
+                         header.version, control_space_file_version));
+    }
+    if (bytes.size() < header.size) {
+        fail(
+            fmt::format("is truncated, {} of {} bytes: copy it again, or save the control space "
+                        "again",
+                        bytes.size(), header.size));
+    }
+    Fnv1a checksum;
+    checksum.add(bytes.substr(0, bytes.size() - checksum_size));
+    if (bytes.size() != header.size || !bytes.ends_with(bytes_of(checksum.value()))) {
+        fail("is altered (its checksum differs): copy it again, or save the control space again");
+    }
+    return bytes.substr(header_size, bytes.size() - header_size - checksum_size);
+}
+
+}  // namespace
+
+void save_control_space(const std::filesystem::path& file, const ControlSpace& space) {
+    require_little_endian();
+    if (!space.making()) {
+        throw InputError("a control space can be saved if an entry of the catalogue has made it");
+    }
+    StateWriter state;
+    state("written_by", "controlspace " + std::string(version()));
+    state("structure", space.making()->structure);
+    exchange(space.making()->options, state);
+    space.save(state);
+
+    const Header header{.size = header_size + state.bytes().size() + checksum_size};
+    Fnv1a checksum;
+    OutputFile out(file);
+    for (const std::string_view part :
+         {signature, bytes_of(header), std::string_view(state.bytes())}) {
+        checksum.add(part);
+        out.write(part);
+    }
+    out.write(bytes_of(checksum.value()));
+    out.commit();
+}
+
+std::unique_ptr<ControlSpace> load_control_space(const std::filesystem::path& file,
+                                                 std::span<const CatalogueEntry> structures) {
+    require_little_endian();
+    const std::string name = file.string();
+    const std::string bytes = read_binary_file(file);
+    const StateReader state(checked_body(bytes, name), name);
+    std::string structure;
+    SpaceOptions options;
+    state("structure", structure);
+    exchange(options, state);
+    const auto entry =
+        std::find_if(structures.begin(), structures.end(), [&](const CatalogueEntry& candidate) {
+            return candidate.id == structure || candidate.former_id == structure;
+        });
+    if (entry == structures.end()) {
+        throw InputError(fmt::format(
+            "{} holds the structure {}, which is not known here: take a build that has it", name,
+            quote(structure)));
+    }
+    auto space = entry->make(options);
+    space->load(state);
+    return space;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,7 @@
+#include "version.h"
+
+namespace controlspace {
+
+std::string_view version() { return CONTROLSPACE_VERSION; }
+
+}  // namespace controlspace

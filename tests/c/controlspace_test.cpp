@@ -1,0 +1,125 @@
+// The C library answers as the C++ library does, and turns every failure into a status.
+#include <controlspace/controlspace.h>
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "baselines/catalogue.h"
+#include "measure/access_time.h"
+#include "scratch_directory.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
+constexpr std::array<double, 6> corners{-1, -1, -1, 1, 1, 1};
+constexpr std::array<double, 3> place{0.3, 0.2, 0.1};
+constexpr std::array<double, 6> tensor{0.1, 0.2, 0.3, 0.01, 0.02, 0.03};
+constexpr const char* options = "split=s_G, tau=0.5 finest_length=0.1";
+
+cspace* made(const char* structure) {
+    cspace* space = nullptr;
+    REQUIRE(cspace_create(structure, corners.data(), options, &space) == CSPACE_OK);
+    return space;
+}
+
+std::vector<double> sampled(const cspace* space) {
+    const std::vector<Point> x = random_points(domain, 200, 1);
+    std::vector<double> metrics(6 * x.size());
+    REQUIRE(cspace_sample(space, x.size(), x.front().data(), metrics.data()) == CSPACE_OK);
+    return metrics;
+}
+
+}  // namespace
+
+TEST_CASE("C: every structure answers as from C++, also after saving and loading") {
+    const ScratchDirectory scratch("c");
+    const std::string file = (scratch / "field.ctrl").string();
+    std::size_t i = 0;
+    for (const CatalogueEntry& entry : structures()) {
+        CAPTURE(entry.id);
+        CHECK(cspace_structure(i++) == entry.id);
+        cspace* space = made(entry.id.c_str());
+        CHECK(cspace_insert(space, 1, place.data(), tensor.data()) == CSPACE_OK);
+        const double length = 0.2;
+        const double centre[3] = {0, 0, 0};
+        CHECK(cspace_insert_lengths(space, 1, centre, &length) == CSPACE_OK);
+        CHECK(cspace_grade(space, 1.5) == CSPACE_OK);
+
+        const auto own = entry.make(
+            {.domain = domain, .split = SplitRule::golden, .l_min = 0.5, .finest_length = 0.1});
+        own->insert({Point(0.3, 0.2, 0.1), {0.1, 0.2, 0.3, 0.01, 0.02, 0.03}});
+        own->insert({Point::Zero(), Metric::isotropic(0.2)});
+        own->grade({.ratio = 1.5});
+        const std::vector<Point> x = random_points(domain, 200, 1);
+        std::vector<Metric> expected(x.size());
+        own->sample(x, expected);
+        const std::vector<double> metrics = sampled(space);
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            const double* m = metrics.data() + 6 * k;
+            CHECK(Metric{m[0], m[1], m[2], m[3], m[4], m[5]} == expected[k]);
+        }
+
+        std::array<double, 6> box{};
+        CHECK(cspace_domain(space, box.data()) == CSPACE_OK);
+        CHECK(box == corners);
+        if (!entry.has_levels) {
+            REQUIRE(cspace_save(space, file.c_str()) == CSPACE_OK);
+            cspace* loaded = nullptr;
+            REQUIRE(cspace_load(file.c_str(), &loaded) == CSPACE_OK);
+            CHECK(sampled(loaded) == metrics);
+            cspace_free(loaded);
+        }
+        cspace_free(space);
+    }
+    CHECK(cspace_structure(i) == nullptr);
+    cspace_free(nullptr);
+}
+
+TEST_CASE("C: what cannot be used is refused with a reason") {
+    cspace* none = nullptr;
+    const auto refused = [&](const char* structure, const char* given) {
+        CHECK(cspace_create(structure, corners.data(), given, &none) == CSPACE_BAD_INPUT);
+        CHECK(none == nullptr);
+        return std::string(cspace_last_error());
+    };
+    CHECK_THAT(refused("K_x", ""), Contains("no structure K_x"));
+    CHECK_THAT(refused("K_L", "tau=much"), Contains("option tau is 'much'"));
+    CHECK_THAT(refused("K_L", "tau=-1"), Contains("tau"));
+    CHECK_THAT(refused("K_L", "colour=1"), Contains("no option 'colour'"));
+    CHECK_THAT(refused("K_L", "tau"), Contains("name=value"));
+    CHECK_THAT(refused("K_L", "split=s_X"), Contains("no split 's_X'"));
+    CHECK_THAT(refused("K_L", "max_memory=nan"), Contains("max_memory"));
+    CHECK_THAT(refused("uniform-nearest", nullptr), Contains("finest_length"));
+    CHECK_THAT(refused(nullptr, nullptr), Contains("structure is NULL"));
+    CHECK(cspace_create("K_L", nullptr, nullptr, &none) == CSPACE_BAD_INPUT);
+    CHECK(cspace_create("K_L", corners.data(), nullptr, nullptr) == CSPACE_BAD_INPUT);
+    CHECK(cspace_load("no/such/file.ctrl", &none) == CSPACE_BAD_INPUT);
+    CHECK(cspace_grade(nullptr, 1.25) == CSPACE_BAD_INPUT);
+
+    cspace* space = made("K_L");
+    const std::vector<double> before = sampled(space);
+    const double outside[3] = {3, 0, 0};
+    CHECK(cspace_insert(space, 1, outside, tensor.data()) == CSPACE_BAD_INPUT);
+    CHECK_THAT(cspace_last_error(), Contains("outside the domain"));
+    const double negative = -1;
+    CHECK(cspace_insert_lengths(space, 1, place.data(), &negative) == CSPACE_BAD_INPUT);
+    CHECK(cspace_insert(space, 1, place.data(), nullptr) == CSPACE_BAD_INPUT);
+    CHECK(cspace_grade(space, 0.5) == CSPACE_BAD_INPUT);
+    CHECK(cspace_sample(space, 0, nullptr, nullptr) == CSPACE_OK);
+    CHECK(sampled(space) == before);
+    cspace_free(space);
+}
+
+TEST_CASE("C: each thread has a last error of its own") {
+    CHECK(cspace_grade(nullptr, 1.25) == CSPACE_BAD_INPUT);
+    std::string other = "not asked";
+    std::thread([&] { other = cspace_last_error(); }).join();
+    CHECK(other.empty());
+    CHECK_THAT(cspace_last_error(), Contains("space is NULL"));
+}

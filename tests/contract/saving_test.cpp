@@ -1,0 +1,100 @@
+// A control space that was saved and loaded is the same, now and later.
+#include <catch2/catch.hpp>
+
+#include "contract/structures_under_test.h"
+#include "measure/access_time.h"
+#include "sources/files.h"
+#include "spaces/control_space_file.h"
+
+using namespace controlspace;
+
+namespace {
+
+std::vector<Metric> answers(const ControlSpace& space) {
+    const std::vector<Point> x = random_points(space.domain(), 2000, 1);
+    std::vector<Metric> out(x.size());
+    space.sample(x, out);
+    return out;
+}
+
+// With every split rule; those too that round.
+std::vector<Structure> whole_catalogue() {
+    std::vector<Structure> all = all_structures();
+    for (const CatalogueEntry& entry : structures()) {
+        if (entry.rounding > 1e-12) all.push_back({&entry, SplitRule::middle});
+    }
+    return all;
+}
+
+const PointSource later{Point(0.1, -0.2, 0.3), Metric::isotropic(0.06)};
+
+// Saves, loads, and checks that both are alike, and stay so with another source.
+void check_saving(ControlSpace& space, const ScratchDirectory& scratch) {
+    save_control_space(scratch / "field.ctrl", space);
+    const auto loaded = load_control_space(scratch / "field.ctrl", structures());
+    CHECK(loaded->making()->structure == space.making()->structure);
+    CHECK(checksum(answers(*loaded)) == checksum(answers(space)));
+    CHECK(loaded->footprint().elements == space.footprint().elements);
+    save_control_space(scratch / "again.ctrl", *loaded);
+    CHECK(file_text(scratch / "again.ctrl") == file_text(scratch / "field.ctrl"));
+
+    CHECK(loaded->insert(later) == space.insert(later));
+    loaded->grade({});
+    space.grade({});
+    CHECK(checksum(answers(*loaded)) == checksum(answers(space)));
+    CHECK(loaded->control_nodes(Neighbourhood::faces).metrics ==
+          space.control_nodes(Neighbourhood::faces).metrics);
+}
+
+}  // namespace
+
+TEST_CASE("saved and loaded: the same answers, and the same after more sources") {
+    const ScratchDirectory scratch("saving");
+    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+    for (const Structure& structure : whole_catalogue()) {
+        CAPTURE(structure.name(), work.name);
+        const auto space = work.graded(structure);
+        if (structure.entry->has_levels) {
+            CHECK(error_of([&] { save_control_space(scratch / "no.ctrl", *space); }) ==
+                  "this structure cannot be saved: trees, grids of equal voxels and `direct` can");
+            CHECK(!std::filesystem::exists(scratch / "no.ctrl"));
+            continue;
+        }
+        check_saving(*space, scratch);
+    }
+}
+
+TEST_CASE("saved between a later source and the gradation that it waits for") {
+    const ScratchDirectory scratch("saving");
+    const Work work = isotropic_sphere();
+    for (const Structure& structure : whole_catalogue()) {
+        if (structure.entry->has_levels || structure.entry->rounding > 1e-12) continue;
+        CAPTURE(structure.name());
+        SpaceOptions options = work.options(structure.split);
+        options.takes_later_sources = true;
+        const auto space = structure.entry->make(options);
+        space->insert(work.sources);
+        space->grade({});
+        space->insert({Point(-0.3, 0.5, 0.2), Metric::isotropic(0.05)});
+        check_saving(*space, scratch);
+    }
+}
+
+TEST_CASE("a new control space, an adapted and a pruned one can be saved too") {
+    const ScratchDirectory scratch("saving");
+    const Work work = isotropic_sphere();
+    for (const Structure& structure : whole_catalogue()) {
+        if (structure.entry->has_levels) continue;
+        CAPTURE(structure.name());
+        SpaceOptions options = work.options(structure.split);
+        if (structure.entry->can_prune) options.prune_delta = 0.05;
+        const auto space = structure.entry->make(options);
+        save_control_space(scratch / "new.ctrl", *space);
+        const auto loaded = load_control_space(scratch / "new.ctrl", structures());
+        CHECK(answers(*loaded) == answers(*space));
+        space->adapt({.sources = work.sources, .continuous = nullptr, .target = 0.2});
+        save_control_space(scratch / "adapted.ctrl", *space);
+        const auto adapted = load_control_space(scratch / "adapted.ctrl", structures());
+        CHECK(checksum(answers(*adapted)) == checksum(answers(*space)));
+    }
+}

@@ -1,0 +1,153 @@
+#include "spaces/control_space_file.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <random>
+
+#include "baselines/catalogue.h"
+#include "fields/formula_field.h"
+#include "sources/files.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
+
+std::unique_ptr<ControlSpace> small_tree(std::string_view id) {
+    for (const CatalogueEntry& entry : structures()) {
+        if (entry.id != id) continue;
+        auto space = entry.make({.domain = domain});
+        space->insert({Point(0.3, 0.2, 0.1), Metric::isotropic(0.1)});
+        space->insert({Point(-0.3, 0.2, 0.1), {0.1, 0.2, 0.3, 0.01, 0.02, 0.03}});
+        space->grade({});
+        return space;
+    }
+    throw std::logic_error("no such structure");
+}
+
+std::string saved(const ScratchDirectory& scratch, std::string_view id) {
+    save_control_space(scratch / "field.ctrl", *small_tree(id));
+    return file_text(scratch / "field.ctrl");
+}
+
+std::string loading_error(const ScratchDirectory& scratch, const std::string& bytes) {
+    const auto file = scratch.file("changed.ctrl", bytes);
+    return error_of([&] { load_control_space(file, structures()); });
+}
+
+template <class T>
+void put(std::string& bytes, std::size_t at, T value) {
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+}
+
+// What makes a forged file pass for an intact one.
+void sign(std::string& bytes) {
+    put(bytes, 16, static_cast<std::uint64_t>(bytes.size()));
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    for (std::size_t i = 0; i + 8 < bytes.size(); ++i) {
+        hash = (hash ^ static_cast<unsigned char>(bytes[i])) * 0x100000001b3u;
+    }
+    put(bytes, bytes.size() - 8, hash);
+}
+
+}  // namespace
+
+TEST_CASE("files of control spaces: what they begin with") {
+    const ScratchDirectory scratch("ctrl");
+    const std::string bytes = saved(scratch, "K_oL");
+    // Signature, version 1, order of bytes, size: little-endian.
+    CHECK(bytes.substr(0, 16) == std::string("\x89"
+                                             "CTRL\r\n\x1a\1\0\0\0\4\3\2\1",
+                                             16));
+    std::string signed_again = bytes;
+    sign(signed_again);
+    CHECK(signed_again == bytes);
+    CHECK(names_in(scratch.path()) == std::vector<std::string>{"field.ctrl"});
+}
+
+TEST_CASE("files of control spaces: what is refused, and why") {
+    const ScratchDirectory scratch("ctrl");
+    const std::string bytes = saved(scratch, "K_V");
+    CHECK_THAT(loading_error(scratch, ""), Contains("is empty"));
+    CHECK_THAT(loading_error(scratch, "x,y,z,h\n0,0,0,1\n"), Contains("is no control space"));
+    CHECK_THAT(error_of([&] { load_control_space(scratch / "none.ctrl", structures()); }),
+               Contains("cannot read"));
+    CHECK_THAT(error_of([&] { load_control_space(scratch.path(), structures()); }),
+               Contains("is a directory"));
+
+    std::string newer = bytes;
+    put(newer, 8, std::uint32_t{2});
+    CHECK_THAT(loading_error(scratch, newer), Contains("format version 2, this program reads up"));
+    std::string turned = bytes;
+    std::reverse(turned.begin() + 12, turned.begin() + 16);
+    CHECK_THAT(loading_error(scratch, turned), Contains("order of bytes"));
+
+    for (const std::size_t size : {std::size_t{1}, std::size_t{7}, std::size_t{23},
+                                   std::size_t{100}, bytes.size() / 2, bytes.size() - 1}) {
+        CHECK_THAT(loading_error(scratch, bytes.substr(0, size)), Contains("is truncated"));
+    }
+    CHECK_THAT(loading_error(scratch, bytes + "x"), Contains("is altered"));
+    for (std::size_t i = 24; i < bytes.size(); i += 61) {
+        std::string altered = bytes;
+        altered[i] = static_cast<char>(altered[i] ^ 4);
+        CHECK_THAT(loading_error(scratch, altered), Contains("checksum differs"));
+    }
+
+    std::vector<CatalogueEntry> octrees(structures().begin() + 3, structures().begin() + 6);
+    CHECK_THAT(error_of([&] { load_control_space(scratch / "field.ctrl", octrees); }),
+               Contains("'K_V', which is not known"));
+    const auto bare = structures()[0].construct({.domain = domain});
+    CHECK_THAT(error_of([&] { save_control_space(scratch / "bare.ctrl", *bare); }),
+               Contains("an entry of the catalogue"));
+}
+
+TEST_CASE("forged files end in an error or in metrics, never in a crash or in much memory") {
+    const ScratchDirectory scratch("ctrl");
+    std::mt19937 random(1);
+    const Point x(0.1, 0.2, 0.3);
+    for (const char* id : {"K_L", "K_Li", "K_oV", "K_oLA", "direct"}) {
+        const std::string bytes = saved(scratch, id);
+        int refused = 0;
+        for (int round = 0; round < 300; ++round) {
+            std::string forged = bytes;
+            for (int change = 0; change < 2; ++change) {
+                const std::size_t at = 24 + random() % (bytes.size() - 32);
+                forged[at] = static_cast<char>(random());
+            }
+            sign(forged);
+            const auto file = scratch.file("forged.ctrl", forged);
+            try {
+                sample_at(*load_control_space(file, structures()), x);
+            } catch (const InputError&) {
+                ++refused;
+            }
+        }
+        CHECK(refused > 100);
+    }
+}
+
+TEST_CASE("an array that is said to be huge is refused before memory is asked for") {
+    const ScratchDirectory scratch("ctrl");
+    const std::string bytes = saved(scratch, "K_oL");
+    const std::size_t name = bytes.find("nodes.field");
+    std::string forged = bytes;
+    const std::size_t count = name + 11 + 8;
+    put(forged, count, std::uint64_t{1} << 40);
+    sign(forged);
+    CHECK_THAT(loading_error(scratch, forged), Contains("nodes.field has a chunk"));
+}
+
+TEST_CASE("a program's own continuous field cannot be saved") {
+    const ScratchDirectory scratch("ctrl");
+    const auto field = std::make_shared<FormulaField<Metric (*)(const Point&)>>(
+        [](const Point&) { return Metric::isotropic(0.5); });
+    for (const char* id : {"K_oLA", "direct"}) {
+        const auto space = small_tree(id);
+        space->adapt({.sources = {}, .continuous = field});
+        CHECK_THAT(error_of([&] { save_control_space(scratch / "no.ctrl", *space); }),
+                   Contains("continuous field"));
+    }
+}
