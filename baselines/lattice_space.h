@@ -114,20 +114,25 @@ public:
         exchange_changes(*this, state);
     }
     void load(const StateReader& state) override {
-        const auto set = [&](const char* name, Storage& storage) {
+        const auto metrics_named = [&](const char* name) {
             std::vector<Metric> metrics;
             state(name, metrics);
             require_metrics(state, name, metrics);
-            if (metrics.empty()) return false;
-            state.require(metrics.size() == stencil_.lattice().size(), name,
-                          "has another number of nodes than this grid");
-            set_metrics(storage, metrics);
-            return true;
+            return metrics;
         };
-        state.require(set("grid.field", storage_), "grid.field", "is empty");
-        auto asked = std::make_unique<Storage>(storage_);
+        const auto fits = [&](const std::vector<Metric>& metrics) {
+            return metrics.size() == stencil_.lattice().size();
+        };
+        constexpr auto misfit = "has another number of nodes than this grid";
+        const std::vector<Metric> field = metrics_named("grid.field");
+        state.require(fits(field), "grid.field", misfit);
+        set_field(field);
         asked_.reset();
-        if (set("grid.asked", *asked)) asked_ = std::move(asked);
+        if (const std::vector<Metric> asked = metrics_named("grid.asked"); !asked.empty()) {
+            state.require(fits(asked), "grid.asked", misfit);
+            asked_ = std::make_unique<Storage>(storage_);
+            set_metrics(*asked_, asked);
+        }
         exchange_changes(*this, state);
         require_below(state, "grid.lowered", lowered_, stencil_.lattice().size());
     }

@@ -149,6 +149,9 @@ Command parse_command_line(int argc, const char* const* argv) {
     ConvertOptions convert_options;
     WordsByKey given_to_convert;
     const CLI::App* convert_command = add_convert(app, convert_options, given_to_convert);
+    BuildOptions build_options;
+    WordsByKey given_to_build;
+    const CLI::App* build_command = add_build(app, build_options, given_to_build);
     QueryOptions query_options;
     WordsByKey given_to_query;
     const CLI::App* query_command = add_query(app, query_options, given_to_query);
@@ -174,6 +177,10 @@ Command parse_command_line(int argc, const char* const* argv) {
     if (convert_command->parsed()) {
         convert_options.settings = given_settings(given_to_convert);
         return convert_options;
+    }
+    if (build_command->parsed()) {
+        build_options.settings = given_settings(given_to_build);
+        return build_options;
     }
     if (query_command->parsed()) {
         query_options.settings = given_settings(given_to_query);

@@ -3,6 +3,7 @@
 #include <string>
 #include <variant>
 
+#include "app/build.h"
 #include "app/compare.h"
 #include "app/convert.h"
 #include "app/export.h"
@@ -22,7 +23,7 @@ struct ListCommand {};
 
 using Command =
     std::variant<TextCommand, ListCommand, CompareOptions, ExportOptions, MeshOptions, PaperOptions,
-                 ReportOptions, InfoOptions, ConvertOptions, QueryOptions>;
+                 ReportOptions, InfoOptions, ConvertOptions, BuildOptions, QueryOptions>;
 
 /// Throws InputError for what is no valid command line.
 Command parse_command_line(int argc, const char* const* argv);

@@ -16,6 +16,18 @@ void add_reading_options(CLI::App& command, WordsByKey& given) {
     add_options(command, vdb_settings(), Study{}, "Settings of reading", given, fields);
 }
 
+void add_making_options(CLI::App& command, WordsByKey& given) {
+    constexpr std::string_view without[] = {"name",       "access_points",   "access_repeats",
+                                            "probe_grid", "fine_probe_grid", "output",
+                                            "reference"};
+    Run defaults;
+    defaults.structures = {"K_oL"};
+    defaults.splits = {SplitRule::middle};
+    add_options(command, run_settings(), defaults, "Settings of the structure (a value each)",
+                given, without);
+    add_options(command, study_settings(), Study{}, "Settings of the study", given, without);
+}
+
 }  // namespace
 
 CLI::App* add_info(CLI::App& app, InfoOptions& options, WordsByKey& given) {
@@ -40,10 +52,26 @@ CLI::App* add_convert(CLI::App& app, ConvertOptions& options, WordsByKey& given)
     return command;
 }
 
+CLI::App* add_build(CLI::App& app, BuildOptions& options, WordsByKey& given) {
+    CLI::App* command = app.add_subcommand(
+        "build", "Make and grade one structure, and save it, for query and programs");
+    command
+        ->add_option("INPUT", options.input,
+                     "Study file (.toml) or file of sources; left out: the paper's sphere")
+        ->option_text("FILE");
+    command->add_option("-o,--output", options.output, "File to write")
+        ->required()
+        ->option_text("FILE.ctrl");
+    add_making_options(*command, given);
+    return command;
+}
+
 CLI::App* add_query(CLI::App& app, QueryOptions& options, WordsByKey& given) {
     CLI::App* command =
         app.add_subcommand("query", "Write what one structure answers at given places");
-    command->add_option("INPUT", options.input, "Study file (.toml) or file of sources")
+    command
+        ->add_option("INPUT", options.input,
+                     "Study file (.toml), file of sources, or control space (.ctrl)")
         ->required()
         ->option_text("FILE");
     command->add_option("POINTS", options.points, "Places: columns x, y and z, others passed over")
@@ -53,15 +81,7 @@ CLI::App* add_query(CLI::App& app, QueryOptions& options, WordsByKey& given) {
         ->add_option("-o,--output", options.output,
                      "File to write: x,y,z,h, or the components of M; left out: standard output")
         ->option_text("FILE.csv");
-    constexpr std::string_view without[] = {"name",       "access_points",   "access_repeats",
-                                            "probe_grid", "fine_probe_grid", "output",
-                                            "reference"};
-    Run defaults;
-    defaults.structures = {"K_oL"};
-    defaults.splits = {SplitRule::middle};
-    add_options(*command, run_settings(), defaults, "Settings of the structure (a value each)",
-                given, without);
-    add_options(*command, study_settings(), Study{}, "Settings of the study", given, without);
+    add_making_options(*command, given);
     return command;
 }
 

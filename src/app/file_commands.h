@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/build.h"
 #include "app/convert.h"
 #include "app/info.h"
 #include "app/query.h"
@@ -12,6 +13,7 @@ namespace controlspace {
 
 CLI::App* add_info(CLI::App& app, InfoOptions& options, WordsByKey& given);
 CLI::App* add_convert(CLI::App& app, ConvertOptions& options, WordsByKey& given);
+CLI::App* add_build(CLI::App& app, BuildOptions& options, WordsByKey& given);
 CLI::App* add_query(CLI::App& app, QueryOptions& options, WordsByKey& given);
 
 }  // namespace controlspace

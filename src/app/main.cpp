@@ -7,6 +7,7 @@
 #include <new>
 #include <string>
 
+#include "app/build.h"
 #include "app/command_line.h"
 #include "app/compare.h"
 #include "app/export.h"
@@ -43,6 +44,8 @@ int main(int argc, char** argv) {
             info(*info_options);
         } else if (const auto* convert_options = std::get_if<ConvertOptions>(&command)) {
             convert(*convert_options);
+        } else if (const auto* build_options = std::get_if<BuildOptions>(&command)) {
+            build(*build_options);
         } else if (const auto* query_options = std::get_if<QueryOptions>(&command)) {
             query(*query_options);
         } else if (const auto* export_options = std::get_if<ExportOptions>(&command)) {
