@@ -41,13 +41,13 @@ std::vector<CatalogueEntry> catalogue_with_failures() {
     CatalogueEntry broken = entries.front();
     broken.id = "broken";
     broken.has_split_rules = false;
-    broken.make = [](const SpaceOptions&) -> std::unique_ptr<ControlSpace> {
+    broken.construct = [](const SpaceOptions&) -> std::unique_ptr<ControlSpace> {
         throw InputError("cannot be made");
     };
     entries.insert(entries.begin(), broken);
     CatalogueEntry greedy = broken;
     greedy.id = "greedy";
-    greedy.make = [](const SpaceOptions&) -> std::unique_ptr<ControlSpace> {
+    greedy.construct = [](const SpaceOptions&) -> std::unique_ptr<ControlSpace> {
         throw std::bad_alloc();
     };
     entries.push_back(greedy);

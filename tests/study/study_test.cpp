@@ -16,7 +16,7 @@ namespace {
 std::vector<CatalogueEntry> catalogue_with_a_grid() {
     const auto trees = tree_catalogue();
     std::vector<CatalogueEntry> entries(trees.begin(), trees.end());
-    entries.push_back({.id = "grid", .description = "", .make = nullptr});
+    entries.push_back({.id = "grid", .description = "", .construct = nullptr});
     return entries;
 }
 
