@@ -5,6 +5,8 @@
 #include <map>
 #include <memory>
 
+#include "app/export_vdb.h"
+#include "app/filled_space.h"
 #include "app/input_study.h"
 #include "app/readers.h"
 #include "app/standard_output.h"
@@ -18,20 +20,14 @@
 #include "spaces/space_field.h"
 #include "study/run.h"
 
-#ifdef CONTROLSPACE_OPENVDB
-#include "app/export_vdb.h"
-#endif
-
 namespace controlspace {
 namespace {
 
 /// What a format is made of, and how: `write` says what was written beside the file's size.
 struct Exported {
     const ExportOptions& options;
-    const Study& study;
-    const Case& c;
-    const Workload& workload;
     const ControlSpace& space;
+    const Origin* origin;  ///< none of a control space that was loaded
 };
 using Write = std::string (*)(const Exported&);
 
@@ -101,9 +97,7 @@ std::string write_image(const Exported& e) {
 #endif
 
 #ifdef CONTROLSPACE_OPENVDB
-std::string write_grids(const Exported& e) {
-    return export_vdb(e.options, e.study, e.c, e.workload, e.space);
-}
+std::string write_grids(const Exported& e) { return export_vdb(e.options, e.space, e.origin); }
 #endif
 
 const std::map<std::string, Write>& formats() {
@@ -150,13 +144,19 @@ std::string exported_formats() {
 
 void export_field(const ExportOptions& options) {
     const Write write = format_of(options);
+    if (is_control_space(options.input)) {
+        const auto space = load_input(options.input, options.settings);
+        print(write({options, *space, nullptr}));
+        return;
+    }
     const Study study = study_of_input(options.input, options.settings);
     const auto threads = limit_threads(study.threads);
     const Case c = only_case(study);
     const Workload workload = make_workload(study, c.sources, file_readers());
     Measures unused;
     const auto space = make_and_fill(study, c, entry_of(c, structures()), workload, unused, {});
-    print(write({options, study, c, workload, *space}));
+    const Origin origin{study, c, workload};
+    print(write({options, *space, &origin}));
 }
 
 }  // namespace controlspace

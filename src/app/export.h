@@ -13,7 +13,7 @@ namespace controlspace {
 
 /// What the command line of `export` asks for.
 struct ExportOptions {
-    std::filesystem::path input;   ///< study file or file of sources; empty: the paper's sphere
+    std::filesystem::path input;   ///< as of filled_space; empty: the paper's sphere
     std::filesystem::path output;  ///< its ending says the format
     GivenSettings settings;        ///< they override the study file in all of its runs
     std::string command_line;

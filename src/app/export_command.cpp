@@ -71,7 +71,8 @@ CLI::App* add_export(CLI::App& app, ExportOptions& options, WordsByKey& given) {
         "Write the field of one structure to a file, for Blender, Houdini, ParaView or a mesher");
     command
         ->add_option("INPUT", options.input,
-                     "Study file (.toml) or file of sources; left out: the paper's sphere")
+                     "Study file (.toml), file of sources, or control space (.ctrl); left out: the "
+                     "paper's sphere")
         ->option_text("FILE");
     command
         ->add_option("-o,--output", options.output,

@@ -7,20 +7,28 @@
 #include <ctime>
 
 #include "app/peak_memory.h"
+#include "error.h"
 #include "study/names.h"
 #include "study/provenance.h"
 
 namespace controlspace {
 namespace {
 
-std::vector<VdbNote> notes_of(const Case& c, const std::string& command_line) {
-    return {{"structure", structure_label(c)},
-            {"law", std::string(name_of(c.law))},
-            {"g_r", c.g_r},
-            {"settings", setting_label(c)},
-            {"sources", sources_name(c.sources)},
-            {"version", version_text(current_provenance())},
-            {"command_line", command_line}};
+std::vector<VdbNote> notes_of(const ExportOptions& options, const Origin* origin) {
+    std::vector<VdbNote> notes;
+    if (origin) {
+        const Case& c = origin->c;
+        notes = {{"structure", structure_label(c)},
+                 {"law", std::string(name_of(c.law))},
+                 {"g_r", c.g_r},
+                 {"settings", setting_label(c)},
+                 {"sources", sources_name(c.sources)}};
+    } else {
+        notes = {{"sources", options.input.string()}};
+    }
+    notes.emplace_back("version", version_text(current_provenance()));
+    notes.emplace_back("command_line", options.command_line);
+    return notes;
 }
 
 /// What writing took.
@@ -41,22 +49,29 @@ std::string summary(const std::filesystem::path& path, const VdbReport& report, 
 
 }  // namespace
 
-std::string export_vdb(const ExportOptions& options, const Study& study, const Case& c,
-                       const Workload& workload, const ControlSpace& space) {
+std::string export_vdb(const ExportOptions& options, const ControlSpace& space,
+                       const Origin* origin) {
     VdbOptions vdb = options.vdb;
-    vdb.notes = notes_of(c, options.command_line);
-    vdb.max_bytes = space_options(study, c, workload).max_bytes;
-    if (options.with_sources) vdb.sources = workload.sources;
+    vdb.notes = notes_of(options, origin);
+    if (origin) {
+        const auto& [study, c, workload] = *origin;
+        vdb.max_bytes = space_options(study, c, workload).max_bytes;
+        if (options.with_sources) vdb.sources = workload.sources;
+    } else if (options.with_sources) {
+        throw InputError(
+            fmt::format("{} keeps no sources: leave them out of --grids", options.input.string()));
+    }
     const auto start = std::chrono::steady_clock::now();
     const std::clock_t processor_start = std::clock();
     const VdbReport report = write_vdb(options.output, space, vdb);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     const auto ticks = static_cast<double>(std::clock() - processor_start);
-    if (report.voxel > workload.finest_length) {
+    const double finest = origin ? origin->workload.finest_length : report.finest;
+    if (report.voxel > finest) {
         spdlog::warn(
             "voxels of {:.4g} are larger than the smallest length asked for, {:.4g}: give --voxel "
             "to see all of it",
-            report.voxel, workload.finest_length);
+            report.voxel, finest);
     }
     return summary(options.output, report, {seconds.count(), ticks / CLOCKS_PER_SEC});
 }

@@ -41,14 +41,14 @@ private:
 };
 
 struct PointData {
-    std::vector<double> metric;
+    std::vector<double> length_tensor;
     std::vector<double> h_min;
 };
 
 PointData point_data(std::span<const Metric> metrics) {
     PointData data;
     for (const Metric& m : metrics) {
-        data.metric.insert(data.metric.end(), {m.xx, m.yy, m.zz, m.xy, m.yz, m.xz});
+        data.length_tensor.insert(data.length_tensor.end(), {m.xx, m.yy, m.zz, m.xy, m.yz, m.xz});
         data.h_min.push_back(is_isotropic(m) ? m.xx : eigen_frame(m).lengths[0]);
     }
     return data;
@@ -107,7 +107,7 @@ void write_vtu(const std::filesystem::path& path, const TetMesh& mesh, const Met
         "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n"
         "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
         mesh.vertices.size(), mesh.tets.size());
-    head += data.add("metric", "Float64", 6, points.metric);
+    head += data.add("length_tensor", "Float64", 6, points.length_tensor);
     head += data.add("h_min", "Float64", 1, points.h_min);
     head += "</PointData>\n<CellData>\n";
     head += data.add("quality", "Float64", 1, tet_qualities(mesh, metrics));

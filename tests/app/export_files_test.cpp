@@ -83,6 +83,23 @@ TEST_CASE("elements, nodes, octrees and slices are files for ParaView") {
 }
 #endif
 
+TEST_CASE("a control space that was saved is exported as it was") {
+    const Sandbox box("export-loaded");
+    box.write("s.csv", sources_csv);
+    REQUIRE(box.run("build s.csv -o f.ctrl --structures K_oV").status == 0);
+    REQUIRE(box.run("export s.csv -o made.csv --structures K_oV").status == 0);
+    const Outcome loaded = box.run("export f.ctrl -o loaded.csv");
+    INFO(loaded.err);
+    REQUIRE(loaded.status == 0);
+    CHECK(file_text(box / "loaded.csv") == file_text(box / "made.csv"));
+    check_refused(box.run("export f.ctrl -o a.csv --tau 0.5"), "--tau");
+#ifdef CONTROLSPACE_OPENVDB
+    CHECK(box.run("export f.ctrl -o loaded.vdb --voxel 0.1").status == 0);
+    check_refused(box.run("export f.ctrl -o a.vdb --grids sources"), "keeps no sources");
+    CHECK_FALSE(fs::exists(box / "a.vdb"));
+#endif
+}
+
 TEST_CASE("files of fields that cannot be written end with one line") {
     const Sandbox box("export-files-refused");
     box.write("s.csv", sources_csv);

@@ -70,7 +70,7 @@ TEST_CASE("a .vtu file holds the mesh, its metrics and its qualities") {
 
     const auto points = vtu_array<double>(file, "Points");
     REQUIRE(points.size() == 3 * mesh.vertices.size());
-    const auto components = vtu_array<double>(file, "metric");
+    const auto components = vtu_array<double>(file, "length_tensor");
     REQUIRE(components.size() == 6 * mesh.vertices.size());
     const auto smallest = vtu_array<double>(file, "h_min");
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
