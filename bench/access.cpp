@@ -50,7 +50,7 @@ std::unique_ptr<ControlSpace> as_fine_as_octree(const CatalogueEntry& grid, cons
 bool is_blended(const std::string& id) { return id == "K_V" || id == "K_oV"; }
 
 // All structures on the first work; on the others the paper's trees, and the plain grids where
-// their voxels are few enough.
+// making them takes seconds.
 std::vector<Row> rows_of(const Work& work) {
     const bool first = work.name == works().front().name;
     std::vector<Row> rows;
@@ -58,7 +58,8 @@ std::vector<Row> rows_of(const Work& work) {
         const bool is_tree = entry.group == "trees";
         const bool is_plain_grid =
             entry.id.starts_with("uniform-") || entry.id.starts_with("openvdb-uniform-");
-        if (!first && !is_tree && !(is_plain_grid && work.tau == 1)) continue;
+        const bool is_soon_made = work.tau == 1 && work.sampling.s_n == 1;
+        if (!first && !is_tree && !(is_plain_grid && is_soon_made)) continue;
         const bool has_limit = is_tree && entry.order < 2;
         rows.push_back({entry.id, [&](const Work& w) { return graded(entry, w); }, has_limit});
         if (is_tree) {
