@@ -14,12 +14,12 @@ void build(const BuildOptions& options) {
         throw InputError(fmt::format("cannot save to {}: name a file that ends in .ctrl",
                                      options.output.string()));
     }
-    const auto space = filled_space(options.input, options.settings);
-    save_control_space(options.output, *space);
-    const Footprint footprint = space->footprint();
+    const FilledSpace filled = filled_space(options.input, options.settings);
+    save_control_space(options.output, *filled.space);
+    const Footprint footprint = filled.space->footprint();
     print(fmt::format("{}: {} with {} control nodes, {:.1f} MB in memory, {:.1f} MB in the file\n",
-                      options.output.string(), space->making()->structure, footprint.control_nodes,
-                      static_cast<double>(footprint.bytes_total()) / 1e6,
+                      options.output.string(), filled.space->making()->structure,
+                      footprint.control_nodes, static_cast<double>(footprint.bytes_total()) / 1e6,
                       static_cast<double>(std::filesystem::file_size(options.output)) / 1e6));
 }
 

@@ -20,10 +20,7 @@ namespace {
 CLI::App* add_mesh(CLI::App& app, MeshOptions& options, WordsByKey& given) {
     CLI::App* command = app.add_subcommand(
         "mesh", "Make meshes with structures as size fields, and measure how they conform");
-    command
-        ->add_option("INPUT", options.input,
-                     "Study file (.toml) or file of sources; left out: the paper's sphere")
-        ->option_text("FILE");
+    add_study_input(*command, options.input);
     add_options(*command, mesh_settings(), MeshSettings{}, "Settings of the meshing", given);
     constexpr std::string_view without[] = {"access_points", "access_repeats", "fine_probe_grid"};
     Run defaults;
@@ -170,22 +167,14 @@ Command parse_command_line(int argc, const char* const* argv) {
     }
     if (list->parsed()) return ListCommand{};
     if (report->parsed()) return report_options;
-    if (info_command->parsed()) {
-        info_options.settings = given_settings(given_to_info);
-        return info_options;
-    }
-    if (convert_command->parsed()) {
-        convert_options.settings = given_settings(given_to_convert);
-        return convert_options;
-    }
-    if (build_command->parsed()) {
-        build_options.settings = given_settings(given_to_build);
-        return build_options;
-    }
-    if (query_command->parsed()) {
-        query_options.settings = given_settings(given_to_query);
-        return query_options;
-    }
+    const auto with_settings = [](auto& command_options, const WordsByKey& words) {
+        command_options.settings = given_settings(words);
+        return command_options;
+    };
+    if (info_command->parsed()) return with_settings(info_options, given_to_info);
+    if (convert_command->parsed()) return with_settings(convert_options, given_to_convert);
+    if (build_command->parsed()) return with_settings(build_options, given_to_build);
+    if (query_command->parsed()) return with_settings(query_options, given_to_query);
     if (paper->parsed()) {
         paper_options.command_line = command_line_text(argc, argv);
         return paper_options;

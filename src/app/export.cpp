@@ -7,18 +7,13 @@
 
 #include "app/export_vdb.h"
 #include "app/filled_space.h"
-#include "app/input_study.h"
-#include "app/readers.h"
 #include "app/standard_output.h"
-#include "app/threads.h"
-#include "baselines/catalogue.h"
 #include "error.h"
 #include "sources/medit.h"
 #include "sources/read_sources.h"
 #include "sources/write_medit_sources.h"
 #include "sources/write_sources.h"
 #include "spaces/space_field.h"
-#include "study/run.h"
 
 namespace controlspace {
 namespace {
@@ -26,8 +21,8 @@ namespace {
 /// What a format is made of, and how: `write` says what was written beside the file's size.
 struct Exported {
     const ExportOptions& options;
-    const ControlSpace& space;
-    const Origin* origin;  ///< none of a control space that was loaded
+    const FilledSpace& filled;
+    const ControlSpace& space = *filled.space;
 };
 using Write = std::string (*)(const Exported&);
 
@@ -97,7 +92,7 @@ std::string write_image(const Exported& e) {
 #endif
 
 #ifdef CONTROLSPACE_OPENVDB
-std::string write_grids(const Exported& e) { return export_vdb(e.options, e.space, e.origin); }
+std::string write_grids(const Exported& e) { return export_vdb(e.options, e.filled); }
 #endif
 
 const std::map<std::string, Write>& formats() {
@@ -144,19 +139,7 @@ std::string exported_formats() {
 
 void export_field(const ExportOptions& options) {
     const Write write = format_of(options);
-    if (is_control_space(options.input)) {
-        const auto space = load_input(options.input, options.settings);
-        print(write({options, *space, nullptr}));
-        return;
-    }
-    const Study study = study_of_input(options.input, options.settings);
-    const auto threads = limit_threads(study.threads);
-    const Case c = only_case(study);
-    const Workload workload = make_workload(study, c.sources, file_readers());
-    Measures unused;
-    const auto space = make_and_fill(study, c, entry_of(c, structures()), workload, unused, {});
-    const Origin origin{study, c, workload};
-    print(write({options, *space, &origin}));
+    print(write({options, filled_space(options.input, options.settings)}));
 }
 
 }  // namespace controlspace

@@ -89,16 +89,8 @@ CLI::App* add_export(CLI::App& app, ExportOptions& options, WordsByKey& given) {
 #ifdef CONTROLSPACE_VTK
     add_vtk_options(*command, options);
 #endif
-    // Settings of measuring, and the voxels of a grid that is exported, which are not the file's.
-    constexpr std::string_view without[] = {
-        "name",   "access_points", "access_repeats", "probe_grid", "fine_probe_grid",
-        "output", "reference",     "voxel"};
-    Run defaults;
-    defaults.structures = {"K_oL"};
-    defaults.splits = {SplitRule::middle};
-    add_options(*command, run_settings(), defaults, "Settings of the structure (a value each)",
-                given, without);
-    add_options(*command, study_settings(), Study{}, "Settings of the study", given, without);
+    // --voxel is the file's, not that of a grid that is exported.
+    add_making_options(*command, given, "voxel");
     command->callback([&options] {
 #ifdef CONTROLSPACE_OPENVDB
         options.with_sources = std::erase(options.vdb.grids, sources_grid) > 0;

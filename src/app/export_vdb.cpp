@@ -14,7 +14,7 @@
 namespace controlspace {
 namespace {
 
-std::vector<VdbNote> notes_of(const ExportOptions& options, const Origin* origin) {
+std::vector<VdbNote> notes_of(const ExportOptions& options, const std::optional<Origin>& origin) {
     std::vector<VdbNote> notes;
     if (origin) {
         const Case& c = origin->c;
@@ -49,8 +49,8 @@ std::string summary(const std::filesystem::path& path, const VdbReport& report, 
 
 }  // namespace
 
-std::string export_vdb(const ExportOptions& options, const ControlSpace& space,
-                       const Origin* origin) {
+std::string export_vdb(const ExportOptions& options, const FilledSpace& filled) {
+    const std::optional<Origin>& origin = filled.origin;
     VdbOptions vdb = options.vdb;
     vdb.notes = notes_of(options, origin);
     if (origin) {
@@ -63,7 +63,7 @@ std::string export_vdb(const ExportOptions& options, const ControlSpace& space,
     }
     const auto start = std::chrono::steady_clock::now();
     const std::clock_t processor_start = std::clock();
-    const VdbReport report = write_vdb(options.output, space, vdb);
+    const VdbReport report = write_vdb(options.output, *filled.space, vdb);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     const auto ticks = static_cast<double>(std::clock() - processor_start);
     const double finest = origin ? origin->workload.finest_length : report.finest;

@@ -3,20 +3,11 @@
 #include <string>
 
 #include "app/export.h"
-#include "study/run.h"
+#include "app/filled_space.h"
 
 namespace controlspace {
 
-/// What a structure was made for.
-struct Origin {
-    const Study& study;
-    const Case& c;
-    const Workload& workload;
-};
-
-/// Writes the field of `space` to a .vdb; says what was written. Without an `origin`, that of a
-/// control space that was loaded. Throws InputError.
-std::string export_vdb(const ExportOptions& options, const ControlSpace& space,
-                       const Origin* origin);
+/// Writes the field of a structure to a .vdb; says what was written. Throws InputError.
+std::string export_vdb(const ExportOptions& options, const FilledSpace& filled);
 
 }  // namespace controlspace

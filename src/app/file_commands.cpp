@@ -16,18 +16,6 @@ void add_reading_options(CLI::App& command, WordsByKey& given) {
     add_options(command, vdb_settings(), Study{}, "Settings of reading", given, fields);
 }
 
-void add_making_options(CLI::App& command, WordsByKey& given) {
-    constexpr std::string_view without[] = {"name",       "access_points",   "access_repeats",
-                                            "probe_grid", "fine_probe_grid", "output",
-                                            "reference"};
-    Run defaults;
-    defaults.structures = {"K_oL"};
-    defaults.splits = {SplitRule::middle};
-    add_options(command, run_settings(), defaults, "Settings of the structure (a value each)",
-                given, without);
-    add_options(command, study_settings(), Study{}, "Settings of the study", given, without);
-}
-
 }  // namespace
 
 CLI::App* add_info(CLI::App& app, InfoOptions& options, WordsByKey& given) {
@@ -55,10 +43,7 @@ CLI::App* add_convert(CLI::App& app, ConvertOptions& options, WordsByKey& given)
 CLI::App* add_build(CLI::App& app, BuildOptions& options, WordsByKey& given) {
     CLI::App* command = app.add_subcommand(
         "build", "Make and grade one structure, and save it, for query and programs");
-    command
-        ->add_option("INPUT", options.input,
-                     "Study file (.toml) or file of sources; left out: the paper's sphere")
-        ->option_text("FILE");
+    add_study_input(*command, options.input);
     command->add_option("-o,--output", options.output, "File to write")
         ->required()
         ->option_text("FILE.ctrl");

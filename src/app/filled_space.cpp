@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "app/input_study.h"
 #include "app/readers.h"
 #include "app/threads.h"
@@ -14,24 +16,24 @@ namespace controlspace {
 
 bool is_control_space(const std::filesystem::path& input) { return input.extension() == ".ctrl"; }
 
-std::unique_ptr<ControlSpace> load_input(const std::filesystem::path& input,
-                                         const GivenSettings& given) {
-    if (!given.empty()) {
-        throw InputError(fmt::format("{}: {} was made with its own: leave it out",
-                                     option_name(given.front().first), input.string()));
+FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings& given) {
+    FilledSpace filled;
+    if (is_control_space(input)) {
+        if (!given.empty()) {
+            throw InputError(fmt::format("{}: {} was made with its own: leave it out",
+                                         option_name(given.front().first), input.string()));
+        }
+        filled.space = load_control_space(input, structures());
+        return filled;
     }
-    return load_control_space(input, structures());
-}
-
-std::unique_ptr<ControlSpace> filled_space(const std::filesystem::path& input,
-                                           const GivenSettings& given) {
-    if (is_control_space(input)) return load_input(input, given);
-    const Study study = study_of_input(input, given);
-    const auto threads = limit_threads(study.threads);
+    Study study = study_of_input(input, given);
+    filled.threads = limit_threads(study.threads);
     const Case c = only_case(study);
-    const Workload workload = make_workload(study, c.sources, file_readers());
+    Workload workload = make_workload(study, c.sources, file_readers());
     Measures unused;
-    return make_and_fill(study, c, entry_of(c, structures()), workload, unused, {});
+    filled.space = make_and_fill(study, c, entry_of(c, structures()), workload, unused, {});
+    filled.origin = Origin{std::move(study), c, std::move(workload)};
+    return filled;
 }
 
 }  // namespace controlspace

@@ -9,9 +9,9 @@ namespace controlspace {
 
 void query(const QueryOptions& options) {
     const std::vector<Point> places = read_csv_points(options.points);
-    const auto space = filled_space(options.input, options.settings);
+    const FilledSpace filled = filled_space(options.input, options.settings);
     std::vector<Metric> metrics(places.size());
-    space->sample(places, metrics);
+    filled.space->sample(places, metrics);
     std::vector<PointSource> answers(places.size());
     for (std::size_t i = 0; i < places.size(); ++i) answers[i] = {places[i], metrics[i]};
     write_csv_sources(options.output, answers);

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <span>
 #include <string>
@@ -57,5 +58,12 @@ void add_options(CLI::App& command, std::span<const Setting<Target>> settings,
         }
     }
 }
+
+/// The argument INPUT: what study_of_input takes.
+void add_study_input(CLI::App& command, std::filesystem::path& input);
+
+/// All settings of a study that makes one structure, without those of measuring it; nor `another`,
+/// which the command has for something else.
+void add_making_options(CLI::App& command, WordsByKey& given, std::string_view another = {});
 
 }  // namespace controlspace
