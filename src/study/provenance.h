@@ -13,7 +13,7 @@ struct Provenance {
     std::string flags;
     std::string cpu;          ///< model; "unknown" where the system does not say
     unsigned cores = 0;       ///< that the system offers
-    std::size_t threads = 0;  ///< for the work that is not timed
+    std::size_t threads = 0;  ///< of all but the access, which is timed on one
     std::string date;         ///< UTC, "2024-05-01T12:00:00Z"
     std::string command_line;
 };

@@ -169,7 +169,8 @@ const Setting<Study> general_table[] = {
          s.seed = integer_within<std::uint64_t>(v.front(), 0, exact_integers);
      },
      [](const Study& s) { return one(static_cast<double>(s.seed)); }},
-    {"threads", whole, 1, "", "Threads for the work that is not timed; 0: all processors",
+    {"threads", whole, 1, "",
+     "Threads for creation, probes and accuracy; access is timed on one; 0: all processors",
      [](Study& s, const SettingValues& v) { s.threads = integer_within<int>(v.front(), 0, 4096); },
      [](const Study& s) { return one(s.threads); }},
     {"access_points", whole, 1, "", "Number of random places that access is timed at",

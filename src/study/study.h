@@ -53,7 +53,7 @@ struct Study {
     double margin = 0.05;       ///< around sources from a file, in units of their longest extent
     double max_memory_gib = 4;  ///< cap on a structure
     std::uint64_t seed = 1;     ///< of the random places that access is timed at, and of sources
-    int threads = 0;            ///< of the untimed work; 0: all
+    int threads = 0;            ///< of all but the access, which is timed on one; 0: all
     std::size_t access_points = 100000;  ///< random places
     int access_repeats = 9;
     int probe_grid = 30;        ///< n of the n^3 cell centres for δ_R, and for access in order
