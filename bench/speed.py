@@ -39,6 +39,7 @@ def read_samples(raw):
             kept = samples.setdefault(name, {})
             for key, value in values.items():
                 kept.setdefault(key, []).append(float(f"{value:.5g}"))
+    context.pop("host_name", None)
     return samples, context
 
 
