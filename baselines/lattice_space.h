@@ -32,7 +32,8 @@ namespace controlspace {
 ///   writer()  -> w with w.get(i, j, k) -> the same and w.set(i, j, k, metric)
 ///   void add_to(Footprint&) const                 its bytes
 ///   void prune(double delta)                      optional: joins nodes within δ of each other;
-///                                                 never makes a metric larger
+///                                                 never makes a metric larger; and with it
+///   save_tiles(state), load_tiles(lattice, state) which nodes are joined
 ///
 /// For `Stencil` see baselines/stencil.h.
 template <class Storage, class Stencil>
@@ -82,7 +83,7 @@ public:
             throw std::invalid_argument("assign() takes one metric for each control node");
         }
         set_field(metrics);
-        if constexpr (requires { storage_.prune(prune_delta_); }) {
+        if constexpr (joins_nodes) {
             if (prune_delta_ > 0) storage_.prune(prune_delta_);
         }
         asks_isotropic_ = std::all_of(metrics.begin(), metrics.end(), is_isotropic);
@@ -112,6 +113,7 @@ public:
         state("grid.field", metrics_of(storage_));
         state("grid.asked", asked_ ? metrics_of(*asked_) : std::vector<Metric>());
         exchange_changes(*this, state);
+        if constexpr (joins_nodes) storage_.save_tiles(state);
     }
     void load(const StateReader& state) override {
         const auto metrics_named = [&](const char* name) {
@@ -135,6 +137,7 @@ public:
         }
         exchange_changes(*this, state);
         require_below(state, "grid.lowered", lowered_, stencil_.lattice().size());
+        if constexpr (joins_nodes) storage_.load_tiles(stencil_.lattice(), state);
     }
 
     const Box& domain() const override { return stencil_.domain(); }
@@ -156,6 +159,8 @@ public:
     }
 
 private:
+    static constexpr bool joins_nodes = requires(Storage & storage) { storage.prune(0.0); };
+
     LatticeSpace(const SpaceOptions& options, Voxels voxels)
         : tolerance_(options.tolerance),
           takes_later_sources_(options.takes_later_sources),

@@ -44,9 +44,35 @@ public:
     // Voxels that fill up the outermost leaves are inactive, and nobody reads them.
     void prune(double delta) { prune_metrics(tree_, {.delta = delta, .inactive_count = false}); }
 
+    // Where tiles stand and in which level of the tree, which the metrics alone do not tell.
+    void save_tiles(StateWriter& state) const {
+        std::vector<std::array<std::uint32_t, 4>> tiles;
+        auto tile = tree_.cbeginValueOn();
+        tile.setMaxDepth(VdbMetricTree::ValueOnCIter::LEAF_DEPTH - 1);
+        for (; tile; ++tile) {
+            const openvdb::Coord c = tile.getCoord();
+            tiles.push_back({tile.getLevel(), static_cast<std::uint32_t>(c.x()),
+                             static_cast<std::uint32_t>(c.y()), static_cast<std::uint32_t>(c.z())});
+        }
+        state(tiles_name, tiles);
+    }
+    void load_tiles(const Lattice& lattice, const StateReader& state) {
+        std::vector<std::array<std::uint32_t, 4>> tiles;
+        state(tiles_name, tiles);
+        const auto [nx, ny, nz] = lattice.nodes;
+        for (const auto& [level, i, j, k] : tiles) {
+            state.require(level > 0 && level < VdbMetricTree::DEPTH && i < nx && j < ny && k < nz,
+                          tiles_name, "has a tile out of place");
+            const VdbMetric metric = tree_.getValue(voxel(i, j, k));
+            tree_.addTile(level, voxel(i, j, k), metric, true);
+        }
+    }
+
     void add_to(Footprint& footprint) const { add_dense_bytes(tree_, footprint); }
 
 private:
+    static constexpr const char* tiles_name = "grid.tiles";
+
     VdbMetricTree tree_;
 };
 

@@ -8,9 +8,11 @@
 
 #include "baselines/dense_tree.h"
 #include "baselines/level_nodes.h"
+#include "baselines/level_state.h"
 #include "baselines/vdb_prune.h"
 #include "error.h"
 #include "gradation/regrade.h"
+#include "spaces/past_state.h"
 
 namespace controlspace {
 
@@ -118,6 +120,21 @@ public:
         return report;
     }
 
+    void save(StateWriter& state) const override {
+        save_levels(field_.trees, field_name, state);
+        state("levels.keeps_asked", asked_.has_value());
+        if (asked_) save_levels(asked_->trees, asked_name, state);
+        exchange_past(past_, state);
+    }
+    void load(const StateReader& state) override {
+        field_ = loaded(field_name, state);
+        bool keeps_asked = false;
+        state("levels.keeps_asked", keeps_asked);
+        asked_.reset();
+        if (keeps_asked) asked_.emplace(loaded(asked_name, state));
+        exchange_past(past_, state);
+    }
+
     const Box& domain() const override { return cells_.domain(); }
 
     Box element_at(const Point& x) const override {
@@ -149,6 +166,16 @@ public:
     }
 
 private:
+    static constexpr const char* field_name = "levels.field";
+    static constexpr const char* asked_name = "levels.asked";
+
+    Stack loaded(const char* name, const StateReader& state) const {
+        Stack stack(cells_.levels());
+        load_levels(stack.trees, name, cells_, Values::interpolation, state);
+        for (const VdbLevelTree& tree : stack.trees) stack.voxels += tree.activeVoxelCount();
+        return stack;
+    }
+
     LevelNodes numbered() const { return {cells_, field_.trees, Values::interpolation}; }
 
     Metric value(const LevelReader& at, const LevelCells::Place& place) const {

@@ -21,13 +21,11 @@ GradationReport ControlSpace::grade(const GradationOptions& options) {
 }
 
 void ControlSpace::save(StateWriter&) const {
-    throw InputError(
-        "this structure cannot be saved: trees, grids of equal voxels and `direct` can");
+    throw InputError("this structure cannot be saved: choose one of the catalogue");
 }
 
 void ControlSpace::load(const StateReader&) {
-    throw InputError(
-        "this structure cannot be loaded: trees, grids of equal voxels and `direct` can");
+    throw InputError("this structure cannot be loaded: choose one of the catalogue");
 }
 
 AdaptationReport ControlSpace::adapt(const AdaptationGoal& goal) {

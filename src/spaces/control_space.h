@@ -49,6 +49,8 @@ struct ControlNodes {
 struct Making {
     std::string structure;  ///< id in the catalogue
     SpaceOptions options;
+    std::optional<Precision> frozen = {};  ///< made compact, and only read (ControlSpace::freeze)
+    std::string saved_by = {};  ///< "controlspace 0.1.0, format 1"; empty where it was not loaded
 };
 
 class StateWriter;

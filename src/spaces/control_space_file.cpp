@@ -11,6 +11,7 @@
 #include "error.h"
 #include "sources/output_file.h"
 #include "sources/text_file.h"
+#include "spaces/frozen_state.h"
 #include "spaces/state.h"
 #include "version.h"
 
@@ -72,6 +73,20 @@ void exchange(Self& options, State& state) {
     state("options.max_bytes", options.max_bytes);
 }
 
+std::unique_ptr<ControlSpace> load_space(const CatalogueEntry& entry, const SpaceOptions& options,
+                                         const StateReader& state) {
+    auto space = entry.make(options);
+    if (!state.has("frozen.precision")) {
+        space->load(state);
+        return space;
+    }
+    Precision precision{};
+    state("frozen.precision", precision, Precision::floats);
+    space = load_frozen(options.domain, precision, state);
+    space->set_making({entry.id, options, precision});
+    return space;
+}
+
 // What lies between the header and the checksum.
 std::string_view checked_body(std::string_view bytes, const std::string& name) {
     const auto fail = [&](const std::string& what) { throw InputError(name + " " + what); };
@@ -115,6 +130,9 @@ void save_control_space(const std::filesystem::path& file, const ControlSpace& s
     state("written_by", "controlspace " + std::string(version()));
     state("structure", space.making()->structure);
     exchange(space.making()->options, state);
+    if (space.making()->frozen) {
+        state("frozen.precision", *space.making()->frozen, Precision::floats);
+    }
     space.save(state);
 
     const Header header{.size = header_size + state.bytes().size() + checksum_size};
@@ -148,8 +166,11 @@ std::unique_ptr<ControlSpace> load_control_space(const std::filesystem::path& fi
             "{} holds the structure {}, which is not known here: take a build that has it", name,
             quote(structure)));
     }
-    auto space = entry->make(options);
-    space->load(state);
+    auto space = load_space(*entry, options, state);
+    Making making = *space->making();
+    state("written_by", making.saved_by);
+    making.saved_by += fmt::format(", format {}", control_space_file_version);
+    space->set_making(std::move(making));
     return space;
 }
 

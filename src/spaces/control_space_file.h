@@ -21,12 +21,12 @@ namespace controlspace {
 inline constexpr std::uint32_t control_space_file_version = 1;
 
 /// Writes `space`, with all that it takes to go on with it, to `file`: whole or not at all. Throws
-/// InputError where it was not made by a CatalogueEntry, where its structure cannot be saved
-/// (OpenVDB's grids in levels), where it keeps a continuous field, and where writing fails.
+/// InputError where it was not made by a CatalogueEntry, where it keeps a continuous field, and
+/// where writing fails.
 void save_control_space(const std::filesystem::path& file, const ControlSpace& space);
 
 /// The control space that was saved: it answers, takes sources and is graded as the first one
-/// would, to the last bit. (But voxels that were pruned are not: they take their memory again.)
+/// would, to the last bit, in as much memory.
 /// Throws InputError, saying why, where the file is missing, no such file, of a newer version,
 /// truncated or altered, and where its structure is not among `structures`.
 std::unique_ptr<ControlSpace> load_control_space(const std::filesystem::path& file,

@@ -13,6 +13,7 @@
 #include "metric/nonconformity.h"
 #include "spaces/frozen_values.h"
 #include "spaces/sample_leaves.h"
+#include "spaces/topology_state.h"
 
 namespace controlspace {
 
@@ -41,6 +42,13 @@ public:
         topology_.describe(footprint);
         values_.describe(footprint);
         return footprint;
+    }
+
+    void save(StateWriter& state) const override {
+        state("frozen.is_octree", Node::is_octant);
+        state("frozen.kind", Values::kind, FrozenKind::vertices);
+        controlspace::save(topology_, state);
+        values_.save(state);
     }
 
     Insertion insert(const PointSource&) override { refuse_to_change(); }

@@ -8,6 +8,7 @@
 #include "metric/stored_metric.h"
 #include "spaces/control_space.h"
 #include "spaces/corners.h"
+#include "spaces/frozen_state.h"
 #include "spaces/leaf_faces.h"
 #include "spaces/leaf_graph.h"
 #include "spaces/quadratic_values.h"
@@ -19,12 +20,15 @@ namespace controlspace {
 // FrozenTree asks of each:
 //   prefetch(leaf), value_in(tree, leaf, x)
 //   control_nodes(tree, neighbourhood), describe(footprint)
+//   kind, save(state)                    see frozen_state.h
 // `Number` is what metrics are kept in, `Plane` what planes are numbered in.
 
 /// One metric a leaf, constant over it.
 template <class Number>
 class FrozenLeaves {
 public:
+    static constexpr FrozenKind kind = FrozenKind::leaves;
+
     explicit FrozenLeaves(std::vector<StoredMetric<Number>> metrics)
         : metrics_(std::move(metrics)) {}
 
@@ -42,6 +46,9 @@ public:
         footprint.control_nodes = metrics_.size();
         footprint.bytes_payload = metrics_.capacity() * sizeof(StoredMetric<Number>);
     }
+    void save(StateWriter& state) const {
+        state("frozen.metrics", std::vector<Metric>(metrics_.begin(), metrics_.end()));
+    }
 
 protected:
     std::vector<StoredMetric<Number>> metrics_;
@@ -52,6 +59,8 @@ protected:
 template <class Number, class Plane>
 class FrozenQuadratic : public FrozenLeaves<Number> {
 public:
+    static constexpr FrozenKind kind = FrozenKind::quadratic;
+
     template <class Node>
     FrozenQuadratic(const Topology<Node>& tree, CutPlanes planes,
                     std::vector<StoredMetric<Number>> metrics, double slope)
@@ -91,6 +100,10 @@ public:
         FrozenLeaves<Number>::describe(footprint);
         footprint.bytes_topology += leaves_.capacity() * sizeof(Leaf) + planes_.bytes();
     }
+    void save(StateWriter& state) const {
+        FrozenLeaves<Number>::save(state);
+        state("frozen.slope", slope_);
+    }
 
 private:
     struct Leaf {
@@ -119,6 +132,8 @@ private:
 template <class Number, class Plane>
 class FrozenVertices {
 public:
+    static constexpr FrozenKind kind = FrozenKind::vertices;
+
     /// `corners` are those of the tree's leaves, whose numbers point into `metrics`.
     template <class Node>
     FrozenVertices(const Topology<Node>& tree, CutPlanes planes,
@@ -140,17 +155,14 @@ public:
 
     template <class Node>
     ControlNodes control_nodes(const Topology<Node>&, Neighbourhood neighbourhood) const {
-        std::vector<Corners> corners;
         std::vector<Point> positions(metrics_.size());
-        corners.reserve(leaves_.size());
         for (const Leaf& leaf : leaves_) {
-            corners.push_back(leaf.corners);
             const Box box = leaf.faces.box(planes_);
             for (int i = 0; i < 8; ++i) {
                 positions[leaf.corners[static_cast<std::size_t>(i)]] = corner(box, i);
             }
         }
-        return {vertex_graph(corners, std::move(positions), neighbourhood),
+        return {vertex_graph(corners(), std::move(positions), neighbourhood),
                 {metrics_.begin(), metrics_.end()}};
     }
     void describe(Footprint& footprint) const {
@@ -158,12 +170,23 @@ public:
         footprint.bytes_payload = metrics_.capacity() * sizeof(StoredMetric<Number>);
         footprint.bytes_topology += leaves_.capacity() * sizeof(Leaf) + planes_.bytes();
     }
+    void save(StateWriter& state) const {
+        state("frozen.metrics", std::vector<Metric>(metrics_.begin(), metrics_.end()));
+        state("frozen.corners", corners());
+    }
 
 private:
     struct Leaf {
         Corners corners;
         Faces<Plane> faces;
     };
+
+    std::vector<Corners> corners() const {
+        std::vector<Corners> corners;
+        corners.reserve(leaves_.size());
+        for (const Leaf& leaf : leaves_) corners.push_back(leaf.corners);
+        return corners;
+    }
 
     CutPlanes planes_;
     std::vector<Leaf> leaves_;

@@ -149,7 +149,9 @@ public:
         if constexpr (keeps_sources) {
             return ControlSpace::freeze(precision);
         } else {
-            return storage_.freeze(topology_, precision);
+            auto frozen = storage_.freeze(topology_, precision);
+            if (making()) frozen->set_making({making()->structure, options_, precision});
+            return frozen;
         }
     }
 

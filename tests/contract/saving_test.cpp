@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "contract/structures_under_test.h"
+#include "error.h"
 #include "measure/access_time.h"
 #include "sources/files.h"
 #include "spaces/control_space_file.h"
@@ -28,13 +29,21 @@ std::vector<Structure> whole_catalogue() {
 
 const PointSource later{Point(0.1, -0.2, 0.3), Metric::isotropic(0.06)};
 
+// The same parts in the same memory, but for room to grow.
+void check_alike(const Footprint& loaded, const Footprint& saved) {
+    CHECK(loaded.elements == saved.elements);
+    CHECK(loaded.control_nodes == saved.control_nodes);
+    CHECK(loaded.depth == saved.depth);
+    CHECK(loaded.bytes_total() <= saved.bytes_total());
+}
+
 // Saves, loads, and checks that both are alike, and stay so with another source.
 void check_saving(ControlSpace& space, const ScratchDirectory& scratch) {
     save_control_space(scratch / "field.ctrl", space);
     const auto loaded = load_control_space(scratch / "field.ctrl", structures());
     CHECK(loaded->making()->structure == space.making()->structure);
     CHECK(checksum(answers(*loaded)) == checksum(answers(space)));
-    CHECK(loaded->footprint().elements == space.footprint().elements);
+    check_alike(loaded->footprint(), space.footprint());
     save_control_space(scratch / "again.ctrl", *loaded);
     CHECK(file_text(scratch / "again.ctrl") == file_text(scratch / "field.ctrl"));
 
@@ -54,12 +63,6 @@ TEST_CASE("saved and loaded: the same answers, and the same after more sources")
     for (const Structure& structure : whole_catalogue()) {
         CAPTURE(structure.name(), work.name);
         const auto space = work.graded(structure);
-        if (structure.entry->has_levels) {
-            CHECK(error_of([&] { save_control_space(scratch / "no.ctrl", *space); }) ==
-                  "this structure cannot be saved: trees, grids of equal voxels and `direct` can");
-            CHECK(!std::filesystem::exists(scratch / "no.ctrl"));
-            continue;
-        }
         check_saving(*space, scratch);
     }
 }
@@ -68,7 +71,7 @@ TEST_CASE("saved between a later source and the gradation that it waits for") {
     const ScratchDirectory scratch("saving");
     const Work work = isotropic_sphere();
     for (const Structure& structure : whole_catalogue()) {
-        if (structure.entry->has_levels || structure.entry->rounding > 1e-12) continue;
+        if (structure.entry->rounding > 1e-12) continue;
         CAPTURE(structure.name());
         SpaceOptions options = work.options(structure.split);
         options.takes_later_sources = true;
@@ -80,11 +83,35 @@ TEST_CASE("saved between a later source and the gradation that it waits for") {
     }
 }
 
+TEST_CASE("a frozen control space is frozen again after loading, with the same bits") {
+    const ScratchDirectory scratch("saving");
+    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+    const Precision precision = GENERATE(Precision::doubles, Precision::floats);
+    for (const Structure& structure : whole_catalogue()) {
+        if (!structure.entry->can_freeze) continue;
+        CAPTURE(structure.name(), work.name, static_cast<int>(precision));
+        const auto frozen = work.graded(structure)->freeze(precision);
+        save_control_space(scratch / "frozen.ctrl", *frozen);
+        const auto loaded = load_control_space(scratch / "frozen.ctrl", structures());
+        CHECK(loaded->making()->frozen == precision);
+        CHECK(answers(*loaded) == answers(*frozen));
+        const auto nodes = [](const ControlSpace& space) {
+            return space.control_nodes(Neighbourhood::faces);
+        };
+        CHECK(positions(nodes(*loaded).graph) == positions(nodes(*frozen).graph));
+        CHECK(nodes(*loaded).metrics == nodes(*frozen).metrics);
+        check_alike(loaded->footprint(), frozen->footprint());
+        CHECK(loaded->footprint().bytes_total() == frozen->footprint().bytes_total());
+        CHECK_THROWS_AS(loaded->insert(later), InputError);
+        save_control_space(scratch / "again.ctrl", *loaded);
+        CHECK(file_text(scratch / "again.ctrl") == file_text(scratch / "frozen.ctrl"));
+    }
+}
+
 TEST_CASE("a new control space, an adapted and a pruned one can be saved too") {
     const ScratchDirectory scratch("saving");
     const Work work = isotropic_sphere();
     for (const Structure& structure : whole_catalogue()) {
-        if (structure.entry->has_levels) continue;
         CAPTURE(structure.name());
         SpaceOptions options = work.options(structure.split);
         if (structure.entry->can_prune) options.prune_delta = 0.05;
@@ -96,5 +123,6 @@ TEST_CASE("a new control space, an adapted and a pruned one can be saved too") {
         save_control_space(scratch / "adapted.ctrl", *space);
         const auto adapted = load_control_space(scratch / "adapted.ctrl", structures());
         CHECK(checksum(answers(*adapted)) == checksum(answers(*space)));
+        check_alike(adapted->footprint(), space->footprint());
     }
 }

