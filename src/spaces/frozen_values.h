@@ -1,7 +1,7 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -11,7 +11,8 @@
 #include "spaces/frozen_state.h"
 #include "spaces/leaf_faces.h"
 #include "spaces/leaf_graph.h"
-#include "spaces/quadratic_values.h"
+#include "spaces/parts_across.h"
+#include "spaces/quadratic_in_leaves.h"
 #include "spaces/vertex_values.h"
 
 namespace controlspace {
@@ -54,8 +55,7 @@ protected:
     std::vector<StoredMetric<Number>> metrics_;
 };
 
-/// One metric a leaf, interpolated with those of the neighbours. Each leaf knows where to look for
-/// them: the deepest part of the tree that holds all across a face, mostly a leaf.
+/// One metric a leaf, interpolated with those of the neighbours.
 template <class Number, class Plane>
 class FrozenQuadratic : public FrozenLeaves<Number> {
 public:
@@ -66,35 +66,32 @@ public:
                     std::vector<StoredMetric<Number>> metrics, double slope)
         : FrozenLeaves<Number>(std::move(metrics)), planes_(std::move(planes)), slope_(slope) {
         leaves_.reserve(tree.leaves());
-        for_each_faces<Plane>(tree, planes_, [&](LeafIndex leaf, const Faces<Plane>& faces) {
-            Leaf& l = leaves_.emplace_back();
-            l.faces = faces;
-            const Box box = faces.box(planes_);
-            for (int face = 0; face < 6; ++face) {
-                l.across[static_cast<std::size_t>(face)] = part_across(tree, leaf, box, face);
-            }
+        for_each_faces<Plane>(tree, planes_, [&](LeafIndex, const Faces<Plane>& faces) {
+            leaves_.push_back({faces, {}});
         });
+        for_each_parts_across(tree, [&](LeafIndex leaf, const Box&, const PartsAcross& across) {
+            leaves_[leaf].across = across;
+        });
+        isotropic_ = std::ranges::all_of(
+            this->metrics_, [](const StoredMetric<Number>& m) { return is_isotropic(m); });
     }
 
     void prefetch(LeafIndex leaf) const { __builtin_prefetch(&leaves_[leaf]); }
     template <class Node>
-    Metric value_in(const Topology<Node>& tree, LeafIndex leaf, const Point& place) const {
-        const Leaf& l = leaves_[leaf];
-        const Box box = l.faces.box(planes_);
-        return triquadratic_in(box, place, this->metrics_[leaf], slope_, [&](const Point& x) {
-            std::array<Metric, 6> across;
-            for (int face = 0; face < 6; ++face) {
-                Ref part = l.across[static_cast<std::size_t>(face)];
-                if (!part.is_leaf()) {
-                    Point y = x;
-                    step_across(tree.domain(), box, face, y);
-                    part = tree.leaf_in(part, y);
-                }
-                across[static_cast<std::size_t>(face)] = this->metrics_[part.index()];
-            }
-            return across;
-        });
+    void values_in(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
+                   std::span<const Point> x, std::span<Metric> out) const {
+        QuadraticInLeaves(tree, *this).interpolate(leaves, x, out);
     }
+
+    Box box(LeafIndex leaf) const { return leaves_[leaf].faces.box(planes_); }
+    const PartsAcross& parts_across(LeafIndex leaf, const Point&) const {
+        return leaves_[leaf].across;
+    }
+    Metric metric(LeafIndex leaf) const { return this->metrics_[leaf]; }
+    void prefetch_metric(LeafIndex leaf) const { __builtin_prefetch(&this->metrics_[leaf]); }
+    double length(LeafIndex leaf) const { return this->metrics_[leaf].xx; }
+    bool all_isotropic() const { return isotropic_; }
+    double slope() const { return slope_; }
 
     void describe(Footprint& footprint) const {
         FrozenLeaves<Number>::describe(footprint);
@@ -108,23 +105,13 @@ public:
 private:
     struct Leaf {
         Faces<Plane> faces;
-        std::array<Ref, 6> across;
+        PartsAcross across;
     };
-
-    // At the domain's border the leaf itself.
-    template <class Node>
-    static Ref part_across(const Topology<Node>& tree, LeafIndex leaf, const Box& box, int face) {
-        // All places of the face but for its low edges, which belong to other leaves.
-        Box all = box;
-        for (Axis a = 0; a < 3; ++a) all.low[a] = std::nextafter(box.low[a], box.high[a]);
-        if (!step_across(tree.domain(), box, face, all.low)) return Ref::leaf(leaf);
-        step_across(tree.domain(), box, face, all.high);
-        return tree.deepest_with(all);
-    }
 
     CutPlanes planes_;
     std::vector<Leaf> leaves_;
     double slope_;
+    bool isotropic_;
 };
 
 /// A metric at each vertex, trilinear between the eight of a leaf; vertices numbered as the leaves

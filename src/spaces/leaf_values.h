@@ -22,8 +22,9 @@ namespace controlspace {
 // A storage says where the control nodes of a tree are and how the metric between them is made.
 // What Tree asks of one:
 //   value(tree, x)                       metric at x
-//   value_in(tree, leaf, x)              the same where the leaf that holds x is known
-//   prefetch(leaf)                       what value_in will read first
+//   value_in(tree, leaf, x)              the same where the leaf that holds x is known; or
+//   values_in(tree, leaves, x, out)      the same for many
+//   prefetch(leaf)                       what that will read first
 //   asked(tree, x)                       the same before gradation (see NodeMetrics)
 //   ceiling(leaf, x)                     length that what is asked for at x, in this leaf, will
 //                                        not exceed by more than rounding as long as isotropic
@@ -35,6 +36,7 @@ namespace controlspace {
 //   is_fitted(leaf)                      is known to follow the field at the leaf's own places
 //   learn(leaf, x, field)                follows the field better at x, or returns false
 //   control_nodes(tree, neighbourhood), assign(tree, metrics), describe(footprint), shrink_to_fit()
+//   remember_parts(tree)                 if it has that: makes answers faster until a leaf is split
 //   save(state), load(tree, state)       all that it holds, but for what options give
 // and, if it holds metrics,
 //   grade(tree, options)                 the same as grading control_nodes and assigning them

@@ -1,42 +1,16 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <span>
+#include <vector>
 
 #include "spaces/leaf_values.h"
 #include "spaces/make_room.h"
+#include "spaces/parts_across.h"
+#include "spaces/quadratic_in_leaves.h"
 
 namespace controlspace {
-
-/// Metric inside a leaf, interpolated from its own metric and those of its six face neighbours.
-///
-/// `own` is the leaf's metric; across[2 a] and across[2 a + 1] are the neighbours' on the low and
-/// high side of axis a (the leaf's own at the domain's border); `t` is the place in the leaf, each
-/// coordinate in [-1, 1]. The 27 nodes of a hexahedron are set to: centre: own; face: mean of own
-/// and the neighbour's; edge: mean of its two faces; corner: mean of its three faces; between them
-/// the triquadratic Lagrange functions (paper §3.1.2, its coordinates put right).
-///
-/// Answers `own` at the centre and reproduces a constant. No node is smaller than own / 2, but
-/// quadratic functions undershoot; where the result would fall below own / 2 along any direction,
-/// its departure from `own` is scaled down until it does not. So it is always positive definite.
-///
-/// A leaf's face gets the mean of two leaves, far coarser than `own` beside a large neighbour, as
-/// beside a source at a cut plane. Where the result would exceed `largest_growth` times `own` along
-/// any direction, its departure is scaled down too; at least 1. (Cut off at the coarsest of the
-/// seven metrics instead, it is as often coarser than asked, and less accurate.)
-Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, const Vector& t,
-                    double largest_growth);
-
-/// The same at the nearest place to `place` in a leaf with this box; nowhere coarser than the cone
-/// of the leaf's own metric of this slope (g_r - 1). across_from(x) are the metrics across the
-/// faces from there.
-template <class AcrossFrom>
-Metric triquadratic_in(const Box& box, const Point& place, const Metric& own, double slope,
-                       AcrossFrom&& across_from) {
-    const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
-    const Vector v = x - box.centre();
-    const Vector t = 2 * v.cwiseQuotient(box.edges());
-    return triquadratic(own, across_from(x), t, 1 + slope * metric_length(own, v));
-}
 
 /// One metric a leaf, interpolated with those of the neighbours when asked (K_Li). Nowhere coarser
 /// than the cone of the leaf's own metric at its centre, with the ratio of the gradation to come:
@@ -51,16 +25,20 @@ public:
 
     template <class Node>
     Metric value(const Topology<Node>& tree, const Point& x) const {
-        return interpolate(tree, tree.find(x), x, metrics_.field());
+        return value_at(tree, x, metrics_.field());
     }
-    template <class Node>
-    Metric value_in(const Topology<Node>& tree, LeafIndex leaf, const Point& x) const {
-        return interpolate(tree, leaf, x, metrics_.field());
-    }
-    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&boxes_[leaf]); }
     template <class Node>
     Metric asked(const Topology<Node>& tree, const Point& x) const {
-        return interpolate(tree, tree.find(x), x, metrics_.asked());
+        return value_at(tree, x, metrics_.asked());
+    }
+    void prefetch(LeafIndex leaf) const {
+        __builtin_prefetch(&boxes_[leaf]);
+        if (!across_.empty()) __builtin_prefetch(&across_[leaf]);
+    }
+    template <class Node>
+    void values_in(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
+                   std::span<const Point> x, std::span<Metric> out) const {
+        interpolate(tree, leaves, x, out, metrics_.field());
     }
 
     template <class Node>
@@ -77,6 +55,33 @@ public:
         make_room(boxes_, static_cast<std::size_t>(subdivision.children() - 1));
         boxes_[leaf] = subdivision.child(0);
         for (int c = 1; c < subdivision.children(); ++c) boxes_.push_back(subdivision.child(c));
+        if (!across_.empty()) across_ = {};
+    }
+
+    void lower(const LeafPlace& place, const PointSource& source) {
+        LeafValues::lower(place, source);
+        isotropic_ = isotropic_ && is_isotropic(source.metric);
+    }
+
+    template <class Node>
+    void assign(const Topology<Node>& tree, std::span<const Metric> metrics) {
+        LeafValues::assign(tree, metrics);
+        look_at_metrics();
+    }
+
+    template <class Node>
+    GradationReport grade(const Topology<Node>& tree, const GradationOptions& options) {
+        const GradationReport report = LeafValues::grade(tree, options);
+        look_at_metrics();
+        remember_parts(tree);
+        return report;
+    }
+
+    template <class Node>
+    void fit(const Topology<Node>& tree, std::span<const AdaptedLeaf> leaves,
+             const GoalField& field, bool proved) {
+        LeafValues::fit(tree, leaves, field, proved);
+        look_at_metrics();
     }
 
     template <class Node>
@@ -84,11 +89,24 @@ public:
         LeafValues::load(tree, state);
         boxes_.resize(tree.leaves());
         tree.for_each_leaf([&](LeafIndex leaf, const Box& box) { boxes_[leaf] = box; });
+        look_at_metrics();
+        remember_parts(tree);
+    }
+
+    /// Makes answers faster until a leaf is split.
+    template <class Node>
+    void remember_parts(const Topology<Node>& tree) {
+        if (!across_.empty()) return;
+        across_.resize(tree.leaves());
+        for_each_parts_across(tree, [&](LeafIndex leaf, const Box&, const PartsAcross& parts) {
+            across_[leaf] = parts;
+        });
     }
 
     void describe(Footprint& footprint) const {
         LeafValues::describe(footprint);
-        footprint.bytes_auxiliary += boxes_.capacity() * sizeof(Box);
+        footprint.bytes_auxiliary +=
+            boxes_.capacity() * sizeof(Box) + across_.capacity() * sizeof(PartsAcross);
     }
     void shrink_to_fit() {
         LeafValues::shrink_to_fit();
@@ -96,27 +114,63 @@ public:
     }
 
 private:
+    /// What QuadraticInLeaves wants to know of them.
     template <class Node>
-    Metric interpolate(const Topology<Node>& tree, LeafIndex leaf, const Point& place,
-                       std::span<const Metric> metrics) const {
-        const Box& box = boxes_[leaf];
-        return triquadratic_in(box, place, metrics[leaf], slope_, [&](const Point& x) {
+    struct Values {
+        const Topology<Node>& tree;
+        const QuadraticValues& own;
+        std::span<const Metric> metrics;
+
+        const Box& box(LeafIndex leaf) const { return own.boxes_[leaf]; }
+        const Metric& metric(LeafIndex leaf) const { return metrics[leaf]; }
+        void prefetch_metric(LeafIndex leaf) const { __builtin_prefetch(&metrics[leaf]); }
+        double length(LeafIndex leaf) const { return metrics[leaf].xx; }
+        bool all_isotropic() const { return own.isotropic_; }
+        double slope() const { return own.slope_; }
+        PartsAcross parts_across(LeafIndex leaf, const Point& x) const {
+            return own.across_.empty() ? find_across(leaf, x) : own.across_[leaf];
+        }
+
+    private:
+        PartsAcross find_across(LeafIndex leaf, const Point& x) const {
             std::array<Point, 6> beyond;
             std::array<LeafIndex, 6> neighbours;
             for (int face = 0; face < 6; ++face) {
                 Point& y = beyond[static_cast<std::size_t>(face)];
                 y = x;
-                step_across(tree.domain(), box, face, y);
+                step_across(tree.domain(), box(leaf), face, y);
             }
             tree.find(beyond, neighbours);
-            std::array<Metric, 6> across;
-            for (std::size_t face = 0; face < 6; ++face) across[face] = metrics[neighbours[face]];
+            PartsAcross across;
+            std::transform(neighbours.begin(), neighbours.end(), across.begin(), Ref::leaf);
             return across;
-        });
+        }
+    };
+
+    template <class Node>
+    void interpolate(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
+                     std::span<const Point> x, std::span<Metric> out,
+                     std::span<const Metric> metrics) const {
+        const Values<Node> values{tree, *this, metrics};
+        QuadraticInLeaves(tree, values).interpolate(leaves, x, out);
+    }
+    template <class Node>
+    Metric value_at(const Topology<Node>& tree, const Point& x,
+                    std::span<const Metric> metrics) const {
+        const LeafIndex leaf = tree.find(x);
+        Metric m;
+        interpolate(tree, {&leaf, 1}, {&x, 1}, {&m, 1}, metrics);
+        return m;
     }
 
-    std::vector<Box> boxes_;  // of the leaves
-    double slope_;            // g_r - 1
+    void look_at_metrics() {
+        isotropic_ = std::ranges::all_of(metrics_.field(), is_isotropic) &&
+                     std::ranges::all_of(metrics_.asked(), is_isotropic);
+    }
+    std::vector<Box> boxes_;           // of the leaves
+    std::vector<PartsAcross> across_;  // of the leaves; empty where they are not known
+    double slope_;                     // g_r - 1
+    bool isotropic_ = true;            // all metrics are; false where that is not known
 };
 
 }  // namespace controlspace

@@ -209,18 +209,6 @@ public:
         return part;
     }
 
-    /// The deepest part of the tree that holds all of `box`, which may be flat.
-    Ref deepest_with(const Box& box) const {
-        Ref ref = root_;
-        while (!ref.is_leaf()) {
-            const Node& inner = node(ref);
-            const int c = inner.child_with(box.low);
-            if (inner.child_with(box.high) != c) break;
-            ref = inner.children[static_cast<std::size_t>(c)];
-        }
-        return ref;
-    }
-
     /// As `find`, for at most `most_found` places at a time, whose descents go side by side: while
     /// one waits for memory, others compare.
     static constexpr std::size_t most_found = 32;

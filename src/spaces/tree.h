@@ -267,12 +267,15 @@ private:
         if (cut != nullptr) cut->push_back(place.leaf);
     }
 
-    // Gives back what only growing needs.
+    // Gives back what only growing needs, and makes what only answers need.
     void settle() {
         if constexpr (keeps_sources) storage_.drop_idle_sources();
         topology_.shrink_to_fit();
         topology_.fit_jumps();
         storage_.shrink_to_fit();
+        if constexpr (requires { storage_.remember_parts(topology_); }) {
+            storage_.remember_parts(topology_);
+        }
     }
 
     // Stops a tree that outgrows the cap, long before the system stops the program.

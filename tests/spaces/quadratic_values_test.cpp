@@ -3,142 +3,89 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "metric/draw.h"
-#include "metric/intersection.h"
+#include "measure/access_time.h"
+#include "measure/accuracy.h"
+#include "sources/sampled_surfaces.h"
 #include "spaces/catalogue.h"
 
 using namespace controlspace;
 
 namespace {
 
-using Across = std::array<Metric, 6>;
+const Box domain{Point::Constant(-1), Point::Constant(1)};
+constexpr double ratio = 1.25;
 
-constexpr double unlimited = 1e300;
-
-// Node (i, j, k), each -1, 0 or 1, of the 27-node hexahedron as the header words it.
-Metric node(const Metric& own, const Across& across, const std::array<int, 3>& step) {
-    Metric sum{0, 0, 0, 0, 0, 0};
-    int faces = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-        if (step[a] == 0) continue;
-        const Metric& neighbour = across[2 * a + (step[a] > 0 ? 1 : 0)];
-        sum = Metric::from_matrix(sum.matrix() + 0.5 * (own.matrix() + neighbour.matrix()));
-        ++faces;
-    }
-    return faces == 0 ? own : (1.0 / faces) * sum;
+std::unique_ptr<ControlSpace> quadratic(SplitRule split) {
+    const CatalogueEntry& entry = tree_catalogue()[1];
+    REQUIRE(entry.id == "K_Li");
+    return entry.make({.domain = domain, .split = split, .ratio = ratio});
 }
 
-// The sum over 27 nodes with triquadratic Lagrange functions.
-Metric by_nodes(const Metric& own, const Across& across, const Vector& t) {
-    const auto lagrange = [](int step, double s) {
-        return step < 0 ? 0.5 * s * (s - 1) : step > 0 ? 0.5 * s * (s + 1) : 1 - s * s;
-    };
-    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-    for (int i = -1; i <= 1; ++i) {
-        for (int j = -1; j <= 1; ++j) {
-            for (int k = -1; k <= 1; ++k) {
-                sum += lagrange(i, t[0]) * lagrange(j, t[1]) * lagrange(k, t[2]) *
-                       node(own, across, {i, j, k}).matrix();
-            }
-        }
-    }
-    return Metric::from_matrix(sum);
+// The metric of the leaf that holds `x`.
+Metric own_at(const ControlSpace& space, const Point& x) {
+    return sample_at(space, space.element_at(x).centre());
 }
 
-Across draw_across(Draw& draw, double size, double anisotropy) {
-    Across across;
-    for (Metric& m : across) m = draw.metric(size, anisotropy);
-    return across;
+// By what is known of single leaves alone, with tensors.
+Metric by_leaves(const ControlSpace& space, const Point& place) {
+    const Box box = space.element_at(place);
+    const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
+    const Metric own = own_at(space, x);
+    std::array<Metric, 6> across;
+    for (int face = 0; face < 6; ++face) {
+        Point y = x;
+        const bool is_inside = step_across(space.domain(), box, face, y);
+        across[static_cast<std::size_t>(face)] = is_inside ? own_at(space, y) : own;
+    }
+    const Vector v = x - box.centre();
+    const Vector t = 2 * v.cwiseQuotient(box.edges());
+    return triquadratic(own, across, t, 1 + (ratio - 1) * metric_length(own, v));
+}
+
+// Random places, some outside, and some on planes of cuts.
+std::vector<Point> places() {
+    std::vector<Point> x = random_points({Point::Constant(-1.1), Point::Constant(1.1)}, 2000, 5);
+    for (std::size_t i = 0; i < x.size(); i += 4) {
+        const auto a = static_cast<Axis>(i / 4 % 3);
+        x[i][a] = std::round(16 * x[i][a]) / 16;
+    }
+    return x;
+}
+
+void check_answers(const ControlSpace& space) {
+    const std::vector<Point> x = places();
+    std::vector<Metric> batch(x.size());
+    space.sample(x, batch);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        REQUIRE(batch[i] == by_leaves(space, x[i]));
+        REQUIRE(batch[i] == sample_at(space, x[i]));
+    }
 }
 
 }  // namespace
 
-TEST_CASE("the sum over seven metrics is the one over 27 nodes") {
-    Draw draw(1);
-    for (int i = 0; i < 100; ++i) {
-        const Metric own = draw.metric(1, 2);
-        const Across across = draw_across(draw, 1, 2);
-        const Vector t(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
-        const Metric expected = by_nodes(own, across, t);
-        const Eigen::Matrix3d above = expected.matrix() - 0.5 * own.matrix();
-        if (Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(above).eigenvalues()[0] < 0) continue;
-        CHECK(difference(triquadratic(own, across, t, unlimited), expected) < 1e-13);
-    }
-}
-
-TEST_CASE("own metric at the centre, constants everywhere") {
-    Draw draw(2);
-    const Metric own = draw.metric(0.1, 100);
-    CHECK(triquadratic(own, draw_across(draw, 1, 10), Vector::Zero(), 1) == own);
-    Across constant;
-    constant.fill(own);
-    CHECK(difference(triquadratic(own, constant, Vector(0.3, -0.9, 0.5), 1), own) < 1e-14);
-}
-
-TEST_CASE("reflecting the axes reflects the field") {
-    Draw draw(3);
-    for (int i = 0; i < 50; ++i) {
-        const Metric own = draw.metric(1, 1);
-        Across across;
-        for (Metric& m : across) m = Metric::isotropic(draw.uniform(0.5, 2));
-        const Vector t(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
-        const Metric here = triquadratic(own, across, t, unlimited);
-        for (std::size_t a = 0; a < 3; ++a) {
-            Across mirrored = across;
-            std::swap(mirrored[2 * a], mirrored[2 * a + 1]);
-            Vector s = t;
-            s[static_cast<Eigen::Index>(a)] *= -1;
-            CHECK(difference(triquadratic(own, mirrored, s, unlimited), here) < 1e-14);
+TEST_CASE("K_Li interpolates between the leaf and its neighbours, however they are found") {
+    for (const double s_n : {1.0, 0.2}) {
+        const std::vector<PointSource> sources =
+            sample_sphere({.h = 0.1, .s_a = 3, .s_n = s_n, .rho = 1});
+        for (const SplitRule split : {SplitRule::middle, SplitRule::golden, SplitRule::metric}) {
+            CAPTURE(s_n, static_cast<int>(split));
+            const auto space = quadratic(split);
+            for (const PointSource& source : sources) space->insert(source);
+            check_answers(*space);
+            space->grade({.ratio = ratio});
+            check_answers(*space);
+            check_answers(*space->freeze(Precision::doubles));
+            // Leaves are split once more; the first source is thin, the second is not.
+            for (const double thin : {0.2, 1.0}) {
+                const Point p = thin < 1 ? Point(0.3, -0.2, 0.9) : Point(-0.7, 0.1, 0.1);
+                space->insert({p, {0.01, 0.01, 0.01 * thin, 0, 0, 0}});
+                check_answers(*space);
+            }
+            space->insert(sources);
+            check_answers(*space);
         }
     }
-}
-
-TEST_CASE("never below half of the leaf's own metric, whatever the neighbours") {
-    Draw draw(4);
-    int undershoots = 0;
-    for (int i = 0; i < 500; ++i) {
-        const double anisotropy = i % 2 == 0 ? 1 : 100;
-        const Metric own = draw.metric(0.01, anisotropy);
-        Across across;
-        for (Metric& m : across) {
-            m = draw.uniform(0, 1) < 0.5 ? draw.metric(10, anisotropy)
-                                         : draw.metric(0.01, anisotropy);
-        }
-        const Vector t(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
-        const Metric m = triquadratic(own, across, t, unlimited);
-        REQUIRE(is_positive_definite(m));
-        // m >= own / 2 as matrices, up to rounding.
-        const Eigen::Matrix3d above = m.matrix() - 0.5 * own.matrix();
-        const double deepest =
-            Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(above).eigenvalues()[0];
-        CHECK(deepest >= -1e-9 * m.matrix().norm());
-        undershoots += difference(m, by_nodes(own, across, t)) > 1e-9;
-    }
-    CHECK(undershoots > 20);  // the case was met
-}
-
-TEST_CASE("never longer than the growth that is allowed, and the interpolation where it may be") {
-    Draw draw(5);
-    int limited = 0;
-    for (int i = 0; i < 500; ++i) {
-        const double anisotropy = i % 2 == 0 ? 1 : 30;
-        const Metric own = draw.metric(0.1, anisotropy);
-        const Across across = draw_across(draw, i % 3 == 0 ? 0.1 : 1, anisotropy);
-        const Vector t(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
-        const double allowed = draw.uniform(1, 3);
-        const Metric free = triquadratic(own, across, t, unlimited);
-        const Metric m = triquadratic(own, across, t, allowed);
-        REQUIRE(is_positive_definite(m));
-        CHECK(growth(m, own) <= allowed * (1 + 1e-9));
-        if (growth(free, own) <= allowed) {
-            CHECK(m == free);
-        } else {
-            ++limited;
-            // Isotropic answers take what is allowed, no less.
-            if (anisotropy == 1) CHECK(growth(m, own) == Approx(allowed));
-        }
-    }
-    CHECK(limited > 100);
 }
 
 TEST_CASE("a source at a leaf's face is met by K_Li, before gradation and after") {

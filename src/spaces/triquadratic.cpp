@@ -1,4 +1,4 @@
-#include "spaces/quadratic_values.h"
+#include "spaces/triquadratic.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -32,6 +32,12 @@ double admissible_share(const Metric& own, const Metric& departure) {
     return deepest >= -0.5 ? 1 : -0.5 / deepest;
 }
 
+// The same of lengths.
+double admissible_share(double own, double departure) {
+    const double deepest = departure / own;
+    return deepest >= -0.5 ? 1 : -0.5 / deepest;
+}
+
 // The largest length along any direction that `departure` adds to `own`, in those of `own`. It
 // bounds growth(own + s departure, own) by 1 + s times it.
 double largest_departure(const Metric& own, const Metric& departure) {
@@ -45,25 +51,7 @@ double largest_departure(const Metric& own, const Metric& departure) {
 
 Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, const Vector& t,
                     double largest_growth) {
-    // The nodes are means of seven metrics, so the sum over 27 nodes is one over seven metrics.
-    // On an axis with coordinate s, the functions of the two outer nodes are s(s-1)/2 and s(s+1)/2,
-    // and sum to s². With q = s² of the other two axes, the face node of an axis enters by itself
-    // (1-q)(1-q'), as half of four edges, q(1-q') + q'(1-q), and as a third of four corners, q q'.
-    const Vector q = t.cwiseProduct(t);
-    std::array<double, 7> weights{};
-    double faces = 0;
-    for (Axis a = 0; a < 3; ++a) {
-        const double qb = q[(a + 1) % 3];
-        const double qc = q[(a + 2) % 3];
-        const double plane =
-            (1 - qb) * (1 - qc) + 0.5 * (qb * (1 - qc) + qc * (1 - qb)) + qb * qc / 3;
-        const auto low = static_cast<std::size_t>(2 * a);
-        // A face node is the mean of the neighbour's metric and the leaf's own.
-        weights[low] = 0.25 * t[a] * (t[a] - 1) * plane;
-        weights[low + 1] = 0.25 * t[a] * (t[a] + 1) * plane;
-        faces += weights[low] + weights[low + 1];
-    }
-    weights[6] = 1 - faces;
+    const std::array<double, 7> weights = triquadratic_weights(t);
     const Metric sum = blend_lengths(
         weights, [&](std::size_t i) -> const Metric& { return i < 6 ? across[i] : own; });
 
@@ -73,6 +61,15 @@ Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, cons
     if (is_within(deep_enough, largest_growth, own)) return deep_enough;
     const Metric left = difference(deep_enough, own);
     return moved(own, (largest_growth - 1) / largest_departure(own, left), left);
+}
+
+double limited_length(double own, double sum, const Vector& v, double slope) {
+    const double departure = sum - own;
+    const double share = admissible_share(own, departure);
+    if (share < 1) return own + share * departure;
+    const double growth = 1 + slope * Vector(v / own).norm();
+    if (is_within(Metric::isotropic(sum), growth, Metric::isotropic(own))) return sum;
+    return own + (growth - 1) / (departure / own) * departure;
 }
 
 }  // namespace controlspace
