@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "geometry/box.h"
@@ -26,20 +28,28 @@ public:
         for (Axis a = 0; a < 3; ++a) axes_[index(a)].cut(domain.low[a], domain.high[a], 1);
     }
 
-    /// 2^halvings cells, as cubic as may be.
-    void resize(int halvings) {
+    /// As many cells as leaves of a tree of that depth that is cut evenly by `subdivide`. False if
+    /// they are so many already; otherwise nothing is entered.
+    template <class Subdivide>
+    bool resize(int depth, Subdivide&& subdivide) {
         std::array<int, 3> cells{1, 1, 1};
         Box cell = domain_;
-        for (int i = 0; i < halvings; ++i) {
-            const Subdivision subdivision = longest_edge_halves(cell);
+        for (int i = 0; i < depth; ++i) {
+            const Subdivision subdivision = subdivide(cell);
             cell = subdivision.child(0);
             for (Axis a = 0; a < 3; ++a) cells[index(a)] *= subdivision.cuts[index(a)] ? 2 : 1;
         }
+        const std::size_t all = static_cast<std::size_t>(cells[0]) *
+                                static_cast<std::size_t>(cells[1]) *
+                                static_cast<std::size_t>(cells[2]);
+        if (all == refs_.size()) return false;
         for (Axis a = 0; a < 3; ++a) {
             axes_[index(a)].cut(domain_.low[a], domain_.high[a], cells[index(a)]);
         }
-        refs_.assign(std::size_t{1} << halvings, Ref());
+        set_fraction_bits();
+        refs_.assign(all, Ref());
         refs_.shrink_to_fit();
+        return true;
     }
 
     std::size_t cells() const { return refs_.size(); }
@@ -52,6 +62,30 @@ public:
     /// Where a descent to `x` may start.
     const Ref& at(const Point& x) const {
         return refs_[cell(axes_[0].find(x.x()), axes_[1].find(x.y()), axes_[2].find(x.z()))];
+    }
+
+    /// Numbers of the cells that hold places, for `at`: one pass over all, which the compiler turns
+    /// into vector instructions. Negative for places that `at` has to compare with planes.
+    ///
+    /// Cells are numbered in steps of 2^-fraction_bits_. The computed number of steps never falls
+    /// as a coordinate grows, and is less than one off at planes; so a place whose steps are not
+    /// the last before a plane nor the first behind it is on the side of that plane that they say.
+    void find(std::span<const Point> x, std::span<int> cells) const {
+        const int bits = fraction_bits_;
+        const unsigned fraction = (1u << bits) - 1;
+        const Steps sx(axes_[0], bits), sy(axes_[1], bits), sz(axes_[2], bits);
+        const int across = std::countr_zero(static_cast<unsigned>(axes_[0].count()));
+        const int up = across + std::countr_zero(static_cast<unsigned>(axes_[1].count()));
+        for (std::size_t p = 0; p < x.size(); ++p) {
+            const unsigned i = sx.below(x[p].x()), j = sy.below(x[p].y()), k = sz.below(x[p].z());
+            const unsigned near =
+                std::min(std::min((i + 1) & fraction, (j + 1) & fraction), (k + 1) & fraction);
+            const unsigned cell = i >> bits | j >> bits << across | k >> bits << up;
+            cells[p] = near > 1 ? static_cast<int>(cell) : -1;
+        }
+    }
+    Ref at(int cell, const Point& x) const {
+        return cell >= 0 ? refs_[static_cast<std::size_t>(cell)] : at(x);
     }
 
     /// Enters `ref`, which stands for `box`, for all cells inside; or what is deeper down.
@@ -71,6 +105,19 @@ public:
 
 private:
     static std::size_t index(Axis a) { return static_cast<std::size_t>(a); }
+
+    // As many as integers have room for, as long as the steps of `find` are longer than what
+    // quotients are off by at planes.
+    void set_fraction_bits() {
+        int most_cells = 0;
+        double error = 0;
+        for (const AxisCells& axis : axes_) {
+            most_cells = std::max(most_cells, axis.count());
+            error = std::max(error, axis.largest_error());
+        }
+        fraction_bits_ = 30 - std::countr_zero(static_cast<unsigned>(most_cells));
+        while (fraction_bits_ > 0 && error * (1 << fraction_bits_) > 0.5) --fraction_bits_;
+    }
 
     // Whether the box is as long as a cell along all axes, or shorter by rounding alone.
     bool may_hold_cells(const Box& box) const {
@@ -105,6 +152,15 @@ private:
             planes.front() = planes.back() = std::numeric_limits<double>::quiet_NaN();
         }
 
+        /// Most that the quotient at a plane is off from the plane's number.
+        double largest_error() const {
+            double error = 0;
+            for (int i = 1; i < count(); ++i) {
+                error = std::max(error, std::abs((planes[at(i)] - low) * per_length - i));
+            }
+            return error;
+        }
+
         // The quotient is off by rounding at most, and brought to the planes' own order.
         int find(double x) const {
             double guess = (x - low) * per_length;
@@ -126,6 +182,23 @@ private:
         }
 
         static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+    };
+
+    /// The cells along one axis, in steps of 2^-bits cells.
+    struct Steps {
+        double low, per_length, most;
+
+        Steps(const AxisCells& axis, int bits)
+            : low(axis.low),
+              per_length(axis.per_length * (1 << bits)),
+              most((axis.count() - 0.5) * (1 << bits)) {}
+        /// How many lie below x as a whole.
+        unsigned below(double x) const {
+            double steps = (x - low) * per_length;
+            steps = steps > 0 ? steps : 0;
+            steps = steps < most ? steps : most;
+            return static_cast<unsigned>(static_cast<int>(steps));
+        }
     };
 
     struct Range {
@@ -190,6 +263,7 @@ private:
 
     Box domain_;
     std::array<AxisCells, 3> axes_;
+    int fraction_bits_ = 0;
     std::vector<Ref> refs_{Ref()};
 };
 

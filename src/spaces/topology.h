@@ -175,14 +175,14 @@ public:
     }
 
     void shrink_to_fit() { nodes_.shrink_to_fit(); }
-    /// Fits the start of descents to the number of leaves: a cell for two to four of them. With
-    /// twice as many cells queries are hardly faster.
+    /// Fits the start of descents to the number of leaves: two to four cells for each, in octrees
+    /// half to four, which takes 16 bytes a leaf at most. With fewer, queries where leaves are
+    /// small take up to twice as long.
     void fit_jumps() {
         const int halvings =
-            std::clamp(static_cast<int>(std::bit_width(leaves_)) - 2, 0, largest_jump_table);
-        if (jumps_.cells() == std::size_t{1} << halvings) return;
-        jumps_.resize(halvings);
-        enter_jumps(root_, domain_);
+            std::clamp(static_cast<int>(std::bit_width(leaves_)) + 1, 0, largest_jump_table);
+        const int cuts = halvings / std::countr_zero(static_cast<unsigned>(arity));
+        if (jumps_.resize(cuts, Node::even_subdivision)) enter_jumps(root_, domain_);
     }
     /// The same while the tree grows, now and then.
     void fit_jumps_roughly() {
@@ -211,34 +211,26 @@ public:
 
     /// As `find`, for at most `most_found` places at a time, whose descents go side by side: while
     /// one waits for memory, others compare.
-    static constexpr std::size_t most_found = 32;
+    static constexpr std::size_t most_found = 128;
     void find(std::span<const Point> x, std::span<LeafIndex> leaves) const {
-        std::array<Ref, most_found> refs;
+        std::array<int, most_found> cells;
         std::array<std::uint8_t, most_found> going;
-        std::array<const Ref*, most_found> starts;
+        jumps_.find(x, cells);
         std::size_t left = 0;
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            starts[i] = &jumps_.at(x[i]);
-            __builtin_prefetch(starts[i]);
-        }
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            refs[i] = *starts[i];
+        const auto reached = [&](std::size_t i, Ref ref) {
+            leaves[i] = ref.bits();
             going[left] = static_cast<std::uint8_t>(i);
-            left += refs[i].is_leaf() ? 0 : 1;
-            __builtin_prefetch(nodes_.data() + refs[i].index());
-        }
+            left += ref.is_leaf() ? 0 : 1;
+        };
+        for (std::size_t i = 0; i < x.size(); ++i) reached(i, jumps_.at(cells[i], x[i]));
         while (left > 0) {
-            std::size_t still = 0;
-            for (std::size_t k = 0; k < left; ++k) {
-                const std::uint8_t i = going[k];
-                refs[i] = child_with(refs[i], x[i]);
-                going[still] = i;
-                still += refs[i].is_leaf() ? 0 : 1;
-                __builtin_prefetch(nodes_.data() + refs[i].index());
+            const std::size_t before = std::exchange(left, 0);
+            for (std::size_t k = 0; k < before; ++k) {
+                const std::size_t i = going[k];
+                reached(i, child_with(Ref::from_bits(leaves[i]), x[i]));
             }
-            left = still;
         }
-        for (std::size_t i = 0; i < x.size(); ++i) leaves[i] = refs[i].index();
+        for (LeafIndex& leaf : leaves.first(x.size())) leaf = Ref::from_bits(leaf).index();
     }
 
     /// Cuts a leaf. Child 0 keeps the leaf's number, the others get the next ones:
