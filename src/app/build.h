@@ -11,6 +11,7 @@ struct BuildOptions {
     std::filesystem::path input;   ///< study file or file of sources; empty: the paper's sphere
     std::filesystem::path output;  ///< .ctrl
     GivenSettings settings;        ///< they override the study file in all of its runs
+    bool quiet = false;
 };
 
 /// Makes and grades the one structure that `options` ask for, K_oL if nothing is said, saves it,

@@ -20,7 +20,7 @@ namespace {
 CLI::App* add_mesh(CLI::App& app, MeshOptions& options, WordsByKey& given) {
     CLI::App* command = app.add_subcommand(
         "mesh", "Make meshes with structures as size fields, and measure how they conform");
-    add_study_input(*command, options.input);
+    add_filled_input(*command, options.input);
     add_options(*command, mesh_settings(), MeshSettings{}, "Settings of the meshing", given);
     constexpr std::string_view without[] = {"access_points", "access_repeats", "fine_probe_grid"};
     Run defaults;

@@ -8,6 +8,7 @@
 #include "app/export_vdb.h"
 #include "app/filled_space.h"
 #include "app/standard_output.h"
+#include "app/step_progress.h"
 #include "error.h"
 #include "sources/medit.h"
 #include "sources/read_sources.h"
@@ -22,6 +23,7 @@ namespace {
 struct Exported {
     const ExportOptions& options;
     const FilledSpace& filled;
+    StepProgress& progress;
     const ControlSpace& space = *filled.space;
 };
 using Write = std::string (*)(const Exported&);
@@ -92,7 +94,7 @@ std::string write_image(const Exported& e) {
 #endif
 
 #ifdef CONTROLSPACE_OPENVDB
-std::string write_grids(const Exported& e) { return export_vdb(e.options, e.filled); }
+std::string write_grids(const Exported& e) { return export_vdb(e.options, e.filled, e.progress); }
 #endif
 
 const std::map<std::string, Write>& formats() {
@@ -139,7 +141,15 @@ std::string exported_formats() {
 
 void export_field(const ExportOptions& options) {
     const Write write = format_of(options);
-    print(write({options, filled_space(options.input, options.settings)}));
+    std::string said;
+    {
+        StepProgress progress(options.quiet, options.output);
+        const FilledSpace filled =
+            filled_space(options.input, options.settings, progress.observer());
+        progress.started("sampling and writing");
+        said = write({options, filled, progress});
+    }
+    print(said);
 }
 
 }  // namespace controlspace

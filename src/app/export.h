@@ -17,6 +17,7 @@ struct ExportOptions {
     std::filesystem::path output;  ///< its ending says the format
     GivenSettings settings;        ///< they override the study file in all of its runs
     std::string command_line;
+    bool quiet = false;
 
     VdbOptions vdb;             ///< .vdb; without sources and notes
     bool with_sources = false;  ///< .vdb: as a grid of points too

@@ -69,11 +69,7 @@ CLI::App* add_export(CLI::App& app, ExportOptions& options, WordsByKey& given) {
     CLI::App* command = app.add_subcommand(
         "export",
         "Write the field of one structure to a file, for Blender, Houdini, ParaView or a mesher");
-    command
-        ->add_option("INPUT", options.input,
-                     "Study file (.toml), file of sources, or control space (.ctrl); left out: the "
-                     "paper's sphere")
-        ->option_text("FILE");
+    add_filled_input(*command, options.input);
     command
         ->add_option("-o,--output", options.output,
                      "File to write, of a format by its ending: " + exported_formats())
@@ -91,6 +87,7 @@ CLI::App* add_export(CLI::App& app, ExportOptions& options, WordsByKey& given) {
 #endif
     // --voxel is the file's, not that of a grid that is exported.
     add_making_options(*command, given, "voxel");
+    command->add_flag("--quiet", options.quiet, "No progress on standard error");
     command->callback([&options] {
 #ifdef CONTROLSPACE_OPENVDB
         options.with_sources = std::erase(options.vdb.grids, sources_grid) > 0;

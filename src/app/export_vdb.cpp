@@ -49,10 +49,16 @@ std::string summary(const std::filesystem::path& path, const VdbReport& report, 
 
 }  // namespace
 
-std::string export_vdb(const ExportOptions& options, const FilledSpace& filled) {
+std::string export_vdb(const ExportOptions& options, const FilledSpace& filled,
+                       StepProgress& progress) {
     const std::optional<Origin>& origin = filled.origin;
     VdbOptions vdb = options.vdb;
     vdb.notes = notes_of(options, origin);
+    progress.started("sampling");
+    vdb.progress = [&](std::size_t done, std::size_t all) {
+        progress.advanced(done, all, "voxels");
+        if (done == all) progress.started("writing");
+    };
     if (origin) {
         const auto& [study, c, workload] = *origin;
         vdb.max_bytes = space_options(study, c, workload).max_bytes;

@@ -20,8 +20,17 @@ void add_reading_options(CLI::App& command, WordsByKey& given) {
 
 CLI::App* add_info(CLI::App& app, InfoOptions& options, WordsByKey& given) {
     CLI::App* command = app.add_subcommand(
-        "info", "Say what a file of sources holds: how many, their sizes, how fast they grow");
-    command->add_option("FILE", options.input, formats)->required()->option_text("FILE");
+        "info",
+        "Say what a file of sources holds (how many, their sizes, how fast they grow), or a "
+        "control space");
+    command
+        ->add_option("FILE", options.input,
+                     std::string(formats) + "; or a control space (.ctrl) that was saved")
+        ->required()
+        ->option_text("FILE");
+    command->footer(
+        "Exit status: 0 if the file could be read, tensors that are not positive definite "
+        "included:\ntheir share is told, and the numbers of the first ones. 2 if it could not.");
     add_reading_options(*command, given);
     return command;
 }
@@ -48,6 +57,7 @@ CLI::App* add_build(CLI::App& app, BuildOptions& options, WordsByKey& given) {
         ->required()
         ->option_text("FILE.ctrl");
     add_making_options(*command, given);
+    command->add_flag("--quiet", options.quiet, "No progress on standard error");
     return command;
 }
 
@@ -67,6 +77,7 @@ CLI::App* add_query(CLI::App& app, QueryOptions& options, WordsByKey& given) {
                      "File to write: x,y,z,h, or the components of M; left out: standard output")
         ->option_text("FILE.csv");
     add_making_options(*command, given);
+    command->add_flag("--quiet", options.quiet, "No progress on standard error");
     return command;
 }
 

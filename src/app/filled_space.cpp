@@ -16,13 +16,18 @@ namespace controlspace {
 
 bool is_control_space(const std::filesystem::path& input) { return input.extension() == ".ctrl"; }
 
-FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings& given) {
+void require_no_settings(const std::filesystem::path& space, const GivenSettings& given) {
+    if (given.empty()) return;
+    throw InputError(fmt::format("{}: {} was made with its own: leave it out",
+                                 option_name(given.front().first), space.string()));
+}
+
+FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings& given,
+                         const StudyObserver& observer) {
     FilledSpace filled;
+    if (observer.phase_started) observer.phase_started("reading");
     if (is_control_space(input)) {
-        if (!given.empty()) {
-            throw InputError(fmt::format("{}: {} was made with its own: leave it out",
-                                         option_name(given.front().first), input.string()));
-        }
+        require_no_settings(input, given);
         filled.space = load_control_space(input, structures());
         return filled;
     }
@@ -31,7 +36,7 @@ FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings
     const Case c = only_case(study);
     Workload workload = make_workload(study, c.sources, file_readers());
     Measures unused;
-    filled.space = make_and_fill(study, c, entry_of(c, structures()), workload, unused, {});
+    filled.space = make_and_fill(study, c, entry_of(c, structures()), workload, unused, observer);
     filled.origin = Origin{std::move(study), c, std::move(workload)};
     return filled;
 }

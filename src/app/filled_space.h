@@ -9,6 +9,7 @@
 #include "app/given_settings.h"
 #include "spaces/control_space.h"
 #include "study/case.h"
+#include "study/run.h"
 #include "study/study.h"
 #include "study/workload.h"
 
@@ -30,9 +31,15 @@ struct FilledSpace {
 /// Whether the file is a control space that was saved (.ctrl).
 bool is_control_space(const std::filesystem::path& input);
 
+/// Throws InputError, naming the first, where settings are given with a control space that was
+/// saved.
+void require_no_settings(const std::filesystem::path& space, const GivenSettings& given);
+
 /// The one structure that `input` (as study_of_input has it) and the settings ask for, made and
 /// graded; or, of a .ctrl, loaded. Throws InputError, also where a .ctrl is given with settings: it
 /// is as it is.
-FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings& given);
+/// `observer` is told of the steps.
+FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings& given,
+                         const StudyObserver& observer);
 
 }  // namespace controlspace

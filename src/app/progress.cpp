@@ -1,9 +1,9 @@
 #include "app/progress.h"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "app/live_line.h"
 #include "app/standard_output.h"
 
 namespace controlspace {
@@ -12,12 +12,6 @@ namespace {
 double seconds_between(std::chrono::steady_clock::time_point a,
                        std::chrono::steady_clock::time_point b) {
     return std::chrono::duration<double>(b - a).count();
-}
-
-std::size_t terminal_width() {
-    winsize size{};
-    const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-    return known ? size.ws_col : 80;
 }
 
 }  // namespace
@@ -63,7 +57,7 @@ void Progress::show() {
         fmt::format("case {}/{}  {}  {}  {} elapsed{}", finished_ + 1, count_, case_, phase_,
                     duration_text(seconds_between(start_, Clock::now())),
                     left ? ", about " + duration_text(*left) + " left" : "");
-    print_error(fmt::format("\r\033[K{}", line.substr(0, terminal_width() - 1)));
+    show_live_line(line);
 }
 
 void Progress::finish() {
@@ -79,7 +73,7 @@ std::size_t Progress::finished() const {
 
 void Progress::clear_line() {
     if (style_ != ProgressStyle::live || over_) return;
-    print_error("\r\033[K");
+    clear_live_line();
 }
 
 }  // namespace controlspace

@@ -3,15 +3,21 @@
 #include <vector>
 
 #include "app/filled_space.h"
+#include "app/step_progress.h"
 #include "sources/csv.h"
 
 namespace controlspace {
 
 void query(const QueryOptions& options) {
     const std::vector<Point> places = read_csv_points(options.points);
-    const FilledSpace filled = filled_space(options.input, options.settings);
     std::vector<Metric> metrics(places.size());
-    filled.space->sample(places, metrics);
+    {
+        StepProgress progress(options.quiet, options.output);
+        const FilledSpace filled =
+            filled_space(options.input, options.settings, progress.observer());
+        progress.started("sampling");
+        filled.space->sample(places, metrics);
+    }
     std::vector<PointSource> answers(places.size());
     for (std::size_t i = 0; i < places.size(); ++i) answers[i] = {places[i], metrics[i]};
     write_csv_sources(options.output, answers);

@@ -12,6 +12,7 @@ struct QueryOptions {
     std::filesystem::path points;  ///< .csv with the places
     std::filesystem::path output = "/dev/stdout";
     GivenSettings settings;  ///< they override the study file in all of its runs
+    bool quiet = false;
 };
 
 /// Makes and grades, or loads, the one structure that `options` ask for, K_oL if nothing is said,

@@ -28,6 +28,14 @@ void add_study_input(CLI::App& command, std::filesystem::path& input) {
         ->option_text("FILE");
 }
 
+void add_filled_input(CLI::App& command, std::filesystem::path& input) {
+    command
+        .add_option("INPUT", input,
+                    "Study file (.toml), file of sources, or control space (.ctrl); left out: the "
+                    "paper's sphere")
+        ->option_text("FILE");
+}
+
 void add_making_options(CLI::App& command, WordsByKey& given, std::string_view another) {
     const std::string_view without[] = {
         "name",   "access_points", "access_repeats", "probe_grid", "fine_probe_grid",

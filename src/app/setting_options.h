@@ -62,6 +62,9 @@ void add_options(CLI::App& command, std::span<const Setting<Target>> settings,
 /// The argument INPUT: what study_of_input takes.
 void add_study_input(CLI::App& command, std::filesystem::path& input);
 
+/// The same, or a control space that was saved.
+void add_filled_input(CLI::App& command, std::filesystem::path& input);
+
 /// All settings of a study that makes one structure, without those of measuring it; nor `another`,
 /// which the command has for something else.
 void add_making_options(CLI::App& command, WordsByKey& given, std::string_view another = {});

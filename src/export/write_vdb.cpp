@@ -119,6 +119,11 @@ Extremes fill(const Builders& builders, const MetricField& field, const VoxelLat
                 "(--voxel), the tolerance, or the cap (--max-memory), or write fewer grids",
                 lattice.counts[0], lattice.counts[1], lattice.counts[2], options.max_bytes));
         }
+        if (options.progress) {
+            const auto all = static_cast<std::size_t>(lattice.size());
+            const auto layers = static_cast<std::size_t>(blocks(0));
+            options.progress(all * static_cast<std::size_t>(layer + 1) / layers, all);
+        }
     }
     Extremes extremes;
     scratches.combine_each([&](const std::unique_ptr<Scratch>& s) { extremes.add(s->extremes); });

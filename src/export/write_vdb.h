@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <utility>
@@ -35,6 +36,8 @@ struct VdbOptions {
     /// but draws no points.
     std::span<const PointSource> sources = {};
     std::size_t max_bytes = std::size_t{4} << 30;  ///< cap on the memory of the grids
+    /// Told how many of all voxels have been sampled, now and then; none: nobody.
+    std::function<void(std::size_t done, std::size_t all)> progress = {};
 };
 
 /// What was written.

@@ -1,8 +1,10 @@
 #include "measure/source_summary.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
+#include "error.h"
 #include "geometry/point_order.h"
 #include "gradation/grade.h"
 #include "measure/nearest.h"
@@ -33,27 +35,38 @@ std::size_t count_contradictory(std::span<const PointSource> sources) {
 
 }  // namespace
 
+LengthSummary summarise_lengths(std::span<const Metric> metrics) {
+    if (metrics.empty()) return {};
+    LengthSummary summary;
+    summary.count = metrics.size();
+    summary.finest = std::numeric_limits<double>::infinity();
+    double sum = 0;
+    for (const Metric& metric : metrics) {
+        summary.isotropic += is_isotropic(metric) ? 1 : 0;
+        const auto lengths = eigen_frame(metric).lengths;
+        summary.finest = std::min(summary.finest, lengths[0]);
+        summary.coarsest = std::max(summary.coarsest, lengths[2]);
+        summary.anisotropy = std::max(summary.anisotropy, lengths[2] / lengths[0]);
+        sum += mean_length(metric);
+    }
+    summary.mean = sum / static_cast<double>(metrics.size());
+    return summary;
+}
+
 SourceSummary summarise(std::span<const PointSource> sources) {
+    if (sources.empty()) throw InputError("there are no sources: give one at least");
     SourceSummary summary;
-    summary.count = sources.size();
-    summary.finest = finest_length(sources);
     summary.contradictory = count_contradictory(sources);
     summary.extent = {sources.front().position, sources.front().position};
     std::vector<Point> positions;
     std::vector<Metric> metrics;
-    double sum = 0;
     for (const auto& [position, metric] : sources) {
         positions.push_back(position);
         metrics.push_back(metric);
         summary.extent.low = summary.extent.low.cwiseMin(position);
         summary.extent.high = summary.extent.high.cwiseMax(position);
-        summary.isotropic += is_isotropic(metric) ? 1 : 0;
-        const auto lengths = eigen_frame(metric).lengths;
-        summary.coarsest = std::max(summary.coarsest, lengths[2]);
-        summary.anisotropy = std::max(summary.anisotropy, lengths[2] / lengths[0]);
-        sum += mean_length(metric);
     }
-    summary.mean = sum / static_cast<double>(sources.size());
+    static_cast<LengthSummary&>(summary) = summarise_lengths(metrics);
     summary.gradation =
         largest_gradation(nearest_neighbours(positions, near_sources), metrics, GradationLaw::cone);
     return summary;

@@ -8,16 +8,22 @@
 
 namespace controlspace {
 
-/// What sources ask for, at a glance.
-struct SourceSummary {
+/// What metrics ask for, at a glance.
+struct LengthSummary {
     std::size_t count = 0;
-    std::size_t isotropic = 0;      ///< how many ask for the same length in every direction
+    std::size_t isotropic = 0;  ///< how many ask for the same length in every direction
+    double finest = 0;          ///< smallest length in any direction
+    double coarsest = 0;        ///< largest length in any direction
+    double mean = 0;            ///< mean over the metrics of their mean length
+    double anisotropy = 1;      ///< largest ratio of a metric's largest length to its smallest
+};
+
+LengthSummary summarise_lengths(std::span<const Metric> metrics);
+
+/// What sources ask for, and where.
+struct SourceSummary : LengthSummary {
     std::size_t contradictory = 0;  ///< how many lie where another one asks for something else
     Box extent;                     ///< the smallest box around them
-    double finest = 0;              ///< smallest length in any direction
-    double coarsest = 0;            ///< largest length in any direction
-    double mean = 0;                ///< mean over the sources of their mean length
-    double anisotropy = 1;          ///< largest ratio of a source's largest length to its smallest
     /// Largest gradation ratio, under the cone law, from a source to one of the six nearest that
     /// are not at its very place: a field graded with less takes something off the sources.
     double gradation = 1;

@@ -26,11 +26,13 @@ struct Group {
     Rows rows;
 };
 
+/// What was meshed may be the reference: there is no δ_R of it then.
+bool has_delta_r(const MeshRow& row) { return !row.exact && row.saved.empty(); }
+
 std::vector<Group> groups_of(std::span<const MeshRow> rows) {
     std::vector<Group> groups;
     for (const MeshRow& row : rows) {
-        const std::string title =
-            fmt::format("{}, {}", name_of(row.mesher), setting_label(row.setting));
+        const std::string title = fmt::format("{}, {}", name_of(row.mesher), mesh_setting(row));
         auto group = std::find_if(groups.begin(), groups.end(),
                                   [&](const Group& g) { return g.title == title; });
         if (group == groups.end()) group = groups.insert(groups.end(), {title, {}});
@@ -78,8 +80,9 @@ std::vector<std::string> measure_cells(const MeshRow& row, const MeshRow* exact)
     cells.push_back(fmt::format("{:.3f}", c.quality_mean));
     cells.push_back(fmt::format("{}", row.queries));
     cells.push_back(fmt::format("{:.2f} %", 100 * query_share(row)));
-    cells.push_back(row.exact ? std::string(absent) : fmt::format("{:.3f}", row.delta_r_max));
-    cells.push_back(row.exact ? std::string(absent) : fmt::format("{:.4f}", row.delta_r_mean));
+    const bool compared = has_delta_r(row);
+    cells.push_back(compared ? fmt::format("{:.3f}", row.delta_r_max) : std::string(absent));
+    cells.push_back(compared ? fmt::format("{:.4f}", row.delta_r_mean) : std::string(absent));
     cells.emplace_back();
     return cells;
 }
@@ -88,7 +91,7 @@ std::vector<std::string> measure_cells(const MeshRow& row, const MeshRow* exact)
 std::string correlation_text(const Rows& rows) {
     std::vector<double> l_r, largest, mean;
     for (const MeshRow* row : rows) {
-        if (row->exact || !row->error.empty()) continue;
+        if (!has_delta_r(*row) || !row->error.empty()) continue;
         l_r.push_back(row->conformity.l_r);
         largest.push_back(row->delta_r_max);
         mean.push_back(row->delta_r_mean);
@@ -173,7 +176,7 @@ std::optional<TextTable> paper_table(std::span<const MeshRow> rows) {
     };
     for (const MeshRow& row : rows) {
         const PaperRow* paper = paper_row(row.setting);
-        if (row.exact || paper == nullptr) continue;
+        if (!has_delta_r(row) || paper == nullptr) continue;
         const Case& c = row.setting;
         const std::vector<std::string> head{
             c.structure, std::string(c.split ? name_of(*c.split) : ""),
@@ -201,7 +204,7 @@ nlohmann::ordered_json to_json(const MeshRow& row) {
     const Case& c = row.setting;
     json["field"] = row.exact ? "exact" : c.structure;
     json["split"] = row.exact || !c.split ? "" : std::string(name_of(*c.split));
-    json["setting"] = setting_label(c);
+    json["setting"] = mesh_setting(row);
     json["mesher"] = name_of(row.mesher);
     json["error"] = row.error;
     if (!row.error.empty()) return json;
@@ -222,7 +225,7 @@ nlohmann::ordered_json to_json(const MeshRow& row) {
     json["queries"] = row.queries;
     json["query_s"] = row.query_seconds;
     json["peak_bytes"] = row.peak_bytes;
-    if (!row.exact) {
+    if (has_delta_r(row)) {
         json["delta_R_max"] = row.delta_r_max;
         json["delta_R_mean"] = row.delta_r_mean;
     }
@@ -233,6 +236,10 @@ nlohmann::ordered_json to_json(const MeshRow& row) {
 
 std::string mesh_label(const MeshRow& row) {
     return row.exact ? "exact" : structure_label(row.setting);
+}
+
+std::string mesh_setting(const MeshRow& row) {
+    return row.saved.empty() ? setting_label(row.setting) : row.saved.string();
 }
 
 std::string mesh_tables(std::span<const MeshRow> rows, TableStyle style) {

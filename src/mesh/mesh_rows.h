@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ namespace controlspace {
 struct MeshRow {
     Case setting;        ///< of the exact field: of the first structure that it is compared with
     bool exact = false;  ///< the reference itself was meshed, by no structure
+    std::filesystem::path saved;  ///< the control space of this file was meshed: the reference too
     Mesher mesher = Mesher::delaunay;
     std::string error;
     Conformity conformity;         ///< to the reference
@@ -39,5 +41,8 @@ std::string mesh_json(const Provenance& provenance, const MeshSettings& settings
 
 /// "K_L s_L", or "exact".
 std::string mesh_label(const MeshRow& row);
+
+/// What was asked for; of a control space that was saved, its file.
+std::string mesh_setting(const MeshRow& row);
 
 }  // namespace controlspace

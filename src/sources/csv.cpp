@@ -11,6 +11,7 @@
 #include <string>
 
 #include "error.h"
+#include "sources/indefinite_tensors.h"
 #include "sources/output_file.h"
 #include "sources/text_file.h"
 
@@ -72,10 +73,17 @@ public:
 
     std::vector<PointSource> sources() {
         std::vector<PointSource> all;
+        std::vector<std::size_t> indefinite;
         for_each_row("sources", [&](const Values& v) {
             all.push_back(
                 {{v[0], v[1], v[2]}, metric(std::span(v).subspan(columns_of(header_.form).first))});
+            if (is_indefinite_) indefinite.push_back(all.size());
         });
+        if (!indefinite.empty()) {
+            std::vector<Metric> metrics;
+            for (const PointSource& source : all) metrics.push_back(source.metric);
+            throw IndefiniteTensors(first_indefinite_, std::move(metrics), std::move(indefinite));
+        }
         return all;
     }
 
@@ -192,8 +200,9 @@ private:
                 return Metric::isotropic(v[0]);
             case Form::tensor: {
                 const Metric m{v[0], v[1], v[2], v[3], v[4], v[5]};
-                if (!is_source_metric(m)) {
-                    fail(
+                is_indefinite_ = !is_source_metric(m);
+                if (is_indefinite_ && first_indefinite_.empty()) {
+                    first_indefinite_ = at_line(
                         fmt::format("tensor {} is not positive definite: its eigenvalues are "
                                     "lengths, and must be positive",
                                     to_string(m)));
@@ -230,8 +239,9 @@ private:
         }
     }
 
-    [[noreturn]] void fail(const std::string& what) const {
-        throw InputError(fmt::format("{}: {}", place(path_, line_number_), what));
+    [[noreturn]] void fail(const std::string& what) const { throw InputError(at_line(what)); }
+    std::string at_line(const std::string& what) const {
+        return fmt::format("{}: {}", place(path_, line_number_), what);
     }
 
     std::string_view rest_;
@@ -239,6 +249,8 @@ private:
     std::size_t line_number_ = 0;
     bool positions_alone_ = false;
     Header header_;
+    bool is_indefinite_ = false;    // the last tensor
+    std::string first_indefinite_;  // what is said of it
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "error.h"
+#include "sources/indefinite_tensors.h"
 #include "sources/point_source.h"
 #include "sources/riemannian.h"
 
@@ -23,7 +24,7 @@ void MetricRows::add_size(double h) {
 void MetricRows::add_tensor(const Metric& riemannian) {
     const auto m = from_riemannian(riemannian);
     metrics_.push_back(m.value_or(Metric{}));
-    if (!m && wrong_++ == 0) first_wrong_ = metrics_.size();
+    if (!m) indefinite_.push_back(metrics_.size());
 }
 
 void MetricRows::add_matrix(const std::array<double, 9>& t) {
@@ -40,11 +41,12 @@ void MetricRows::add_matrix(const std::array<double, 9>& t) {
 }
 
 std::vector<Metric> MetricRows::take() {
-    if (wrong_ > 0) {
-        throw InputError(fmt::format(
+    if (!indefinite_.empty()) {
+        const std::string what = fmt::format(
             "tensor {} of {} is not positive definite, {} of {} are not: is the order of their "
             "components {}?",
-            first_wrong_, path_.string(), wrong_, metrics_.size(), order_));
+            indefinite_.front(), path_.string(), indefinite_.size(), metrics_.size(), order_);
+        throw IndefiniteTensors(what, std::move(metrics_), std::move(indefinite_));
     }
     return std::move(metrics_);
 }

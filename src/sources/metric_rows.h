@@ -27,16 +27,15 @@ public:
     /// entry.
     void add_matrix(const std::array<double, 9>& riemannian);
 
-    /// Metrics of all rows. Throws InputError that names the first tensor that is not positive
-    /// definite, and says how many are not.
+    /// Metrics of all rows. Throws IndefiniteTensors that names the first tensor that is not
+    /// positive definite, and says how many are not.
     std::vector<Metric> take();
 
 private:
     std::filesystem::path path_;
     std::string order_;
     std::vector<Metric> metrics_;
-    std::size_t wrong_ = 0;
-    std::size_t first_wrong_ = 0;  ///< its number, from 1
+    std::vector<std::size_t> indefinite_;  ///< their numbers, from 1
 };
 
 }  // namespace controlspace

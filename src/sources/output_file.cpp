@@ -12,6 +12,21 @@
 
 namespace controlspace {
 
+namespace {
+
+// Through a symbolic link, so that renaming replaces the file and not the link.
+std::filesystem::path without_links(const std::filesystem::path& path) {
+    std::error_code ignored;
+    const std::filesystem::path resolved = std::filesystem::weakly_canonical(path, ignored);
+    return resolved.empty() ? path : resolved;
+}
+
+}  // namespace
+
+std::filesystem::path OutputFile::partial(const std::filesystem::path& path) {
+    return without_links(path) += fmt::format(".{}.partial", ::getpid());
+}
+
 OutputFile::OutputFile(const std::filesystem::path& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) {
@@ -20,15 +35,9 @@ OutputFile::OutputFile(const std::filesystem::path& path) {
     }
     const bool special =
         std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
-    // Through a symbolic link, so that renaming replaces the file and not the link.
-    if (!special) target_ = std::filesystem::weakly_canonical(path, ignored);
-    if (target_.empty()) target_ = path;
-    written_ = target_;
-    int flags = O_WRONLY | O_CLOEXEC;
-    if (!special) {
-        written_ += fmt::format(".{}.partial", ::getpid());
-        flags |= O_CREAT | O_TRUNC;
-    }
+    target_ = special ? path : without_links(path);
+    written_ = special ? path : partial(path);
+    const int flags = O_WRONLY | O_CLOEXEC | (special ? 0 : O_CREAT | O_TRUNC);
     const int descriptor = ::open(written_.c_str(), flags, 0666);
     if (descriptor < 0) fail();
     file_ = ::fdopen(descriptor, "wb");

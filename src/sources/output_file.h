@@ -16,6 +16,10 @@ public:
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
 
+    /// Where the text for `path` goes until `commit`, in this process: to be removed by who ends
+    /// the program at once.
+    static std::filesystem::path partial(const std::filesystem::path& path);
+
     void write(std::string_view text);
     /// Where the text goes until `commit`, for writers that open the file themselves.
     const std::filesystem::path& written() const { return written_; }

@@ -73,9 +73,21 @@ void exchange(Self& options, State& state) {
     state("options.max_bytes", options.max_bytes);
 }
 
-std::unique_ptr<ControlSpace> load_space(const CatalogueEntry& entry, const SpaceOptions& options,
-                                         const StateReader& state) {
+// A grid takes its memory when it is made: no more than a file of so many bytes can fill, at 256
+// equal bytes for one and at most 8 bytes of memory for one of its field.
+std::unique_ptr<ControlSpace> make_new(const CatalogueEntry& entry, SpaceOptions options,
+                                       std::size_t file_bytes) {
+    if (!entry.has_voxels || entry.has_levels) return entry.make(options);
+    const SpaceOptions given = options;
+    options.max_bytes = std::min(options.max_bytes, 8 * 256 * file_bytes);
     auto space = entry.make(options);
+    space->set_making({entry.id, given});
+    return space;
+}
+
+std::unique_ptr<ControlSpace> load_space(const CatalogueEntry& entry, const SpaceOptions& options,
+                                         const StateReader& state, std::size_t file_bytes) {
+    auto space = make_new(entry, options, file_bytes);
     if (!state.has("frozen.precision")) {
         space->load(state);
         return space;
@@ -166,7 +178,7 @@ std::unique_ptr<ControlSpace> load_control_space(const std::filesystem::path& fi
             "{} holds the structure {}, which is not known here: take a build that has it", name,
             quote(structure)));
     }
-    auto space = load_space(*entry, options, state);
+    auto space = load_space(*entry, options, state, bytes.size());
     Making making = *space->making();
     state("written_by", making.saved_by);
     making.saved_by += fmt::format(", format {}", control_space_file_version);

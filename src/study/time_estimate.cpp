@@ -12,6 +12,18 @@ std::string duration_text(double seconds) {
                     : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
+std::string part_text(std::size_t done, std::size_t all, std::string_view unit, double seconds) {
+    constexpr double million = 1e6;
+    const auto now = static_cast<double>(done), end = static_cast<double>(all);
+    const double rate = seconds > 0 ? now / seconds : 0;
+    std::string text = end < 10 * million
+                           ? fmt::format("{} of {} {}, {:.3g}/s", done, all, unit, rate)
+                           : fmt::format("{:.1f} of {:.1f} million {}, {:.2f} million/s",
+                                         now / million, end / million, unit, rate / million);
+    if (rate > 0) text += ", about " + duration_text((end - now) / rate) + " left";
+    return text;
+}
+
 TimeEstimate::TimeEstimate(std::span<const Case> cases,
                            std::span<const std::size_t> source_counts) {
     for (std::size_t i = 0; i < cases.size(); ++i) {

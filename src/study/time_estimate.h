@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "study/case.h"
@@ -13,6 +14,10 @@ namespace controlspace {
 
 /// "0:07", "12:30", "1:02:03".
 std::string duration_text(double seconds);
+
+/// How far a step has come after `seconds`: "12.5 of 50.0 million voxels, 2.50 million/s, about
+/// 0:15 left"; below ten millions "12 of 50 voxels, 3/s, about 0:12 left".
+std::string part_text(std::size_t done, std::size_t all, std::string_view unit, double seconds);
 
 /// How long the rest of a study may take, from what finished cases took. The work of a case is
 /// taken to grow with sources / tau, at a pace that is each structure's own once it is known.

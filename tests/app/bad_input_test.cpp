@@ -221,7 +221,8 @@ TEST_CASE("a file that cannot be read is refused in one line that names the plac
         box.write("f.mesh", mesh);
         box.write(file.name, file.content);
         INFO(file.name << ": " << file.content);
-        check_refused(box.run("info " + file.name), file.expected);
+        check_refused(box.run("convert " + file.name + " out.csv"), file.expected);
+        CHECK_FALSE(fs::exists(box / "out.csv"));
     }
 }
 

@@ -50,6 +50,39 @@ TEST_CASE("info says what a file of sources holds") {
     CHECK_THAT(outcome.out, !Contains("same places"));
 }
 
+TEST_CASE("info counts the tensors that are not positive definite, other commands refuse them") {
+    const Sandbox box("info-indefinite");
+    const std::string head = "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n";
+    box.write("t.csv", head +
+                           "0,0,0,1,2,4,0,0,0\n# note\n0,0,1,1,1,1,2,0,0\n0,1,0,3,3,3,0,0,0\n"
+                           "1,0,0,1,-1,1,0,0,0\n");
+    box.write("all.csv", head + "0,0,0,1,1,1,2,0,0\n");
+    box.write("m.mesh", "MeshVersionFormatted 2 Dimension 3 Vertices 2 0 0 0 0 1 1 1 0 End");
+    box.write("m.sol",
+              "MeshVersionFormatted 2 Dimension 3 SolAtVertices 2 1 3 4 0 4 0 0 4 1 2 1 0 0 1 End");
+    const auto said = [&](const std::string& file) {
+        const Outcome outcome = box.run("info " + file);
+        INFO(outcome.err);
+        CHECK(outcome.status == 0);
+        CHECK(outcome.err.empty());
+        return outcome.out;
+    };
+    CHECK_THAT(said("t.csv"),
+               Contains("sources      4, 2 of them (50 %) positive definite; not so: 2, 4\n") &&
+                   Contains("t.csv:4: tensor (1 1 1 2 0 0) is not positive definite") &&
+                   Contains("isotropic    1 of them") && Contains("sizes        1 to 4, ") &&
+                   Contains("anisotropy   4 at most"));
+    CHECK_THAT(said("all.csv"),
+               Contains("1, 0 of them (0 %) positive definite; not so: 1\n") && !Contains("sizes"));
+    CHECK_THAT(said("m.sol"), Contains("2, 1 of them (50 %)") && Contains("not so: 2\n") &&
+                                  Contains("order of their components xx xy yy xz yz zz?"));
+    check_refused(box.run("convert t.csv out.csv"), "t.csv:4: tensor");
+    check_refused(box.run("convert m.sol out.csv"), "tensor 2 of m.sol");
+    // What else is wrong is said first.
+    box.write("t.csv", head + "0,0,0,1,1,1,2,0,0\n0,0,0,1,1,1,2,0\n");
+    check_refused(box.run("info t.csv"), "t.csv:3: 8 columns instead of 9");
+}
+
 TEST_CASE("sources that are converted there and back are the same") {
     const Sandbox box("convert");
     box.write("sizes.csv", sizes_csv);

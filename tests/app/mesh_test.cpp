@@ -65,6 +65,37 @@ TEST_CASE("a study's cases are meshed as its options say") {
     CHECK(json["settings"]["factor"] == "0.8");
 }
 
+TEST_CASE("a saved control space is meshed as it is") {
+    const Sandbox box("mesh-saved");
+    REQUIRE(box.run("build --h 0.1 --structures K_oV -o f.ctrl").status == 0);
+    const Outcome outcome = box.run("mesh f.ctrl --output out --files vtu");
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    CHECK(lines(outcome.err) == 1);
+    CHECK_THAT(outcome.out, Contains("Meshes: delaunay, f.ctrl") && Contains("K_oV") &&
+                                !Contains("\nexact ") && !Contains("Table 5"));
+    CHECK(fs::file_size(box / "out" / "00-K_oV.vtu") > 1000);
+    const auto json = nlohmann::json::parse(file_text(box / "out" / "meshes.json"));
+    REQUIRE(json["rows"].size() == 1);
+    const auto& row = json["rows"][0];
+    CHECK(row["field"] == "K_oV");
+    CHECK(row["setting"] == "f.ctrl");
+    CHECK(row["L_R"] > 0.5);
+    CHECK_FALSE(row.contains("delta_R_max"));
+    // The same mesh as of the structure before it was saved.
+    REQUIRE(box.run("mesh --h 0.1 --probe-grid 10 --structures K_oV --exact no --files none "
+                    "--quiet --output made")
+                .status == 0);
+    const auto made = nlohmann::json::parse(file_text(box / "made" / "meshes.json"));
+    CHECK(made["rows"][0]["tets"] == row["tets"]);
+
+    check_refused(box.run("mesh f.ctrl --output no --tau 0.5"), "--tau: f.ctrl was made with");
+    check_refused(box.run("mesh none.ctrl --output no"), "none.ctrl");
+    box.write("text.ctrl", "x,y,z,h\n");
+    check_refused(box.run("mesh text.ctrl --output no"), "is no control space");
+    CHECK_FALSE(fs::exists(box / "no"));
+}
+
 TEST_CASE("Gmsh on an anisotropic field warns and goes on") {
     const Sandbox box("mesh-warning");
     const Outcome outcome =

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstring>
-#include <random>
+#include <fstream>
 
 #include "baselines/catalogue.h"
+#include "damaged_files.h"
 #include "fields/formula_field.h"
 #include "sources/files.h"
 
@@ -106,34 +107,23 @@ TEST_CASE("files of control spaces: what is refused, and why") {
 
 TEST_CASE("forged files end in an error or in metrics, never in a crash or in much memory") {
     const ScratchDirectory scratch("ctrl");
-    std::mt19937 random(1);
-    const Point x(0.1, 0.2, 0.3);
-    std::vector<std::string> files;
+    const auto read = [](const std::filesystem::path& file) {
+        std::string bytes = file_text(file);
+        if (bytes.size() > 32) sign(bytes);
+        std::ofstream(file, std::ios::binary) << bytes;
+        sample_at(*load_control_space(file, structures()), Point(0.1, 0.2, 0.3));
+    };
+    const auto check = [&](const ControlSpace& space) {
+        save_control_space(scratch / "field.ctrl", space);
+        // LZ4 takes 256 equal bytes for one.
+        check_damaged_files(scratch.path(), "forged.ctrl", file_text(scratch / "field.ctrl"), 2000,
+                            read);
+    };
     for (const CatalogueEntry& entry : structures()) {
+        CAPTURE(entry.id);
         const auto space = small_tree(entry.id);
-        save_control_space(scratch / "field.ctrl", *space);
-        files.push_back(file_text(scratch / "field.ctrl"));
-        if (!entry.can_freeze) continue;
-        save_control_space(scratch / "field.ctrl", *space->freeze(Precision::floats));
-        files.push_back(file_text(scratch / "field.ctrl"));
-    }
-    for (const std::string& bytes : files) {
-        int refused = 0;
-        for (int round = 0; round < 100; ++round) {
-            std::string forged = bytes;
-            for (int change = 0; change < 2; ++change) {
-                const std::size_t at = 24 + random() % (bytes.size() - 32);
-                forged[at] = static_cast<char>(random());
-            }
-            sign(forged);
-            const auto file = scratch.file("forged.ctrl", forged);
-            try {
-                sample_at(*load_control_space(file, structures()), x);
-            } catch (const InputError&) {
-                ++refused;
-            }
-        }
-        CHECK(refused > 5);
+        check(*space);
+        if (entry.can_freeze) check(*space->freeze(Precision::floats));
     }
 }
 
