@@ -17,29 +17,34 @@ ConeField::ConeField(std::span<const PointSource> sources, double g, const Metri
 
 ConeField::Cones ConeField::make_cones(std::span<const PointSource> sources, double g,
                                        const Metric& largest) {
-    const bool isotropic = std::all_of(sources.begin(), sources.end(),
-                                       [](const PointSource& s) { return is_isotropic(s.metric); });
+    const bool isotropic = std::all_of(sources.begin(), sources.end(), [](const PointSource& s) {
+        return controlspace::is_isotropic(s.metric);
+    });
     const double cap = eigen_frame(largest).lengths[2];
     if (isotropic) return IsotropicCones(sources, g, cap);
     return AnisotropicCones(sources, g, cap);
 }
 
+Metric ConeField::at(const Point& x, Memory& memory) const {
+    if (const auto* isotropic = std::get_if<IsotropicCones>(&cones_)) {
+        const double h = isotropic->smallest_length(x, memory.hint);
+        return h < longest_ ? intersection(largest_, Metric::isotropic(h)) : largest_;
+    }
+    return std::get<AnisotropicCones>(cones_).intersect(x, largest_, tolerance_, memory.search,
+                                                        nullptr);
+}
+
 void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out) const {
     assert(x.size() == out.size());
-    if (const auto* isotropic = std::get_if<IsotropicCones>(&cones_)) {
-        IsotropicCones::Hint hint = 0;
-        // Near the last place the hint is good, and the sources are in the caches.
-        for (const std::uint32_t i : spatial_order(x)) {
-            const double h = isotropic->smallest_length(x[i], hint);
-            out[i] = h < longest_ ? intersection(largest_, Metric::isotropic(h)) : largest_;
-        }
-    } else {
-        AnisotropicCones::Search search;
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            out[i] = std::get<AnisotropicCones>(cones_).intersect(x[i], largest_, tolerance_,
-                                                                  search, nullptr);
-        }
-    }
+    Memory memory;
+    if (std::holds_alternative<AnisotropicCones>(cones_)) return evaluate(x, out, memory);
+    // Near the last place the hint is good, and the sources are in the caches.
+    for (const std::uint32_t i : spatial_order(x)) out[i] = at(x[i], memory);
+}
+
+void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out, Memory& memory) const {
+    assert(x.size() == out.size());
+    for (std::size_t i = 0; i < x.size(); ++i) out[i] = at(x[i], memory);
 }
 
 void ConeField::governing(const Point& x, double tolerance, std::vector<std::uint32_t>& sources,
@@ -62,6 +67,28 @@ void ConeField::governing(const Point& x, double tolerance, std::vector<std::uin
                           Metric& m) const {
     Memory memory;
     governing(x, tolerance, sources, m, memory);
+}
+
+void ConeField::evaluate_roughly(std::span<const Point> x, double tolerance,
+                                 std::span<Metric> out, Memory& memory) const {
+    const auto& cones = std::get<IsotropicCones>(cones_);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        out[i] = Metric::isotropic(cones.smallest_length(x[i], tolerance, memory.hint));
+    }
+}
+
+bool ConeField::is_isotropic() const {
+    return std::holds_alternative<IsotropicCones>(cones_) && controlspace::is_isotropic(largest_);
+}
+
+IsotropicCones::Range ConeField::range_in(const Box& box, Memory& memory) const {
+    return std::get<IsotropicCones>(cones_).range_in(box, memory.hint);
+}
+
+bool ConeField::gather(const Box& box, std::size_t most, NearbyCones& nearby,
+                       Memory& memory) const {
+    const auto* isotropic = std::get_if<IsotropicCones>(&cones_);
+    return isotropic != nullptr && isotropic->gather(box, most, nearby, memory.hint);
 }
 
 std::size_t ConeField::dropped() const {

@@ -33,15 +33,20 @@ public:
     ConeField(std::span<const PointSource> sources, double g, const Metric& largest,
               double tolerance = 0);
 
-    /// Metrics at `x`, on the calling thread. Thread-safe.
-    void evaluate(std::span<const Point> x, std::span<Metric> out) const;
-
-    /// What `governing` remembers from one call to the next: best kept from place to nearby place,
+    /// What a search remembers from one call to the next: best kept from place to nearby place,
     /// by one thread for one field.
     struct Memory {
         IsotropicCones::Hint hint = 0;
         AnisotropicCones::Search search;
     };
+
+    /// Metrics at `x`, on the calling thread. Thread-safe.
+    void evaluate(std::span<const Point> x, std::span<Metric> out) const;
+    /// The same for places that come in an order in which neighbours are near to each other.
+    void evaluate(std::span<const Point> x, std::span<Metric> out, Memory& memory) const;
+    /// The same of an isotropic field, or lengths up to the fraction `tolerance` more.
+    void evaluate_roughly(std::span<const Point> x, double tolerance, std::span<Metric> out,
+                          Memory& memory) const;
 
     /// The metric `m` at `x`, and the `sources` that make it so: their indices, in the order of the
     /// definition. `m` is `largest` intersected with their cones, one after the other; cones that
@@ -53,6 +58,16 @@ public:
     void governing(const Point& x, double tolerance, std::vector<std::uint32_t>& sources,
                    Metric& m) const;
 
+    /// Whether all sources, and `largest`, are isotropic.
+    bool is_isotropic() const;
+    /// Bounds of an isotropic field in a box, as `IsotropicCones::range_in` has them.
+    IsotropicCones::Range range_in(const Box& box, Memory& memory) const;
+
+    /// Makes `nearby` all cones that can be the smallest somewhere in `box`, each shorter than
+    /// `largest` in some direction; returns false where more than `most` come close to it, or
+    /// sources are anisotropic.
+    bool gather(const Box& box, std::size_t most, NearbyCones& nearby, Memory& memory) const;
+
     /// Sources that were left out because others lie below them everywhere.
     std::size_t dropped() const;
 
@@ -62,6 +77,7 @@ public:
 
 private:
     using Cones = std::variant<IsotropicCones, AnisotropicCones>;
+    Metric at(const Point& x, Memory& memory) const;
     static Cones make_cones(std::span<const PointSource> sources, double g, const Metric& largest);
 
     Metric largest_;

@@ -204,11 +204,11 @@ bool IsotropicCones::is_dominated(const PointSource& source) const {
     const double margin = 128 * epsilon * cap_;
     const double length = source.metric.xx - margin;
     Hint hint = 0;
-    return search(source.position, length, hint) < length;
+    return search(source.position, length, 0, hint) < length;
 }
 
-IsotropicCones::Children IsotropicCones::lower_bounds(const Node& node, const Point& p) const {
-    // Every source of a child has h_i >= length and |p - Q_i| >= distance to the cylinder.
+// From p to the cylinders, and so to all sources in them.
+IsotropicCones::Children IsotropicCones::distances(const Node& node, const Point& p) const {
     const Children x = p.x() - node.x;
     const Children y = p.y() - node.y;
     const Children z = p.z() - node.z;
@@ -219,7 +219,11 @@ IsotropicCones::Children IsotropicCones::lower_bounds(const Node& node, const Po
             .sqrt();
     const Children above = (along.abs() - node.half_thickness).max(0);
     const Children beside = (across - node.radius).max(0);
-    return safely_ * (node.length + slope_ * (above.square() + beside.square()).sqrt());
+    return (above.square() + beside.square()).sqrt();
+}
+
+IsotropicCones::Children IsotropicCones::lower_bounds(const Node& node, const Point& p) const {
+    return safely_ * (node.length + slope_ * distances(node, p));
 }
 
 double IsotropicCones::length_at(const Leaf& leaf, Eigen::Index lane, const Point& p) const {
@@ -249,7 +253,11 @@ void IsotropicCones::visit_leaf(std::uint32_t index, const Point& p, double& sma
 }
 
 double IsotropicCones::smallest_length(const Point& p, Hint& hint) const {
-    return search(p, cap_, hint);
+    return search(p, cap_, 0, hint);
+}
+
+double IsotropicCones::smallest_length(const Point& p, double tolerance, Hint& hint) const {
+    return search(p, cap_, tolerance, hint);
 }
 
 std::uint32_t IsotropicCones::source_of(const Point& p, double smallest, Hint hint) const {
@@ -258,10 +266,107 @@ std::uint32_t IsotropicCones::source_of(const Point& p, double smallest, Hint hi
     return indices_[hint * leaf_size + static_cast<std::size_t>(lane)];
 }
 
-double IsotropicCones::search(const Point& p, double cap, Hint& hint) const {
+// No cone's length differs by more than (g-1) R between the centre of a box and a place in it, R
+// half its diagonal: what is 2 (g-1) R above the smallest at the centre is nowhere the smallest.
+bool IsotropicCones::gather(const Box& box, std::size_t most, NearbyCones& nearby,
+                            Hint& hint) const {
+    nearby.reset(slope_, cap_);
+    if (leaves_.empty()) return true;
+    const Point p = box.centre();
+    const double reach =
+        (smallest_length(p, hint) + 2 * slope_ * box.half_diagonal()) / (safely_ * safely_);
+    struct Part {
+        std::uint32_t level;
+        std::uint32_t node;  ///< within its level
+    };
+    std::array<Part, 96> stack;
+    std::size_t height = 0;
+    stack[height++] = {0, 0};
+    const std::size_t levels = first_of_level_.size() - 1;
+    while (height > 0) {
+        const Part next = stack[--height];
+        if (next.level < levels) {
+            const Children bounds =
+                lower_bounds(nodes_[first_of_level_[next.level] + next.node], p);
+            for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(arity); ++c) {
+                if (bounds[c] <= reach) stack[height++] = {next.level + 1, arity * next.node + c};
+            }
+            continue;
+        }
+        const std::size_t number = shape_.leaf_in(next.node);
+        const Leaf& leaf = leaves_[number];
+        const Lanes lengths =
+            leaf.length + slope_ * ((leaf.x - p.x()).square() + (leaf.y - p.y()).square() +
+                                    (leaf.z - p.z()).square())
+                                       .sqrt();
+        for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(leaf_size); ++i) {
+            if (!(lengths[i] <= reach) || leaf.length[i] == infinity) continue;
+            if (nearby.size() == most) return false;
+            nearby.add({leaf.x[i], leaf.y[i], leaf.z[i]}, leaf.length[i],
+                       indices_[number * leaf_size + static_cast<std::size_t>(i)]);
+        }
+    }
+    return true;
+}
+
+double IsotropicCones::search(const Point& p, double cap, double tolerance, Hint& hint) const {
+    return search(
+        cap, tolerance, hint, [&](const Node& node) { return lower_bounds(node, p); },
+        [&](Hint leaf, double& smallest) { visit_leaf(leaf, p, smallest, hint); });
+}
+
+// With c the centre of the box and R half its diagonal, a source Q is no nearer to any place in it
+// than |c - Q| - R, and its farthest place is the corner opposite, at sqrt(|c - Q|^2 + R^2) at
+// least: with the half edges e, the sum of (|c - Q|_a + e_a)^2.
+IsotropicCones::Range IsotropicCones::range_in(const Box& box, Hint& hint) const {
+    const Point centre = box.centre();
+    const Vector half = 0.5 * box.edges();
+    const double radius = half.norm();
+    // Of one leaf's sources, the smallest length at the distances that `of` makes of those from the
+    // centre along the axes.
+    const auto visit = [&](Hint index, double& smallest, const auto& of) {
+        const Leaf& leaf = leaves_[index];
+        const Lanes x = of((leaf.x - centre.x()).abs(), half.x());
+        const Lanes y = of((leaf.y - centre.y()).abs(), half.y());
+        const Lanes z = of((leaf.z - centre.z()).abs(), half.z());
+        const double least =
+            (leaf.length + slope_ * (x.square() + y.square() + z.square()).sqrt()).minCoeff();
+        if (!(least < smallest)) return;
+        smallest = least;
+        hint = index;
+    };
+    const double most = search(
+        cap_, 0, hint,
+        [&](const Node& node) -> Children {
+            const Children farthest = (distances(node, centre).square() + radius * radius).sqrt();
+            return safely_ * (node.length + slope_ * farthest);
+        },
+        [&](Hint leaf, double& smallest) {
+            visit(leaf, smallest,
+                  [](const Lanes& away, double edge) -> Lanes { return away + edge; });
+        });
+    const double least = search(
+        most, 0, hint,
+        [&](const Node& node) -> Children {
+            const Children nearest = (distances(node, centre) - radius).max(0);
+            return safely_ * (node.length + slope_ * nearest);
+        },
+        [&](Hint leaf, double& smallest) {
+            visit(leaf, smallest,
+                  [](const Lanes& away, double edge) -> Lanes { return (away - edge).max(0); });
+        });
+    return {least, most};
+}
+
+// The smallest of what `visit_leaf` lowers the length to, below `cap`, or up to the fraction
+// `tolerance` more.
+template <class LowerBounds, class VisitLeaf>
+double IsotropicCones::search(double cap, double tolerance, Hint& hint,
+                              const LowerBounds& lower_bounds, const VisitLeaf& visit_leaf) const {
     if (leaves_.empty()) return cap;
+    const double enough = 1 / (1 + tolerance);
     double smallest = cap;
-    visit_leaf(std::min(hint, static_cast<Hint>(leaves_.size() - 1)), p, smallest, hint);
+    visit_leaf(std::min(hint, static_cast<Hint>(leaves_.size() - 1)), smallest);
     struct Postponed {
         double bound;
         std::uint32_t level;
@@ -274,16 +379,16 @@ double IsotropicCones::search(const Point& p, double cap, Hint& hint) const {
     const std::size_t levels = first_of_level_.size() - 1;
     while (height > 0) {
         const Postponed next = stack[--height];
-        if (next.bound >= smallest) continue;
+        if (next.bound >= enough * smallest) continue;
         if (next.level == levels) {
-            visit_leaf(static_cast<Hint>(shape_.leaf_in(next.node)), p, smallest, hint);
+            visit_leaf(static_cast<Hint>(shape_.leaf_in(next.node)), smallest);
             continue;
         }
         const Node& node = nodes_[first_of_level_[next.level] + next.node];
-        const Children bounds = lower_bounds(node, p);
+        const Children bounds = lower_bounds(node);
         const std::size_t floor = height;
         for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(arity); ++c) {
-            if (!(bounds[c] < smallest)) continue;
+            if (!(bounds[c] < enough * smallest)) continue;
             // The nearest on top.
             std::size_t place = height++;
             for (; place > floor && stack[place - 1].bound < bounds[c]; --place) {

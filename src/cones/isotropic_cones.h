@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "cones/cone_tree.h"
+#include "cones/nearby_cones.h"
+#include "geometry/box.h"
 #include "geometry/point.h"
 #include "sources/point_source.h"
 
@@ -26,10 +28,23 @@ public:
     /// The smallest length of all cones at `p`, or the cap where none is below it: to the bit the
     /// minimum over all sources of `cone_factor` times the source's length, whatever `hint` is.
     double smallest_length(const Point& p, Hint& hint) const;
+    /// The same, or up to the fraction `tolerance` more.
+    double smallest_length(const Point& p, double tolerance, Hint& hint) const;
+
+    /// Bounds of the smallest length in a box: `least` is met there, up to rounding, and `most` is
+    /// the largest of one source's cone that stays below all others' largest; not above the cap.
+    struct Range {
+        double least, most;
+    };
+    Range range_in(const Box& box, Hint& hint) const;
 
     /// Index of the source that has the `smallest` length at `p`, one of them where several have;
     /// `smallest` and `hint` as `smallest_length` left them, `smallest` below the cap.
     std::uint32_t source_of(const Point& p, double smallest, Hint hint) const;
+
+    /// Makes `nearby` all cones that can be the smallest somewhere in `box`, or returns false where
+    /// more than `most` come close to it; `hint` as in `smallest_length`.
+    bool gather(const Box& box, std::size_t most, NearbyCones& nearby, Hint& hint) const;
 
     /// Sources that are the smallest nowhere, and were left out.
     std::size_t dropped() const { return dropped_; }
@@ -64,10 +79,14 @@ private:
 
     void build(std::span<ConeTreeItem> items, std::span<const PointSource> sources);
     bool is_dominated(const PointSource& source) const;
+    Children distances(const Node& node, const Point& p) const;
     Children lower_bounds(const Node& node, const Point& p) const;
     double length_at(const Leaf& leaf, Eigen::Index lane, const Point& p) const;
     void visit_leaf(std::uint32_t leaf, const Point& p, double& smallest, Hint& hint) const;
-    double search(const Point& p, double cap, Hint& hint) const;
+    double search(const Point& p, double cap, double tolerance, Hint& hint) const;
+    template <class LowerBounds, class VisitLeaf>
+    double search(double cap, double tolerance, Hint& hint, const LowerBounds& lower_bounds,
+                  const VisitLeaf& visit_leaf) const;
 
     double g_;
     double slope_;

@@ -1,0 +1,130 @@
+#include "cones/nearby_cones.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace controlspace {
+
+// Which cones cannot matter in a box
+// ----------------------------------
+// Let c be the centre of the box and R half its diagonal, f_i(p) = h_i + (g-1) |p - Q_i|, and j the
+// cone that is the smallest at c. On the way from c to any p of the box, which is no longer than R,
+// f_i - f_j changes at the rate (g-1) |u_i - u_j| at most, with the unit vectors u_i of p - Q_i and
+// u_j of p - Q_j. That is never more than 2 (g-1), and never more than
+//     2 (g-1) |Q_i - Q_j| / (|p - Q_i| + |p - Q_j|),
+// where either distance is the one from c, less R, at least. (For a = |a| u and b = |b| v
+//     (|a| + |b|)^2 |u - v|^2 <= 4 |a - b|^2,
+// since the right side less the left is 2 (|a| - |b|)^2 (1 + u.v).)
+// So i is nowhere smaller than j where f_i(c) - f_j(c) exceeds R times either.
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+
+Lanes norms(const VectorLanes& v) { return (v.x.square() + v.y.square() + v.z.square()).sqrt(); }
+
+}  // namespace
+
+void NearbyCones::reset(double slope, double cap) {
+    slope_ = slope;
+    cap_ = cap;
+    size_ = 0;
+    eights_.clear();
+}
+
+void NearbyCones::add(const Point& position, double length, std::uint32_t source) {
+    const auto lane = static_cast<Eigen::Index>(size_ % lane_count);
+    if (lane == 0) {
+        eights_.emplace_back();
+        eights_.back().position = VectorLanes::zero();
+        eights_.back().length.setConstant(infinity);
+    }
+    Eight& last = eights_.back();
+    last.position.set(lane, position);
+    last.length[lane] = length;
+    last.source[static_cast<std::size_t>(lane)] = source;
+    ++size_;
+}
+
+void NearbyCones::narrow(const NearbyCones& others, const Box& box) {
+    reset(others.slope_, others.cap_);
+    const Point centre = box.centre();
+    const double radius = box.half_diagonal() * (1 + rounding);
+    distances_.resize(others.eights_.size());
+    double smallest = infinity;
+    std::size_t smallest_eight = 0;
+    for (std::size_t e = 0; e < others.eights_.size(); ++e) {
+        const Eight& eight = others.eights_[e];
+        distances_[e] = norms(displacements(eight.position, centre));
+        const double least = (eight.length + slope_ * distances_[e]).minCoeff();
+        if (least < smallest) {
+            smallest = least;
+            smallest_eight = e;
+        }
+    }
+    if (!(smallest < infinity)) return;
+    const Eight& of_smallest = others.eights_[smallest_eight];
+    Eigen::Index lane = 0;
+    (of_smallest.length + slope_ * distances_[smallest_eight]).minCoeff(&lane);
+    const Point position = of_smallest.position[lane];
+    const double distance = std::max(distances_[smallest_eight][lane] - radius, 0.0);
+
+    const double most_change = 2 * slope_ * radius;
+    const double room_below_cap = slope_ * radius + cap_;
+    for (std::size_t e = 0; e < others.eights_.size(); ++e) {
+        const Eight& eight = others.eights_[e];
+        const Lanes lengths = (eight.length + slope_ * distances_[e]) * (1 - rounding);
+        const Lanes gaps = lengths - smallest;
+        const Lanes apart = norms(displacements(eight.position, position)) * (1 + rounding);
+        const Lanes away = (distances_[e] - radius).max(0) + distance;
+        for (Eigen::Index i = 0; i < lane_count; ++i) {
+            const bool matters = gaps[i] <= most_change && lengths[i] <= room_below_cap &&
+                                 gaps[i] * away[i] <= most_change * apart[i];
+            if (matters) {
+                add(eight.position[i], eight.length[i], eight.source[static_cast<std::size_t>(i)]);
+            }
+        }
+    }
+}
+
+Lanes NearbyCones::lengths_at(const Eight& eight, const Point& p) const {
+    return eight.length + slope_ * norms(displacements(eight.position, p));
+}
+
+double NearbyCones::smallest_length(const Point& p) const {
+    Lanes smallest = Lanes::Constant(cap_);
+    for (const Eight& eight : eights_) smallest = smallest.min(lengths_at(eight, p));
+    return smallest.minCoeff();
+}
+
+double NearbyCones::smallest_length(const Point& p, std::uint32_t& source) const {
+    double smallest = cap_;
+    for (const Eight& eight : eights_) {
+        Eigen::Index lane = 0;
+        const double length = lengths_at(eight, p).minCoeff(&lane);
+        if (!(length < smallest)) continue;
+        smallest = length;
+        source = eight.source[static_cast<std::size_t>(lane)];
+    }
+    return smallest;
+}
+
+NearbyCones::Range NearbyCones::range_in(const Box& part) const {
+    const Point centre = part.centre();
+    const Vector half = 0.5 * part.edges();
+    Lanes least = Lanes::Constant(cap_);
+    Lanes most = Lanes::Constant(cap_);
+    for (const Eight& eight : eights_) {
+        const VectorLanes v = displacements(eight.position, centre);
+        const VectorLanes away{v.x.abs(), v.y.abs(), v.z.abs()};
+        const VectorLanes nearest{(away.x - half.x()).max(0), (away.y - half.y()).max(0),
+                                  (away.z - half.z()).max(0)};
+        const VectorLanes farthest{away.x + half.x(), away.y + half.y(), away.z + half.z()};
+        least = least.min(eight.length + slope_ * norms(nearest));
+        most = most.min(eight.length + slope_ * norms(farthest));
+    }
+    return {least.minCoeff(), most.minCoeff()};
+}
+
+}  // namespace controlspace

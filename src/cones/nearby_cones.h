@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "cones/tensor_lanes.h"
+#include "geometry/box.h"
+#include "geometry/point.h"
+
+namespace controlspace {
+
+/// Those cones h_i + (g-1) |p - Q_i| of isotropic sources that can be the smallest somewhere in a
+/// box: for many places in it, where they are few.
+class NearbyCones {
+public:
+    /// None so far. `slope` is g - 1; lengths of `cap` or more do not matter.
+    void reset(double slope, double cap);
+    void add(const Point& position, double length, std::uint32_t source);
+    /// Makes these out of `others`, which should be all that matter in `box`: those that can be the
+    /// smallest somewhere in it.
+    void narrow(const NearbyCones& others, const Box& box);
+
+    std::size_t size() const { return size_; }
+    /// The smallest length at a place in the box, or the cap where none is below it. To rounding.
+    double smallest_length(const Point& p) const;
+    /// The same, and the source that has it; unchanged where the cap stands.
+    double smallest_length(const Point& p, std::uint32_t& source) const;
+
+    /// Bounds of the smallest length in a part of the box: met, and not exceeded.
+    struct Range {
+        double least, most;
+    };
+    Range range_in(const Box& part) const;
+
+private:
+    struct Eight {
+        VectorLanes position;
+        Lanes length;  ///< infinite lengths fill up the last lanes
+        std::array<std::uint32_t, lane_count> source;
+    };
+    Lanes lengths_at(const Eight& eight, const Point& p) const;
+
+    double slope_ = 0;
+    double cap_ = 0;
+    std::size_t size_ = 0;
+    std::vector<Eight> eights_;
+    std::vector<Lanes> distances_;  ///< room for `narrow`
+};
+
+}  // namespace controlspace
