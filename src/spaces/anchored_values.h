@@ -30,6 +30,7 @@ public:
     static constexpr bool exact_at_nodes = true;
     static constexpr int order = 0;
     static constexpr CutBy cut_by = CutBy::longest_edge;
+    static constexpr bool follows_neighbours = false;
 
     explicit AnchoredValues(const SpaceOptions& options);
 

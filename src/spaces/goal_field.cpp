@@ -46,13 +46,37 @@ void GoalField::evaluate(std::span<const Point> x, std::span<Metric> out) const 
     constexpr std::size_t places_per_task = 64;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, x.size(), places_per_task),
                       [&](const tbb::blocked_range<std::size_t>& part) {
-                          evaluate_here(x.subspan(part.begin(), part.size()),
-                                        out.subspan(part.begin(), part.size()));
+                          cones_.evaluate(x.subspan(part.begin(), part.size()),
+                                          out.subspan(part.begin(), part.size()));
                       });
+    add_continuous(x, out);
 }
 
-void GoalField::evaluate_here(std::span<const Point> x, std::span<Metric> out) const {
-    cones_.evaluate(x, out);
+void GoalField::evaluate_here(std::span<const Point> x, std::span<Metric> out,
+                              ConeField::Memory& memory) const {
+    cones_.evaluate(x, out, memory);
+    add_continuous(x, out);
+}
+
+void GoalField::evaluate_here(std::span<const Point> x, std::span<Metric> out,
+                              const NearbyCones& nearby) const {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        out[i] = Metric::isotropic(nearby.smallest_length(x[i]));
+    }
+    add_continuous(x, out);
+}
+
+double GoalField::evaluate_roughly(std::span<const Point> x, std::span<Metric> out,
+                                   ConeField::Memory& memory) const {
+    if (!has_ranges()) {
+        evaluate_here(x, out, memory);
+        return 1;
+    }
+    cones_.evaluate_roughly(x, negligible(target_), out, memory);
+    return 1 + negligible(target_);
+}
+
+void GoalField::add_continuous(std::span<const Point> x, std::span<Metric> out) const {
     if (!continuous_) return;
     std::vector<Metric> own(x.size());
     continuous_->evaluate(x, own);

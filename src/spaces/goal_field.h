@@ -21,8 +21,24 @@ public:
     GoalField(const AdaptationGoal& goal, const Box& domain);
 
     void evaluate(std::span<const Point> x, std::span<Metric> out) const override;
-    /// The same on the calling thread, for few places.
-    void evaluate_here(std::span<const Point> x, std::span<Metric> out) const;
+    /// The same on the calling thread, for places near to each other; `memory` should be kept from
+    /// one call to the next.
+    void evaluate_here(std::span<const Point> x, std::span<Metric> out,
+                       ConeField::Memory& memory) const;
+    /// The same where `nearby` has all cones that matter at the places.
+    void evaluate_here(std::span<const Point> x, std::span<Metric> out,
+                       const NearbyCones& nearby) const;
+
+    /// The same, or longer by a factor less than the one returned, where that is quicker.
+    double evaluate_roughly(std::span<const Point> x, std::span<Metric> out,
+                            ConeField::Memory& memory) const;
+
+    /// Whether its bounds in a box can be told: all is isotropic, and no source continuous.
+    bool has_ranges() const { return continuous_ == nullptr && cones_.is_isotropic(); }
+    /// The bounds, as `IsotropicCones::range_in` has them.
+    IsotropicCones::Range range_in(const Box& box, ConeField::Memory& memory) const {
+        return cones_.range_in(box, memory);
+    }
 
     /// Largest δ between `space` and the field at places all over the domain and near to sources.
     double largest_departure(const ControlSpace& space) const;
@@ -31,6 +47,8 @@ public:
     double target() const { return target_; }
 
 private:
+    void add_continuous(std::span<const Point> x, std::span<Metric> out) const;
+
     double target_;
     std::span<const PointSource> sources_;
     std::shared_ptr<const MetricField> continuous_;

@@ -34,6 +34,7 @@ namespace controlspace {
 //   fit(tree, leaves, field, proved)     sets the control nodes of these leaves to the field; if
 //                                        that will not be proved elsewhere, less closely
 //   is_fitted(leaf)                      is known to follow the field at the leaf's own places
+//   follows_neighbours                   the field in a leaf varies with what its neighbours hold
 //   learn(leaf, x, field)                follows the field better at x, or returns false
 //   control_nodes(tree, neighbourhood), assign(tree, metrics), describe(footprint), shrink_to_fit()
 //   remember_parts(tree)                 if it has that: makes answers faster until a leaf is split
@@ -51,6 +52,7 @@ public:
     static constexpr bool exact_at_nodes = true;
     static constexpr int order = 0;
     static constexpr CutBy cut_by = CutBy::corners;
+    static constexpr bool follows_neighbours = false;
 
     explicit LeafValues(const SpaceOptions& options)
         : metrics_(1, largest_metric(options.domain)) {}
@@ -102,17 +104,14 @@ public:
                                    options);
     }
 
-    /// Sets the leaves to the field.
+    /// Sets the leaves to the field at their centres; where its bounds in them are known, they are
+    /// to be set by those.
     template <class Node>
     void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field,
              bool) {
-        in_parallel(leaves.size(), [&](std::size_t i) {
-            const Point x = leaves[i].box.centre();
-            Metric m;
-            field.evaluate_here({&x, 1}, {&m, 1});
-            metrics_.set(leaves[i].leaf, m);
-        });
+        if (!field.has_ranges()) fit_to_centres(leaves, field);
     }
+    void set(LeafIndex leaf, const Metric& m) { metrics_.set(leaf, m); }
     static constexpr bool is_fitted(LeafIndex) { return false; }
     static constexpr bool learn(LeafIndex, const Point&, const GoalField&) { return false; }
 
@@ -153,6 +152,15 @@ public:
     void shrink_to_fit() { metrics_.shrink_to_fit(); }
 
 protected:
+    void fit_to_centres(std::span<const AdaptedLeaf> leaves, const GoalField& field) {
+        in_parallel(leaves.size(), [&, memory = ConeField::Memory()](std::size_t i) mutable {
+            const Point x = leaves[i].box.centre();
+            Metric m;
+            field.evaluate_here({&x, 1}, {&m, 1}, memory);
+            metrics_.set(leaves[i].leaf, m);
+        });
+    }
+
     NodeMetrics metrics_;
 
 private:

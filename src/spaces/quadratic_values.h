@@ -19,6 +19,7 @@ class QuadraticValues : public LeafValues {
 public:
     static constexpr int order = 2;
     static constexpr CutBy cut_by = CutBy::faces;
+    static constexpr bool follows_neighbours = true;
 
     explicit QuadraticValues(const SpaceOptions& options)
         : LeafValues(options), boxes_(1, options.domain), slope_(options.ratio - 1) {}
@@ -78,9 +79,9 @@ public:
     }
 
     template <class Node>
-    void fit(const Topology<Node>& tree, std::span<const AdaptedLeaf> leaves,
-             const GoalField& field, bool proved) {
-        LeafValues::fit(tree, leaves, field, proved);
+    void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field,
+             bool) {
+        fit_to_centres(leaves, field);
         look_at_metrics();
     }
 

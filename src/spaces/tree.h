@@ -94,11 +94,10 @@ public:
         past_.reset();
         if constexpr (keeps_sources) storage_.take_over(goal);
         AdaptationReport report;
-        constexpr int proofs = 3;
         bool too_deep = false;
         bool too_short = false;
         TreeAdaptation adaptation(topology_, storage_, field, goal);
-        report.reached = adaptation.run(proofs, [&](const Box& box, const auto& along, auto& cut) {
+        report.reached = adaptation.run(true, [&](const Box& box, const auto& along, auto& cut) {
             if (is_negligible(box)) {
                 too_short = true;
                 return false;
@@ -204,7 +203,7 @@ private:
         storage_.take_over(goal);
         GradationReport report;
         TreeAdaptation adaptation(topology_, storage_, field, goal);
-        adaptation.run(0, [&](const Box& box, const auto& along, auto& cut) {
+        adaptation.run(false, [&](const Box& box, const auto& along, auto& cut) {
             ++report.operations;
             return is_too_long(storage_.value(topology_, box.centre()), box) &&
                    split_across(box, along, cut);

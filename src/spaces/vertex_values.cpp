@@ -96,9 +96,9 @@ void VertexValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& fie
     }
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    in_parallel(nodes.size(), [&](std::size_t i) {
+    in_parallel(nodes.size(), [&, memory = ConeField::Memory()](std::size_t i) mutable {
         Metric m;
-        field.evaluate_here({&positions_[nodes[i]], 1}, {&m, 1});
+        field.evaluate_here({&positions_[nodes[i]], 1}, {&m, 1}, memory);
         metrics_.set(nodes[i], m);
     });
 }

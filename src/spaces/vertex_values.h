@@ -48,6 +48,7 @@ public:
     static constexpr bool exact_at_nodes = true;
     static constexpr int order = 1;
     static constexpr CutBy cut_by = CutBy::edges;
+    static constexpr bool follows_neighbours = false;
 
     explicit VertexValues(const SpaceOptions& options);
 
