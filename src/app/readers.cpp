@@ -1,5 +1,6 @@
 #include "app/readers.h"
 
+#include "app/first_in_child.h"
 #include "sources/pos.h"
 
 #ifdef CONTROLSPACE_OPENVDB
@@ -9,6 +10,7 @@
 
 #ifdef CONTROLSPACE_CGAL
 #include "export/read_surface_sources.h"
+#include "export/surface_mesh.h"
 #endif
 #ifdef CONTROLSPACE_GMSH
 #include "mesh/read_msh_sources.h"
@@ -35,19 +37,24 @@ FileReaders file_readers() {
 #ifdef CONTROLSPACE_CGAL
     for (const char* ending : {".stl", ".obj", ".ply", ".off"}) {
         readers.sources[ending] = [](const SourcesChoice& choice) {
+            require_readable(choice.file, [&] { read_surface_mesh(choice.file); });
             return read_surface_sources(choice.file, choice.in_file.curvature);
         };
     }
 #endif
 #ifdef CONTROLSPACE_GMSH
     readers.sources[".msh"] = [](const SourcesChoice& choice) {
-        return read_msh_sources(choice.file, choice.in_file.array);
+        const auto read = [&] { return read_msh_sources(choice.file, choice.in_file.array); };
+        require_readable(choice.file, read);
+        return read();
     };
 #endif
 #ifdef CONTROLSPACE_VTK
     for (const char* ending : {".vtu", ".vtp"}) {
         readers.sources[ending] = [](const SourcesChoice& choice) {
-            return read_vtk_sources(choice.file, choice.in_file.array);
+            const auto read = [&] { return read_vtk_sources(choice.file, choice.in_file.array); };
+            require_readable(choice.file, read);
+            return read();
         };
     }
 #endif

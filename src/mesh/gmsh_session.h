@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mutex>
+#include <stdexcept>
 #include <string>
 
 #include "error.h"
@@ -37,6 +38,8 @@ auto in_gmsh_session(int threads, Action&& action) {
         throw gmsh_failure(what);
     } catch (int status) {
         throw gmsh_failure("status " + std::to_string(status));
+    } catch (const std::length_error&) {
+        throw gmsh_failure("it was asked for more than memory holds");
     }
 }
 
