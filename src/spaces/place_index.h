@@ -21,6 +21,7 @@ public:
     /// append `x` to its positions as number `next` before the next call.
     NodeIndex find_or_enter(const Point& x, NodeIndex next, std::span<const Point> positions);
 
+    bool is_empty() const { return used_ == 0; }
     std::size_t bytes() const { return table_.capacity() * sizeof(NodeIndex); }
 
 private:

@@ -23,6 +23,7 @@ NodeIndex VertexValues::vertex_at(const Point& x, const Box& box, const Corners&
     const auto weights = corner_weights(box, x);
     const Metric asked = interpolate(corners, weights, metrics_.asked());
     const auto next = static_cast<NodeIndex>(positions_.size());
+    if (places_.is_empty()) places_ = PlaceIndex(positions_);
     const NodeIndex node = places_.find_or_enter(x, next, positions_);
     if (node == next) {
         make_room(positions_, 1);
@@ -108,7 +109,7 @@ void VertexValues::complete(const StateReader& state, std::size_t leaves) {
     require_below(state, "vertices.of_leaves", corners_, positions_.size());
     metrics_.require_sound(state, positions_.size());
     changes_.require_sound(state, positions_.size());
-    places_ = PlaceIndex(positions_);
+    places_ = PlaceIndex();
 }
 
 void VertexValues::describe(Footprint& footprint) const {

@@ -154,7 +154,7 @@ private:
         state("vertices.positions", self.positions_);
         VertexChanges::exchange(self.changes_, state);
     }
-    // Checks what was loaded, and makes the index of places.
+    // Checks what was loaded. The index of places waits for the first cut, which needs it.
     void complete(const StateReader& state, std::size_t leaves);
 
     std::vector<Corners> corners_;  // of a leaf, in the order of controlspace::corner
