@@ -69,8 +69,8 @@ void ConeField::governing(const Point& x, double tolerance, std::vector<std::uin
     governing(x, tolerance, sources, m, memory);
 }
 
-void ConeField::evaluate_roughly(std::span<const Point> x, double tolerance,
-                                 std::span<Metric> out, Memory& memory) const {
+void ConeField::evaluate_roughly(std::span<const Point> x, double tolerance, std::span<Metric> out,
+                                 Memory& memory) const {
     const auto& cones = std::get<IsotropicCones>(cones_);
     for (std::size_t i = 0; i < x.size(); ++i) {
         out[i] = Metric::isotropic(cones.smallest_length(x[i], tolerance, memory.hint));
@@ -89,6 +89,11 @@ bool ConeField::gather(const Box& box, std::size_t most, NearbyCones& nearby,
                        Memory& memory) const {
     const auto* isotropic = std::get_if<IsotropicCones>(&cones_);
     return isotropic != nullptr && isotropic->gather(box, most, nearby, memory.hint);
+}
+
+std::optional<std::uint32_t> ConeField::source_below(const Point& x, double length,
+                                                     Memory& memory) const {
+    return std::get<IsotropicCones>(cones_).source_below(x, length, memory.hint);
 }
 
 std::size_t ConeField::dropped() const {

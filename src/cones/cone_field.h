@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -67,6 +68,10 @@ public:
     /// `largest` in some direction; returns false where more than `most` come close to it, or
     /// sources are anisotropic.
     bool gather(const Box& box, std::size_t most, NearbyCones& nearby, Memory& memory) const;
+
+    /// Of isotropic sources: the one whose cone is the smallest at `x`, if that is less than
+    /// `length`. The quicker the shorter the length is.
+    std::optional<std::uint32_t> source_below(const Point& x, double length, Memory& memory) const;
 
     /// Sources that were left out because others lie below them everywhere.
     std::size_t dropped() const;

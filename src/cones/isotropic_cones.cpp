@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -234,16 +235,17 @@ double IsotropicCones::length_at(const Leaf& leaf, Eigen::Index lane, const Poin
 
 void IsotropicCones::visit_leaf(std::uint32_t index, const Point& p, double& smallest,
                                 Hint& hint) const {
-    // Negative where h_i + (g-1) |p - Q_i| may be below `smallest`: compared as squares, all lanes.
+    // First as bounds have them, all lanes: only those near to the least may have the smallest.
     const Leaf& leaf = leaves_[index];
-    const Lanes reach = (smallest / safely_ - leaf.length).max(0);
-    const Lanes excess =
-        slope_ * slope_ *
-            ((leaf.x - p.x()).square() + (leaf.y - p.y()).square() + (leaf.z - p.z()).square()) -
-        reach.square();
-    if (!(excess.minCoeff() < 0)) return;
+    const Lanes lengths =
+        leaf.length +
+        slope_ * ((leaf.x - p.x()).square() + (leaf.y - p.y()).square() + (leaf.z - p.z()).square())
+                     .sqrt();
+    const double least = lengths.minCoeff();
+    if (!(safely_ * least < smallest)) return;
+    const double doubtful = least / (safely_ * safely_);
     for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(leaf_size); ++i) {
-        if (!(excess[i] < 0)) continue;
+        if (!(lengths[i] <= doubtful)) continue;
         const double length = length_at(leaf, i, p);
         if (length < smallest) {
             smallest = length;
@@ -258,6 +260,13 @@ double IsotropicCones::smallest_length(const Point& p, Hint& hint) const {
 
 double IsotropicCones::smallest_length(const Point& p, double tolerance, Hint& hint) const {
     return search(p, cap_, tolerance, hint);
+}
+
+std::optional<std::uint32_t> IsotropicCones::source_below(const Point& p, double length,
+                                                          Hint& hint) const {
+    const double smallest = search(p, length, 0, hint);
+    if (!(smallest < length)) return std::nullopt;
+    return source_of(p, smallest, hint);
 }
 
 std::uint32_t IsotropicCones::source_of(const Point& p, double smallest, Hint hint) const {
@@ -387,8 +396,11 @@ double IsotropicCones::search(double cap, double tolerance, Hint& hint,
         const Node& node = nodes_[first_of_level_[next.level] + next.node];
         const Children bounds = lower_bounds(node);
         const std::size_t floor = height;
-        for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(arity); ++c) {
-            if (!(bounds[c] < enough * smallest)) continue;
+        const double limit = enough * smallest;
+        unsigned children = 0;
+        for (int c = 0; c < arity; ++c) children |= (bounds[c] < limit ? 1u : 0u) << c;
+        for (; children != 0; children &= children - 1) {
+            const auto c = static_cast<std::uint32_t>(std::countr_zero(children));
             // The nearest on top.
             std::size_t place = height++;
             for (; place > floor && stack[place - 1].bound < bounds[c]; --place) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,9 @@ public:
     /// Makes `nearby` all cones that can be the smallest somewhere in `box`, or returns false where
     /// more than `most` come close to it; `hint` as in `smallest_length`.
     bool gather(const Box& box, std::size_t most, NearbyCones& nearby, Hint& hint) const;
+
+    /// The source that has the smallest length at `p`, if that is less than `length`.
+    std::optional<std::uint32_t> source_below(const Point& p, double length, Hint& hint) const;
 
     /// Sources that are the smallest nowhere, and were left out.
     std::size_t dropped() const { return dropped_; }
