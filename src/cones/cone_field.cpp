@@ -85,10 +85,9 @@ IsotropicCones::Range ConeField::range_in(const Box& box, Memory& memory) const 
     return std::get<IsotropicCones>(cones_).range_in(box, memory.hint);
 }
 
-bool ConeField::gather(const Box& box, std::size_t most, NearbyCones& nearby,
-                       Memory& memory) const {
+bool ConeField::gather(const Box& box, NearbyCones& nearby, Memory& memory) const {
     const auto* isotropic = std::get_if<IsotropicCones>(&cones_);
-    return isotropic != nullptr && isotropic->gather(box, most, nearby, memory.hint);
+    return isotropic != nullptr && isotropic->gather(box, nearby, memory.hint);
 }
 
 std::optional<std::uint32_t> ConeField::source_below(const Point& x, double length,

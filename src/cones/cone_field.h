@@ -64,15 +64,17 @@ public:
     /// Bounds of an isotropic field in a box, as `IsotropicCones::range_in` has them.
     IsotropicCones::Range range_in(const Box& box, Memory& memory) const;
 
-    /// Makes `nearby` all cones that can be the smallest somewhere in `box`, each shorter than
-    /// `largest` in some direction; returns false where more than `most` come close to it, or
-    /// sources are anisotropic.
-    bool gather(const Box& box, std::size_t most, NearbyCones& nearby, Memory& memory) const;
+    /// Makes `nearby` all cones that can be the smallest somewhere in `box`; returns false where
+    /// they may be hundreds, or sources are anisotropic.
+    bool gather(const Box& box, NearbyCones& nearby, Memory& memory) const;
 
     /// Of isotropic sources: the one whose cone is the smallest at `x`, if that is less than
     /// `length`. The quicker the shorter the length is.
     std::optional<std::uint32_t> source_below(const Point& x, double length, Memory& memory) const;
 
+    /// Of isotropic sources: indices of those that were not left out, each the smallest at its own
+    /// place, as rounding allows.
+    std::span<const std::uint32_t> kept() const { return std::get<IsotropicCones>(cones_).kept(); }
     /// Sources that were left out because others lie below them everywhere.
     std::size_t dropped() const;
 

@@ -44,12 +44,15 @@ public:
     std::uint32_t source_of(const Point& p, double smallest, Hint hint) const;
 
     /// Makes `nearby` all cones that can be the smallest somewhere in `box`, or returns false where
-    /// more than `most` come close to it; `hint` as in `smallest_length`.
-    bool gather(const Box& box, std::size_t most, NearbyCones& nearby, Hint& hint) const;
+    /// some hundreds come close to that; `hint` as in `smallest_length`.
+    bool gather(const Box& box, NearbyCones& nearby, Hint& hint) const;
 
     /// The source that has the smallest length at `p`, if that is less than `length`.
     std::optional<std::uint32_t> source_below(const Point& p, double length, Hint& hint) const;
 
+    /// Indices of the sources that were not left out, those near to each other together. Each has
+    /// the smallest length at its own place.
+    std::span<const std::uint32_t> kept() const { return indices_; }
     /// Sources that are the smallest nowhere, and were left out.
     std::size_t dropped() const { return dropped_; }
 
@@ -64,6 +67,7 @@ public:
 private:
     static constexpr std::uint64_t leaf_size = 16;
     static constexpr int arity = 8;
+    static constexpr std::size_t most_leaves_gathered = 32;
     // Unaligned, so that vectors of them take memory as everything else does.
     using Lanes = Eigen::Array<double, leaf_size, 1, Eigen::DontAlign>;
     using Children = Eigen::Array<double, arity, 1, Eigen::DontAlign>;

@@ -33,7 +33,7 @@ void NearbyCones::reset(double slope, double cap) {
     eights_.clear();
 }
 
-void NearbyCones::add(const Point& position, double length, std::uint32_t source) {
+void NearbyCones::add(const Point& position, double length) {
     const auto lane = static_cast<Eigen::Index>(size_ % lane_count);
     if (lane == 0) {
         eights_.emplace_back();
@@ -43,7 +43,6 @@ void NearbyCones::add(const Point& position, double length, std::uint32_t source
     Eight& last = eights_.back();
     last.position.set(lane, position);
     last.length[lane] = length;
-    last.source[static_cast<std::size_t>(lane)] = source;
     ++size_;
 }
 
@@ -82,7 +81,7 @@ void NearbyCones::narrow(const NearbyCones& others, const Box& box) {
             const bool matters = gaps[i] <= most_change && lengths[i] <= room_below_cap &&
                                  gaps[i] * away[i] <= most_change * apart[i];
             if (matters) {
-                add(eight.position[i], eight.length[i], eight.source[static_cast<std::size_t>(i)]);
+                add(eight.position[i], eight.length[i]);
             }
         }
     }
@@ -96,35 +95,6 @@ double NearbyCones::smallest_length(const Point& p) const {
     Lanes smallest = Lanes::Constant(cap_);
     for (const Eight& eight : eights_) smallest = smallest.min(lengths_at(eight, p));
     return smallest.minCoeff();
-}
-
-double NearbyCones::smallest_length(const Point& p, std::uint32_t& source) const {
-    double smallest = cap_;
-    for (const Eight& eight : eights_) {
-        Eigen::Index lane = 0;
-        const double length = lengths_at(eight, p).minCoeff(&lane);
-        if (!(length < smallest)) continue;
-        smallest = length;
-        source = eight.source[static_cast<std::size_t>(lane)];
-    }
-    return smallest;
-}
-
-NearbyCones::Range NearbyCones::range_in(const Box& part) const {
-    const Point centre = part.centre();
-    const Vector half = 0.5 * part.edges();
-    Lanes least = Lanes::Constant(cap_);
-    Lanes most = Lanes::Constant(cap_);
-    for (const Eight& eight : eights_) {
-        const VectorLanes v = displacements(eight.position, centre);
-        const VectorLanes away{v.x.abs(), v.y.abs(), v.z.abs()};
-        const VectorLanes nearest{(away.x - half.x()).max(0), (away.y - half.y()).max(0),
-                                  (away.z - half.z()).max(0)};
-        const VectorLanes farthest{away.x + half.x(), away.y + half.y(), away.z + half.z()};
-        least = least.min(eight.length + slope_ * norms(nearest));
-        most = most.min(eight.length + slope_ * norms(farthest));
-    }
-    return {least.minCoeff(), most.minCoeff()};
 }
 
 }  // namespace controlspace

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "cones/tensor_lanes.h"
@@ -17,7 +15,7 @@ class NearbyCones {
 public:
     /// None so far. `slope` is g - 1; lengths of `cap` or more do not matter.
     void reset(double slope, double cap);
-    void add(const Point& position, double length, std::uint32_t source);
+    void add(const Point& position, double length);
     /// Makes these out of `others`, which should be all that matter in `box`: those that can be the
     /// smallest somewhere in it.
     void narrow(const NearbyCones& others, const Box& box);
@@ -25,20 +23,11 @@ public:
     std::size_t size() const { return size_; }
     /// The smallest length at a place in the box, or the cap where none is below it. To rounding.
     double smallest_length(const Point& p) const;
-    /// The same, and the source that has it; unchanged where the cap stands.
-    double smallest_length(const Point& p, std::uint32_t& source) const;
-
-    /// Bounds of the smallest length in a part of the box: met, and not exceeded.
-    struct Range {
-        double least, most;
-    };
-    Range range_in(const Box& part) const;
 
 private:
     struct Eight {
         VectorLanes position;
         Lanes length;  ///< infinite lengths fill up the last lanes
-        std::array<std::uint32_t, lane_count> source;
     };
     Lanes lengths_at(const Eight& eight, const Point& p) const;
 

@@ -11,6 +11,12 @@ namespace controlspace {
 
 namespace {
 
+// The factor of lengths k that makes δ = √3 (k + 1/k - 2).
+double factor_of(double delta) {
+    const double excess = delta / std::sqrt(3.0);
+    return 1 + 0.5 * excess + std::sqrt(excess + 0.25 * excess * excess);
+}
+
 // Shortening all lengths by a small fraction t gives δ = √3 t^2: a cone may be left out where it
 // shortens some by this, and most of the target remains for places in between.
 double negligible_shortening(double target) { return 0.5 * std::sqrt(target); }
@@ -70,20 +76,28 @@ void AnchoredValues::take_over(const AdaptationGoal& goal) {
 
 void AnchoredValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& field,
                          std::size_t places) {
+    const double well_within = 0.25 * field.target();
     const double negligible = negligible_shortening(field.target());
+    const double factor = factor_of(well_within);
     std::vector<SourceIndex> chosen(leaves.size() * most);
     std::vector<std::size_t> count(leaves.size(), 0);
     in_parallel(leaves.size(), [&, governing = std::vector<SourceIndex>(),
                                 memory = ConeField::Memory()](std::size_t i) mutable {
         const std::span<SourceIndex> list(chosen.data() + i * most, most);
         std::size_t& n = count[i];
+        memory.hint = 0;  // of several sources that are equally near the same is found always
         for (std::size_t k = 0; k < places; ++k) {
             const std::size_t p = (LeafPlaces::centre + k) % LeafPlaces::all;  // the centre first
             const Point x = leaf_places().in(leaves[i].box, p);
+            const Metric own = cones_at(x, list.first(n));
+            if (field.cones().is_isotropic()) {
+                const auto below = field.cones().source_below(x, own.xx / factor, memory);
+                if (below && n < most) list[n++] = *below;
+                continue;
+            }
             Metric m;
             field.cones().governing(x, negligible, governing, m, memory);
-            const Metric own = cones_at(x, list.first(n));
-            if (nonconformity(own, m) <= 0.25 * field.target()) continue;
+            if (nonconformity(own, m) <= well_within) continue;
             for (const SourceIndex s : governing) {
                 const auto end = list.begin() + static_cast<std::ptrdiff_t>(n);
                 if (n < most && std::find(list.begin(), end, s) == end) list[n++] = s;

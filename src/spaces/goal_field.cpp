@@ -11,7 +11,7 @@
 #include "error.h"
 #include "metric/intersection.h"
 #include "metric/nonconformity.h"
-#include "spaces/adapt_tree.h"
+#include "spaces/leaf_judge.h"
 #include "spaces/control_space.h"
 #include "spaces/space_options.h"
 
@@ -40,7 +40,8 @@ GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
     : target_(require_valid(goal, domain).target),
       sources_(goal.sources),
       continuous_(goal.continuous),
-      cones_(goal.sources, goal.ratio, largest_metric(domain), negligible(goal.target)) {}
+      largest_(largest_metric(domain)),
+      cones_(goal.sources, goal.ratio, largest_, negligible(goal.target)) {}
 
 void GoalField::evaluate(std::span<const Point> x, std::span<Metric> out) const {
     constexpr std::size_t places_per_task = 64;

@@ -44,6 +44,7 @@ public:
     double largest_departure(const ControlSpace& space) const;
 
     const ConeField& cones() const { return cones_; }
+    const Metric& largest() const { return largest_; }
     double target() const { return target_; }
 
 private:
@@ -52,6 +53,7 @@ private:
     double target_;
     std::span<const PointSource> sources_;
     std::shared_ptr<const MetricField> continuous_;
+    Metric largest_;
     ConeField cones_;
 };
 

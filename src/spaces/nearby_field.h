@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 
 #include "cones/nearby_cones.h"
@@ -9,16 +8,18 @@
 
 namespace controlspace {
 
-/// The field of a goal in one box after another, for one thread: quick where each is near to the
-/// one before.
+/// The field of a goal in one box after another, for one thread.
 class NearbyField {
 public:
     explicit NearbyField(const GoalField& field) : field_(field) {}
 
-    /// From now on all is asked in this box.
-    void enter(const Box& box) {
+    /// From now on all is asked in this box, at some tens of places or only a few. Answers do not
+    /// depend on the boxes before.
+    void enter(const Box& box, bool at_many_places) {
         box_ = box;
-        is_gathered_ = false;
+        memory_.hint = 0;
+        is_gathered_ = !at_many_places;
+        are_few_ = false;
     }
 
     void evaluate(std::span<const Point> x, std::span<Metric> out) {
@@ -43,10 +44,8 @@ public:
 
 private:
     void gather() {
-        // Where more cones come into question, a search among all is as quick.
-        constexpr std::size_t most_cones = 256;
         is_gathered_ = true;
-        are_few_ = field_.cones().gather(box_, most_cones, gathered_, memory_);
+        are_few_ = field_.cones().gather(box_, gathered_, memory_);
         if (are_few_) cones_.narrow(gathered_, box_);
     }
 

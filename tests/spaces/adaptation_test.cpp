@@ -1,5 +1,7 @@
 #include "spaces/adaptation.h"
 
+#include <tbb/global_control.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -104,6 +106,46 @@ TEST_CASE("sphere at a tenth: the paper's trees and the anchored ones, on 101^3 
     CHECK(adapted(anchored_catalogue()[1], 2) <= 0.1);  // K_oLA
     // Peaks between the places that were looked at: here one of a million places.
     CHECK(adapted(anchored_catalogue()[0], 2) <= 0.15);  // K_LA
+}
+
+TEST_CASE("constant leaves of isotropic sources keep the target everywhere, as bounds prove") {
+    std::vector<PointSource> scattered;
+    for (const Point& x : random_points(domain, 300, 17)) {
+        scattered.push_back({x, Metric::isotropic(0.02 + 0.1 * std::abs(x.x() * x.y()))});
+    }
+    for (const auto& sources : {scattered, sample_sphere({.h = 0.08})}) {
+        const auto field = exact_reference(sources, g, largest_metric(domain));
+        const Probes probes = make_probes(*field, random_points(domain, 200000, 19));
+        for (const CatalogueEntry& entry : tree_catalogue()) {
+            if (entry.id != "K_L" && entry.id != "K_oL" && entry.id != "K_oLB") continue;
+            CAPTURE(entry.id);
+            const auto space = entry.make({.domain = domain});
+            const AdaptationReport report = space->adapt({sources, nullptr, g, 0.2});
+            CHECK(report.met);
+            const double seen = accuracy(*space, probes).max;
+            CHECK(seen <= report.reached);
+            CHECK(seen > 0.5 * report.reached);
+        }
+    }
+}
+
+TEST_CASE("the same tree, whatever the number of threads") {
+    const std::vector<PointSource> sources = sample_sphere({.h = 0.08});
+    const std::vector<Point> x = random_points(domain, 2000, 23);
+    for (const CatalogueEntry& entry : trees()) {
+        CAPTURE(entry.id);
+        std::vector<Metric> one(x.size());
+        std::vector<Metric> many(x.size());
+        const auto fill = [&](std::size_t threads, std::span<Metric> out) {
+            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+            const auto space = entry.make({.domain = domain});
+            const double reached = space->adapt({sources, nullptr, g, 0.2}).reached;
+            space->sample(x, out);
+            return reached;
+        };
+        CHECK(fill(1, one) == fill(4, many));
+        CHECK(one == many);
+    }
 }
 
 TEST_CASE("a source too small to be seen from a leaf's own places is found") {
