@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cassert>
 #include <cstddef>
 #include <span>
@@ -29,21 +30,19 @@ namespace controlspace {
 enum class Blend { lengths, riemannian, inverse, log_euclidean };
 
 /// Weighted mean of `metrics`, linear in M; weights and metrics are of the same number.
-/// `metric_at(i)` gives metric i: structures blend straight from their arrays.
+/// `metric_at(i)` gives metric i: structures blend straight from their arrays, of Metric or
+/// StoredMetric.
 template <class MetricAt>
 Metric blend_lengths(std::span<const double> weights, MetricAt&& metric_at) {
-    Metric sum{0, 0, 0, 0, 0, 0};
+    // In two vectors of numbers: left alone, the compiler mostly does one number after the other.
+    Eigen::Array4d first = Eigen::Array4d::Zero();
+    Eigen::Array2d rest = Eigen::Array2d::Zero();
     for (std::size_t i = 0; i < weights.size(); ++i) {
-        const Metric& m = metric_at(i);
-        const double w = weights[i];
-        sum.xx += w * m.xx;
-        sum.yy += w * m.yy;
-        sum.zz += w * m.zz;
-        sum.xy += w * m.xy;
-        sum.xz += w * m.xz;
-        sum.yz += w * m.yz;
+        const auto& m = metric_at(i);
+        first += weights[i] * Eigen::Array4d(m.xx, m.yy, m.zz, m.xy);
+        rest += weights[i] * Eigen::Array2d(m.xz, m.yz);
     }
-    return sum;
+    return {first[0], first[1], first[2], first[3], rest[0], rest[1]};
 }
 
 /// Weighted mean of `metrics` by the given scheme; the spans must be of equal size.

@@ -30,9 +30,10 @@ inline std::array<double, 8> corner_weights(const Box& box, const Point& x) {
 }
 
 /// Trilinear between the corners of `box`, at the nearest place of it to `place`; metric_at(i) is
-/// the metric of corner i.
+/// the metric of corner i. Inlined, so that boxes stay in registers.
 template <class MetricAt>
-Metric trilinear_in(const Box& box, const Point& place, MetricAt&& metric_at) {
+[[gnu::always_inline]] inline Metric trilinear_in(const Box& box, const Point& place,
+                                                  MetricAt&& metric_at) {
     const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
     return blend_lengths(corner_weights(box, x), metric_at);
 }
@@ -61,6 +62,13 @@ public:
         return interpolate(leaf, place, metrics_.field());
     }
     void prefetch(LeafIndex leaf) const { __builtin_prefetch(&corners_[leaf]); }
+    // Inlined, since GCC 12 leaves out calls of functions that do nothing but prefetch.
+    [[gnu::always_inline]] void prefetch_nodes(LeafIndex leaf) const {
+        const Corners& corners = corners_[leaf];
+        __builtin_prefetch(&positions_[corners.front()]);
+        __builtin_prefetch(&positions_[corners.back()]);
+        for (const NodeIndex corner : corners) __builtin_prefetch(&metrics_[corner]);
+    }
     template <class Node>
     Metric asked(const Topology<Node>& tree, const Point& place) const {
         return interpolate(tree.find(place), place, metrics_.asked());
