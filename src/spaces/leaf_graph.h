@@ -23,27 +23,30 @@ struct LeafGraph {
 /// A tree as parts that can be worked upon at the same time, and the inner nodes above them. The
 /// parts are a matter of the tree alone, not of the number of threads.
 struct TreeParts {
-    std::vector<TreePart> parts;  ///< in depth-first order
-    std::vector<TreePart> above;  ///< each after all inner nodes below it
+    std::vector<TreePart> parts;               ///< in depth-first order
+    std::vector<std::vector<TreePart>> above;  ///< by level, the root's first
 };
 
+/// Inner nodes of level `level` enter `above`, as long as that has such a level.
 template <class Node>
-void add_parts(const Topology<Node>& tree, const TreePart& part, int levels, TreeParts& all) {
-    if (levels == 0 || part.ref.is_leaf()) {
+void add_parts(const Topology<Node>& tree, const TreePart& part, std::size_t level,
+               TreeParts& all) {
+    if (level == all.above.size() || part.ref.is_leaf()) {
         all.parts.push_back(part);
         return;
     }
+    all.above[level].push_back(part);
     for (int c = 0; c < Node::arity; ++c) {
-        add_parts(tree, tree.child(part, c), levels - 1, all);
+        add_parts(tree, tree.child(part, c), level + 1, all);
     }
-    all.above.push_back(part);
 }
 
 /// At most 512 parts: cuts three times along each axis, or as often as that in all.
 template <class Node>
 TreeParts parts_of(const Topology<Node>& tree) {
     TreeParts all;
-    add_parts(tree, {tree.root(), tree.domain()}, Node::is_octant ? 3 : 9, all);
+    all.above.resize(Node::is_octant ? 3 : 9);
+    add_parts(tree, {tree.root(), tree.domain()}, 0, all);
     return all;
 }
 
@@ -71,8 +74,9 @@ void number_leaves(const Topology<Node>& tree, const TreeParts& all, LeafGraph& 
     });
 }
 
-/// Links across faces. Parts have no nodes in common, so all of them at the same time, and then
-/// what lies between them, fill each row in the order of one walk through the whole tree.
+/// Links across faces. Parts have no nodes in common, nor have inner nodes of one level above them,
+/// so all of them at the same time, and then what lies between the children of inner nodes, level
+/// after level, fill each row in the order of one walk through the whole tree.
 template <class Node>
 void link_across_faces(const Topology<Node>& tree, const TreeParts& all,
                        const std::vector<NodeIndex>& rank, NodeGraph& graph) {
@@ -84,8 +88,11 @@ void link_across_faces(const Topology<Node>& tree, const TreeParts& all,
         tbb::parallel_for(std::size_t{0}, all.parts.size(), [&](std::size_t p) {
             FacePairs<Node, decltype(visit)>(tree, visit).within(all.parts[p]);
         });
-        FacePairs<Node, decltype(visit)> between(tree, visit);
-        for (const TreePart& part : all.above) between.between_children(part);
+        for (auto level = all.above.rbegin(); level != all.above.rend(); ++level) {
+            tbb::parallel_for(std::size_t{0}, level->size(), [&](std::size_t i) {
+                FacePairs<Node, decltype(visit)>(tree, visit).between_children((*level)[i]);
+            });
+        }
     });
 }
 
