@@ -28,9 +28,9 @@ public:
     /// The next part of what is left: longer where sources tend to be met.
     std::span<const PointSource> next_part(std::span<const PointSource> left) {
         const auto found = static_cast<std::size_t>(std::count(met_.begin(), met_.end(), 1));
-        if (4 * found >= 3 * met_.size()) {
+        if (20 * found >= 19 * met_.size()) {
             length_ = std::min(2 * length_, longest);
-        } else if (2 * found < met_.size()) {
+        } else if (4 * found < 3 * met_.size()) {
             length_ = std::max(length_ / 2, shortest);
         }
         const auto part = left.first(std::min(length_, left.size()));
