@@ -51,7 +51,7 @@ CLI::App* add_convert(CLI::App& app, ConvertOptions& options, WordsByKey& given)
 
 CLI::App* add_build(CLI::App& app, BuildOptions& options, WordsByKey& given) {
     CLI::App* command = app.add_subcommand(
-        "build", "Make and grade one structure, and save it, for query and programs");
+        "build", "Make and grade one structure, and save it, for other commands and programs");
     add_study_input(*command, options.input);
     command->add_option("-o,--output", options.output, "File to write")
         ->required()
