@@ -39,6 +39,7 @@ public:
     struct Memory {
         IsotropicCones::Hint hint = 0;
         AnisotropicCones::Search search;
+        ConeCover cover;
     };
 
     /// Metrics at `x`, on the calling thread. Thread-safe.
@@ -71,6 +72,10 @@ public:
     /// Of isotropic sources: the one whose cone is the smallest at `x`, if that is less than
     /// `length`. The quicker the shorter the length is.
     std::optional<std::uint32_t> source_below(const Point& x, double length, Memory& memory) const;
+
+    /// Of isotropic sources: some that cover `box` are left in `memory.cover`; false where it has
+    /// no room for as many as it takes.
+    bool cover(const Box& box, double tolerance, Memory& memory) const;
 
     /// Of isotropic sources: indices of those that were not left out, each the smallest at its own
     /// place, as rounding allows.

@@ -78,9 +78,40 @@ std::optional<std::uint32_t> IsotropicCones::source_below(const Point& p, double
 }
 
 std::uint32_t IsotropicCones::source_of(const Point& p, double smallest, Hint hint) const {
+    return indices_[hint * leaf_size + static_cast<std::size_t>(lane_of(p, smallest, hint))];
+}
+
+Eigen::Index IsotropicCones::lane_of(const Point& p, double smallest, Hint leaf) const {
     Eigen::Index lane = 0;
-    while (length_at(leaves_[hint], lane, p) != smallest) ++lane;
-    return indices_[hint * leaf_size + static_cast<std::size_t>(lane)];
+    while (length_at(leaves_[leaf], lane, p) != smallest) ++lane;
+    return lane;
+}
+
+// Calls visit_leaf(leaf) for all leaves but those below children that `passed_over(node)` tells to
+// pass over, until one call returns false; returns whether none did.
+template <class PassedOver, class VisitLeaf>
+bool IsotropicCones::visit(const PassedOver& passed_over, const VisitLeaf& visit_leaf) const {
+    struct Part {
+        std::uint32_t level;
+        std::uint32_t node;  ///< within its level
+    };
+    // Seven siblings wait at each of at most eleven levels.
+    std::array<Part, 96> stack;
+    std::size_t height = 0;
+    stack[height++] = {0, 0};
+    const std::size_t levels = first_of_level_.size() - 1;
+    while (height > 0) {
+        const Part next = stack[--height];
+        if (next.level == levels) {
+            if (!visit_leaf(shape_.leaf_in(next.node))) return false;
+            continue;
+        }
+        const auto passed = passed_over(nodes_[first_of_level_[next.level] + next.node]);
+        for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(arity); ++c) {
+            if (!passed[c]) stack[height++] = {next.level + 1, arity * next.node + c};
+        }
+    }
+    return true;
 }
 
 // No cone's length differs by more than (g-1) R between the centre of a box and a place in it, R
@@ -91,28 +122,16 @@ bool IsotropicCones::gather(const Box& box, NearbyCones& nearby, Hint& hint) con
     const Point p = box.centre();
     const double reach =
         (smallest_length(p, hint) + 2 * slope_ * box.half_diagonal()) / (safely_ * safely_);
-    struct Part {
-        std::uint32_t level;
-        std::uint32_t node;  ///< within its level
-    };
-    std::array<Part, 96> stack;
-    std::size_t height = 0;
-    stack[height++] = {0, 0};
     std::array<std::size_t, most_leaves_gathered> leaves;
     std::size_t leaves_found = 0;
-    const std::size_t levels = first_of_level_.size() - 1;
-    while (height > 0) {
-        const Part next = stack[--height];
-        if (next.level == levels) {
-            if (leaves_found == leaves.size()) return false;
-            leaves[leaves_found++] = shape_.leaf_in(next.node);
-            continue;
-        }
-        const Children bounds = lower_bounds(nodes_[first_of_level_[next.level] + next.node], p);
-        for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(arity); ++c) {
-            if (bounds[c] <= reach) stack[height++] = {next.level + 1, arity * next.node + c};
-        }
-    }
+    const bool are_few =
+        visit([&](const Node& node) { return (lower_bounds(node, p) > reach).eval(); },
+              [&](std::size_t leaf) {
+                  if (leaves_found == leaves.size()) return false;
+                  leaves[leaves_found++] = leaf;
+                  return true;
+              });
+    if (!are_few) return false;
     for (const std::size_t number : std::span(leaves).first(leaves_found)) {
         const Leaf& leaf = leaves_[number];
         const Lanes lengths =
@@ -125,6 +144,49 @@ bool IsotropicCones::gather(const Box& box, NearbyCones& nearby, Hint& hint) con
         }
     }
     return true;
+}
+
+bool IsotropicCones::give_uncovered(std::size_t number, const Point& centre,
+                                    ConeCover& cover) const {
+    const Leaf& leaf = leaves_[number];
+    const auto distances_to = [&](const Point& p) -> Lanes {
+        return ((leaf.x - p.x()).square() + (leaf.y - p.y()).square() + (leaf.z - p.z()).square())
+            .sqrt();
+    };
+    const auto covered = cover.covered(distances_to(centre), leaf.length, distances_to);
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(leaf_size); ++i) {
+        const std::size_t item = number * leaf_size + static_cast<std::size_t>(i);
+        const Point position(leaf.x[i], leaf.y[i], leaf.z[i]);
+        if (!covered[i] && !cover.give(indices_[item], position, leaf.length[i])) return false;
+    }
+    return true;
+}
+
+// Those are given that the source which is the smallest at the centre does not cover.
+bool IsotropicCones::cover(const Box& box, double tolerance, ConeCover& cover, Hint& hint) const {
+    cover.reset(box, slope_, cap_, tolerance);
+    if (leaves_.empty()) return true;
+    const Point centre = box.centre();
+    const double smallest = smallest_length(centre, hint);
+    if (smallest < cap_) {
+        const Leaf& leaf = leaves_[hint];
+        const Eigen::Index lane = lane_of(centre, smallest, hint);
+        cover.choose(indices_[hint * leaf_size + static_cast<std::size_t>(lane)],
+                     {leaf.x[lane], leaf.y[lane], leaf.z[lane]}, leaf.length[lane]);
+    }
+    const bool all_given = visit(
+        [&](const Node& node) {
+            const Children reach = (node.half_thickness.square() + node.radius.square()).sqrt();
+            return cover.covered(distances(node, centre), node.length,
+                                 [&](const Point& q) -> Children {
+                                     return ((node.x - q.x()).square() + (node.y - q.y()).square() +
+                                             (node.z - q.z()).square())
+                                                .sqrt() +
+                                            reach;
+                                 });
+        },
+        [&](std::size_t leaf) { return give_uncovered(leaf, centre, cover); });
+    return all_given && cover.complete();
 }
 
 double IsotropicCones::search(const Point& p, double cap, double tolerance, Hint& hint) const {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "cones/cone_cover.h"
 #include "cones/cone_tree.h"
 #include "cones/nearby_cones.h"
 #include "geometry/box.h"
@@ -50,6 +51,10 @@ public:
     /// The source that has the smallest length at `p`, if that is less than `length`.
     std::optional<std::uint32_t> source_below(const Point& p, double length, Hint& hint) const;
 
+    /// Chooses sources that cover `box`, by their indices; false where the cover has no room for as
+    /// many as it takes.
+    bool cover(const Box& box, double tolerance, ConeCover& cover, Hint& hint) const;
+
     /// Indices of the sources that were not left out, those near to each other together. Each has
     /// the smallest length at its own place.
     std::span<const std::uint32_t> kept() const { return indices_; }
@@ -90,8 +95,12 @@ private:
     Children distances(const Node& node, const Point& p) const;
     Children lower_bounds(const Node& node, const Point& p) const;
     double length_at(const Leaf& leaf, Eigen::Index lane, const Point& p) const;
+    Eigen::Index lane_of(const Point& p, double smallest, Hint leaf) const;
     void visit_leaf(std::uint32_t leaf, const Point& p, double& smallest, Hint& hint) const;
+    bool give_uncovered(std::size_t leaf, const Point& centre, ConeCover& cover) const;
     double search(const Point& p, double cap, double tolerance, Hint& hint) const;
+    template <class PassedOver, class VisitLeaf>
+    bool visit(const PassedOver& passed_over, const VisitLeaf& visit_leaf) const;
     template <class LowerBounds, class VisitLeaf>
     double search(double cap, double tolerance, Hint& hint, const LowerBounds& lower_bounds,
                   const VisitLeaf& visit_leaf) const;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -85,8 +86,12 @@ private:
     template <class Split>
     bool round(bool proved, Split&& split) {
         const std::vector<AdaptedLeaf> young = leaves_to_look_at(LeafState::changed);
-        storage_.fit(tree_, leaves_to_look_at(LeafState::fresh), field_, proved);
-        look(young, proved);
+        if (proved && covers()) {
+            cover(young);
+        } else {
+            storage_.fit(tree_, leaves_to_look_at(LeafState::fresh), field_, proved);
+            look(young, proved);
+        }
         for (const AdaptedLeaf& l : young) states_[l.leaf] = LeafState::settled;
         bool changes = false;
         std::vector<LeafIndex> cut;
@@ -101,12 +106,42 @@ private:
                 continue;
             }
             cut.clear();
-            changes = split(l.box, departure.along, cut) || changes;
+            const bool is_cut = split(l.box, departure.along, cut);
+            changes = is_cut || changes;
+            if (!is_cut && std::isinf(departure.worst)) departure = at_some_places(l);
             departures_.resize(tree_.leaves());
             states_.resize(tree_.leaves(), LeafState::fresh);
             for (const LeafIndex leaf : cut) states_[leaf] = LeafState::fresh;
         }
         return changes;
+    }
+
+    // Whether the storage can be brought to keep the target everywhere in a leaf.
+    bool covers() const {
+        if constexpr (requires { &Storage::cover; }) return field_.has_ranges();
+        return false;
+    }
+
+    // Leaves that cannot be brought to that depart without bound, as far as is known.
+    void cover(std::span<const AdaptedLeaf> leaves) {
+        if constexpr (requires { &Storage::cover; }) {
+            std::vector<std::uint8_t> is_kept(leaves.size(), 0);
+            storage_.cover(leaves, field_, is_kept);
+            constexpr double infinity = std::numeric_limits<double>::infinity();
+            const double most_kept = sources_.empty() ? 0 : field_.target();
+            for (std::size_t i = 0; i < leaves.size(); ++i) {
+                departures_[leaves[i].leaf] = {};
+                departures_[leaves[i].leaf].worst = is_kept[i] != 0 ? most_kept : infinity;
+            }
+        }
+    }
+
+    Departure at_some_places(const AdaptedLeaf& leaf) const {
+        constexpr std::uint64_t places = 64;
+        NearbyField nearby(field_);
+        nearby.enter(leaf.box, true);
+        return LeafJudge<Node, Storage>(tree_, storage_, field_.target())
+            .at_sequence(leaf, nearby, 0, places);
     }
 
     // Those in this state, or in a later one.

@@ -109,6 +109,23 @@ void AnchoredValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& f
     }
 }
 
+void AnchoredValues::cover(std::span<const AdaptedLeaf> leaves, const GoalField& field,
+                           std::span<std::uint8_t> is_kept) {
+    const double tolerance = factor_of(field.target()) - 1;
+    std::vector<SourceIndex> chosen(leaves.size() * most);
+    std::vector<std::size_t> count(leaves.size());
+    in_parallel(leaves.size(), [&, memory = ConeField::Memory()](std::size_t i) mutable {
+        memory.hint = 0;  // of several sources that are equally near the same is found always
+        is_kept[i] = field.cones().cover(leaves[i].box, tolerance, memory) ? 1 : 0;
+        const auto sources = memory.cover.sources();
+        std::ranges::copy(sources, chosen.begin() + static_cast<std::ptrdiff_t>(i * most));
+        count[i] = sources.size();
+    });
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        anchors_.set(leaves[i].leaf, std::span(chosen).subspan(i * most, count[i]));
+    }
+}
+
 bool AnchoredValues::learn(LeafIndex leaf, const Point& x, const GoalField& field) {
     std::vector<SourceIndex> governing;
     Metric m;

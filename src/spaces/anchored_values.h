@@ -76,6 +76,10 @@ public:
         fits_tensors_loosely_ = !proved;
         fit(leaves, field, sources_.all_isotropic() || proved ? LeafPlaces::all : 1);
     }
+    /// Anchors for these leaves that keep within the target everywhere in them, of an isotropic
+    /// field; `is_kept` tells where so many are not enough.
+    void cover(std::span<const AdaptedLeaf> leaves, const GoalField& field,
+               std::span<std::uint8_t> is_kept);
     bool is_fitted(LeafIndex leaf) const {
         return (fits_tensors_loosely_ && !sources_.all_isotropic()) ||
                anchors_.of(leaf).size() < most;
@@ -97,7 +101,7 @@ public:
 
 private:
     // Anchors of a leaf. Longer lists would make queries slow where one more cut makes them short.
-    static constexpr std::size_t most = 16;
+    static constexpr std::size_t most = ConeCover::room;
 
     // At so many places, the centre first.
     void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field, std::size_t places);

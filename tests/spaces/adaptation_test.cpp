@@ -92,10 +92,11 @@ TEST_CASE("sphere at a tenth: the paper's trees and the anchored ones, on 101^3 
     const std::vector<PointSource> sources = sample_sphere({.rho = 1});
     const auto field = exact_reference(sources, g, largest_metric(domain));
     const Probes probes = make_probes(*field, cell_centres(domain, 101));
-    const auto adapted = [&](const CatalogueEntry& entry, double most_megabytes) {
+    const auto adapted = [&](const CatalogueEntry& entry, double most_megabytes,
+                             double target = 0.1) {
         CAPTURE(entry.id);
         const auto space = entry.make({.domain = domain});
-        const AdaptationReport report = space->adapt({sources, nullptr, g, 0.1});
+        const AdaptationReport report = space->adapt({sources, nullptr, g, target});
         CHECK(report.met);
         CHECK(space->footprint().bytes_total() <= static_cast<std::size_t>(most_megabytes * 1e6));
         return accuracy(*space, probes).max;
@@ -104,11 +105,12 @@ TEST_CASE("sphere at a tenth: the paper's trees and the anchored ones, on 101^3 
     CHECK(adapted(tree_catalogue()[3], 4) <= 0.1);      // K_oL
     CHECK(adapted(tree_catalogue()[2], 1) <= 0.1);      // K_V
     CHECK(adapted(anchored_catalogue()[1], 2) <= 0.1);  // K_oLA
-    // Peaks between the places that were looked at: here one of a million places.
-    CHECK(adapted(anchored_catalogue()[0], 2) <= 0.15);  // K_LA
+    CHECK(adapted(anchored_catalogue()[0], 2) <= 0.1);  // K_LA
+    CHECK(adapted(anchored_catalogue()[1], 4, 0.02) <= 0.02);
+    CHECK(adapted(anchored_catalogue()[0], 4, 0.02) <= 0.02);
 }
 
-TEST_CASE("constant leaves of isotropic sources keep the target everywhere, as bounds prove") {
+TEST_CASE("leaves of constants and of sources keep the target everywhere, as bounds prove") {
     std::vector<PointSource> scattered;
     for (const Point& x : random_points(domain, 300, 17)) {
         scattered.push_back({x, Metric::isotropic(0.02 + 0.1 * std::abs(x.x() * x.y()))});
@@ -116,15 +118,17 @@ TEST_CASE("constant leaves of isotropic sources keep the target everywhere, as b
     for (const auto& sources : {scattered, sample_sphere({.h = 0.08})}) {
         const auto field = exact_reference(sources, g, largest_metric(domain));
         const Probes probes = make_probes(*field, random_points(domain, 200000, 19));
-        for (const CatalogueEntry& entry : tree_catalogue()) {
-            if (entry.id != "K_L" && entry.id != "K_oL" && entry.id != "K_oLB") continue;
+        for (const CatalogueEntry& entry : trees()) {
+            const bool is_anchored = entry.group == "anchored";
+            const bool is_constant = entry.id == "K_L" || entry.id == "K_oL" || entry.id == "K_oLB";
+            if (!is_constant && !is_anchored) continue;
             CAPTURE(entry.id);
             const auto space = entry.make({.domain = domain});
             const AdaptationReport report = space->adapt({sources, nullptr, g, 0.2});
             CHECK(report.met);
             const double seen = accuracy(*space, probes).max;
             CHECK(seen <= report.reached);
-            CHECK(seen > 0.5 * report.reached);
+            CHECK(seen > (is_anchored ? 0.1 : 0.5) * report.reached);
         }
     }
 }

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cones/tensor_lanes.h"
+#include "geometry/box.h"
+#include "geometry/point.h"
+
+namespace controlspace {
+
+/// A choice of sources whose cones h_i + (g-1) |p - Q_i| alone make a length that is nowhere in a
+/// box longer than the smallest of all sources by more than a fraction, the tolerance. First given
+/// the sources that are not covered by those chosen already, then asked to choose.
+class ConeCover {
+public:
+    /// Most sources that are chosen.
+    static constexpr std::size_t room = 16;
+
+    /// Nothing chosen, nothing given. `slope` is g - 1; lengths of `cap` or more do not matter.
+    void reset(const Box& box, double slope, double cap, double tolerance);
+
+    /// Of sources with these distances from the centre of the box and these lengths, both or lower:
+    /// which are covered. `apart(q)` is how far they are from the place q, or more.
+    template <class Numbers, class Apart>
+    auto covered(const Numbers& distances, const Numbers& lengths, const Apart& apart) const {
+        const Numbers away = (distances - radius_).max(0);
+        const Numbers least = lengths + slope_ * away;
+        const Numbers most_at_centre = lengths + slope_ * distances + tolerance_ * least;
+        const double change = 2 * slope_ * radius_;
+        auto is_covered = ((1 + tolerance_) * least >= cap_).eval();
+        for (std::size_t i = 0; i < size_ && !is_covered.all(); ++i) {
+            const Anchor& a = anchors_[i];
+            const Numbers gaps = a.at_centre - most_at_centre;
+            is_covered = is_covered || gaps + change <= 0 ||
+                         gaps * (a.away + away) + change * apart(a.position) <= 0;
+        }
+        return is_covered;
+    }
+
+    /// Chooses this source, as long as there is room.
+    bool choose(std::uint32_t source, const Point& position, double length);
+    /// Gives it one that is not covered; false where these are too many to go on.
+    bool give(std::uint32_t source, const Point& position, double length);
+    /// Chooses until all that was given is covered; false where there is no room for that.
+    bool complete();
+
+    /// The numbers of those chosen.
+    std::span<const std::uint32_t> sources() const { return {sources_.data(), size_}; }
+
+private:
+    struct Anchor {
+        Point position;
+        double length;
+        double at_centre;  ///< length of its cone there
+        double away;       ///< from all of the box, at least
+    };
+    struct Eight {
+        VectorLanes position;
+        Lanes length;  ///< infinite lengths fill up the last lanes
+    };
+    struct List {
+        std::vector<Eight> eights;
+        std::vector<std::uint32_t> sources;
+
+        void clear();
+        void add(std::uint32_t source, const Point& position, double length);
+    };
+    static constexpr std::size_t halvings = 2;
+
+    void enter(const Box& box);
+    void look_at(Anchor& anchor) const;
+    void list_uncovered(const List& from, List& to) const;
+    bool choose_smallest(const List& list);
+    bool complete(const Box& box, std::size_t depth);
+
+    Box box_;
+    double slope_ = 0, cap_ = 0, tolerance_ = 0;
+    Point centre_ = Point::Zero();
+    double radius_ = 0;
+    std::size_t size_ = 0;
+    std::array<Anchor, room> anchors_;
+    std::array<std::uint32_t, room> sources_{};
+    // What was given, what of it is not covered in the box, in a part of it, in a part of that, and
+    // room for one more.
+    std::array<List, halvings + 3> lists_;
+};
+
+}  // namespace controlspace
