@@ -26,26 +26,15 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = 1e-9;  // and more than that
 constexpr std::size_t most_given = 512;
 
-Lanes lengths_of(const VectorLanes& v) {
-    return (v.x.square() + v.y.square() + v.z.square()).sqrt();
-}
-
 }  // namespace
 
 void ConeCover::List::clear() {
-    eights.clear();
+    cones.clear();
     sources.clear();
 }
 
 void ConeCover::List::add(std::uint32_t source, const Point& position, double length) {
-    const auto lane = static_cast<Eigen::Index>(sources.size() % lane_count);
-    if (lane == 0) {
-        eights.emplace_back();
-        eights.back().position = VectorLanes::zero();
-        eights.back().length.setConstant(infinity);
-    }
-    eights.back().position.set(lane, position);
-    eights.back().length[lane] = length;
+    cones.add(position, length);
     sources.push_back(source);
 }
 
@@ -87,11 +76,11 @@ bool ConeCover::give(std::uint32_t source, const Point& position, double length)
 
 void ConeCover::list_uncovered(const List& from, List& to) const {
     to.clear();
-    for (std::size_t e = 0; e < from.eights.size(); ++e) {
-        const Eight& eight = from.eights[e];
-        const auto is_covered =
-            covered(lengths_of(displacements(eight.position, centre_)), eight.length,
-                    [&](const Point& q) { return lengths_of(displacements(eight.position, q)); });
+    const auto& eights = from.cones.eights();
+    for (std::size_t e = 0; e < eights.size(); ++e) {
+        const ConeList::Eight& eight = eights[e];
+        const auto is_covered = covered(eight.distances(centre_), eight.length,
+                                        [&](const Point& q) { return eight.distances(q); });
         if (is_covered.all()) continue;
         for (Eigen::Index i = 0; i < lane_count; ++i) {
             if (is_covered[i]) continue;
@@ -105,17 +94,16 @@ void ConeCover::list_uncovered(const List& from, List& to) const {
 bool ConeCover::choose_smallest(const List& list) {
     double smallest = infinity;
     std::size_t number = 0;
-    for (std::size_t e = 0; e < list.eights.size(); ++e) {
-        const Eight& eight = list.eights[e];
+    const auto& eights = list.cones.eights();
+    for (std::size_t e = 0; e < eights.size(); ++e) {
+        const ConeList::Eight& eight = eights[e];
         Eigen::Index lane = 0;
-        const double least =
-            (eight.length + slope_ * lengths_of(displacements(eight.position, centre_)))
-                .minCoeff(&lane);
+        const double least = (eight.length + slope_ * eight.distances(centre_)).minCoeff(&lane);
         if (!(least < smallest)) continue;
         smallest = least;
         number = e * lane_count + static_cast<std::size_t>(lane);
     }
-    const Eight& eight = list.eights[number / lane_count];
+    const ConeList::Eight& eight = eights[number / lane_count];
     const auto lane = static_cast<Eigen::Index>(number % lane_count);
     return choose(list.sources[number], eight.position[lane], eight.length[lane]);
 }

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "cones/tensor_lanes.h"
+#include "cones/cone_list.h"
 #include "geometry/box.h"
 #include "geometry/point.h"
 
@@ -58,12 +58,8 @@ private:
         double at_centre;  ///< length of its cone there
         double away;       ///< from all of the box, at least
     };
-    struct Eight {
-        VectorLanes position;
-        Lanes length;  ///< infinite lengths fill up the last lanes
-    };
     struct List {
-        std::vector<Eight> eights;
+        ConeList cones;
         std::vector<std::uint32_t> sources;
 
         void clear();

@@ -95,8 +95,8 @@ std::optional<std::uint32_t> ConeField::source_below(const Point& x, double leng
     return std::get<IsotropicCones>(cones_).source_below(x, length, memory.hint);
 }
 
-bool ConeField::cover(const Box& box, double tolerance, Memory& memory) const {
-    return std::get<IsotropicCones>(cones_).cover(box, tolerance, memory.cover, memory.hint);
+bool ConeField::cover(const Box& box, double tolerance, ConeCover& cover, Memory& memory) const {
+    return std::get<IsotropicCones>(cones_).cover(box, tolerance, cover, memory.hint);
 }
 
 std::size_t ConeField::dropped() const {

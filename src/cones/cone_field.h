@@ -39,7 +39,6 @@ public:
     struct Memory {
         IsotropicCones::Hint hint = 0;
         AnisotropicCones::Search search;
-        ConeCover cover;
     };
 
     /// Metrics at `x`, on the calling thread. Thread-safe.
@@ -73,9 +72,8 @@ public:
     /// `length`. The quicker the shorter the length is.
     std::optional<std::uint32_t> source_below(const Point& x, double length, Memory& memory) const;
 
-    /// Of isotropic sources: some that cover `box` are left in `memory.cover`; false where it has
-    /// no room for as many as it takes.
-    bool cover(const Box& box, double tolerance, Memory& memory) const;
+    /// Of isotropic sources: chooses some that cover `box`, as `IsotropicCones::cover` does.
+    bool cover(const Box& box, double tolerance, ConeCover& cover, Memory& memory) const;
 
     /// Of isotropic sources: indices of those that were not left out, each the smallest at its own
     /// place, as rounding allows.

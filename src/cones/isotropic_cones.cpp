@@ -45,10 +45,7 @@ void IsotropicCones::visit_leaf(std::uint32_t index, const Point& p, double& sma
                                 Hint& hint) const {
     // First as bounds have them, all lanes: only those near to the least may have the smallest.
     const Leaf& leaf = leaves_[index];
-    const Lanes lengths =
-        leaf.length +
-        slope_ * ((leaf.x - p.x()).square() + (leaf.y - p.y()).square() + (leaf.z - p.z()).square())
-                     .sqrt();
+    const Lanes lengths = leaf.length + slope_ * leaf.distances(p);
     const double least = lengths.minCoeff();
     if (!(safely_ * least < smallest)) return;
     const double doubtful = least / (safely_ * safely_);
@@ -134,10 +131,7 @@ bool IsotropicCones::gather(const Box& box, NearbyCones& nearby, Hint& hint) con
     if (!are_few) return false;
     for (const std::size_t number : std::span(leaves).first(leaves_found)) {
         const Leaf& leaf = leaves_[number];
-        const Lanes lengths =
-            leaf.length + slope_ * ((leaf.x - p.x()).square() + (leaf.y - p.y()).square() +
-                                    (leaf.z - p.z()).square())
-                                       .sqrt();
+        const Lanes lengths = leaf.length + slope_ * leaf.distances(p);
         for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(leaf_size); ++i) {
             if (!(lengths[i] <= reach) || leaf.length[i] == infinity) continue;
             nearby.add({leaf.x[i], leaf.y[i], leaf.z[i]}, leaf.length[i]);
@@ -149,11 +143,8 @@ bool IsotropicCones::gather(const Box& box, NearbyCones& nearby, Hint& hint) con
 bool IsotropicCones::give_uncovered(std::size_t number, const Point& centre,
                                     ConeCover& cover) const {
     const Leaf& leaf = leaves_[number];
-    const auto distances_to = [&](const Point& p) -> Lanes {
-        return ((leaf.x - p.x()).square() + (leaf.y - p.y()).square() + (leaf.z - p.z()).square())
-            .sqrt();
-    };
-    const auto covered = cover.covered(distances_to(centre), leaf.length, distances_to);
+    const auto covered = cover.covered(leaf.distances(centre), leaf.length,
+                                       [&](const Point& q) { return leaf.distances(q); });
     for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(leaf_size); ++i) {
         const std::size_t item = number * leaf_size + static_cast<std::size_t>(i);
         const Point position(leaf.x[i], leaf.y[i], leaf.z[i]);

@@ -87,6 +87,10 @@ private:
     };
     struct Leaf {
         Lanes x, y, z, length;  ///< infinite lengths fill up the last lanes
+
+        Lanes distances(const Point& p) const {
+            return ((x - p.x()).square() + (y - p.y()).square() + (z - p.z()).square()).sqrt();
+        }
     };
     struct Cylinder;
 

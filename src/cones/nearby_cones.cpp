@@ -22,40 +22,25 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
 
-Lanes norms(const VectorLanes& v) { return (v.x.square() + v.y.square() + v.z.square()).sqrt(); }
-
 }  // namespace
 
 void NearbyCones::reset(double slope, double cap) {
     slope_ = slope;
     cap_ = cap;
-    size_ = 0;
-    eights_.clear();
-}
-
-void NearbyCones::add(const Point& position, double length) {
-    const auto lane = static_cast<Eigen::Index>(size_ % lane_count);
-    if (lane == 0) {
-        eights_.emplace_back();
-        eights_.back().position = VectorLanes::zero();
-        eights_.back().length.setConstant(infinity);
-    }
-    Eight& last = eights_.back();
-    last.position.set(lane, position);
-    last.length[lane] = length;
-    ++size_;
+    cones_.clear();
 }
 
 void NearbyCones::narrow(const NearbyCones& others, const Box& box) {
     reset(others.slope_, others.cap_);
     const Point centre = box.centre();
     const double radius = box.half_diagonal() * (1 + rounding);
-    distances_.resize(others.eights_.size());
+    const auto& eights = others.cones_.eights();
+    distances_.resize(eights.size());
     double smallest = infinity;
     std::size_t smallest_eight = 0;
-    for (std::size_t e = 0; e < others.eights_.size(); ++e) {
-        const Eight& eight = others.eights_[e];
-        distances_[e] = norms(displacements(eight.position, centre));
+    for (std::size_t e = 0; e < eights.size(); ++e) {
+        const ConeList::Eight& eight = eights[e];
+        distances_[e] = eight.distances(centre);
         const double least = (eight.length + slope_ * distances_[e]).minCoeff();
         if (least < smallest) {
             smallest = least;
@@ -63,7 +48,7 @@ void NearbyCones::narrow(const NearbyCones& others, const Box& box) {
         }
     }
     if (!(smallest < infinity)) return;
-    const Eight& of_smallest = others.eights_[smallest_eight];
+    const ConeList::Eight& of_smallest = eights[smallest_eight];
     Eigen::Index lane = 0;
     (of_smallest.length + slope_ * distances_[smallest_eight]).minCoeff(&lane);
     const Point position = of_smallest.position[lane];
@@ -71,11 +56,11 @@ void NearbyCones::narrow(const NearbyCones& others, const Box& box) {
 
     const double most_change = 2 * slope_ * radius;
     const double room_below_cap = slope_ * radius + cap_;
-    for (std::size_t e = 0; e < others.eights_.size(); ++e) {
-        const Eight& eight = others.eights_[e];
+    for (std::size_t e = 0; e < eights.size(); ++e) {
+        const ConeList::Eight& eight = eights[e];
         const Lanes lengths = (eight.length + slope_ * distances_[e]) * (1 - rounding);
         const Lanes gaps = lengths - smallest;
-        const Lanes apart = norms(displacements(eight.position, position)) * (1 + rounding);
+        const Lanes apart = eight.distances(position) * (1 + rounding);
         const Lanes away = (distances_[e] - radius).max(0) + distance;
         for (Eigen::Index i = 0; i < lane_count; ++i) {
             const bool matters = gaps[i] <= most_change && lengths[i] <= room_below_cap &&
@@ -87,13 +72,11 @@ void NearbyCones::narrow(const NearbyCones& others, const Box& box) {
     }
 }
 
-Lanes NearbyCones::lengths_at(const Eight& eight, const Point& p) const {
-    return eight.length + slope_ * norms(displacements(eight.position, p));
-}
-
 double NearbyCones::smallest_length(const Point& p) const {
     Lanes smallest = Lanes::Constant(cap_);
-    for (const Eight& eight : eights_) smallest = smallest.min(lengths_at(eight, p));
+    for (const ConeList::Eight& eight : cones_.eights()) {
+        smallest = smallest.min(eight.length + slope_ * eight.distances(p));
+    }
     return smallest.minCoeff();
 }
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "cones/tensor_lanes.h"
+#include "cones/cone_list.h"
 #include "geometry/box.h"
 #include "geometry/point.h"
 
@@ -15,26 +15,19 @@ class NearbyCones {
 public:
     /// None so far. `slope` is g - 1; lengths of `cap` or more do not matter.
     void reset(double slope, double cap);
-    void add(const Point& position, double length);
+    void add(const Point& position, double length) { cones_.add(position, length); }
     /// Makes these out of `others`, which should be all that matter in `box`: those that can be the
     /// smallest somewhere in it.
     void narrow(const NearbyCones& others, const Box& box);
 
-    std::size_t size() const { return size_; }
+    std::size_t size() const { return cones_.size(); }
     /// The smallest length at a place in the box, or the cap where none is below it. To rounding.
     double smallest_length(const Point& p) const;
 
 private:
-    struct Eight {
-        VectorLanes position;
-        Lanes length;  ///< infinite lengths fill up the last lanes
-    };
-    Lanes lengths_at(const Eight& eight, const Point& p) const;
-
     double slope_ = 0;
     double cap_ = 0;
-    std::size_t size_ = 0;
-    std::vector<Eight> eights_;
+    ConeList cones_;
     std::vector<Lanes> distances_;  ///< room for `narrow`
 };
 

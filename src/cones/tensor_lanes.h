@@ -55,6 +55,10 @@ inline VectorLanes displacements(const VectorLanes& v, const Point& p) {
     return {p.x() - v.x, p.y() - v.y, p.z() - v.z};
 }
 
+inline Lanes norms(const VectorLanes& v) {
+    return (v.x.square() + v.y.square() + v.z.square()).sqrt();
+}
+
 /// M^2.
 inline TensorLanes square(const TensorLanes& m) {
     return {m.xx.square() + m.xy.square() + m.xz.square(),

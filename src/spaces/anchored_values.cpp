@@ -114,10 +114,11 @@ void AnchoredValues::cover(std::span<const AdaptedLeaf> leaves, const GoalField&
     const double tolerance = factor_of(field.target()) - 1;
     std::vector<SourceIndex> chosen(leaves.size() * most);
     std::vector<std::size_t> count(leaves.size());
-    in_parallel(leaves.size(), [&, memory = ConeField::Memory()](std::size_t i) mutable {
+    in_parallel(leaves.size(), [&, memory = ConeField::Memory(),
+                                cover = ConeCover()](std::size_t i) mutable {
         memory.hint = 0;  // of several sources that are equally near the same is found always
-        is_kept[i] = field.cones().cover(leaves[i].box, tolerance, memory) ? 1 : 0;
-        const auto sources = memory.cover.sources();
+        is_kept[i] = field.cones().cover(leaves[i].box, tolerance, cover, memory) ? 1 : 0;
+        const auto sources = cover.sources();
         std::ranges::copy(sources, chosen.begin() + static_cast<std::ptrdiff_t>(i * most));
         count[i] = sources.size();
     });

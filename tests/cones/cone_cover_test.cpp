@@ -54,6 +54,7 @@ TEST_CASE("sources that cover a box make the exact field there, up to the tolera
         std::vector<std::uint32_t> all(sources.size());
         std::iota(all.begin(), all.end(), 0u);
         ConeField::Memory memory;
+        ConeCover cover;
         int covered = 0, refused = 0;
         double most = 0;
         for (int k = 0; k < 300; ++k) {
@@ -62,7 +63,7 @@ TEST_CASE("sources that cover a box make the exact field there, up to the tolera
                                 Vector(1, draw.uniform(0.3, 1), draw.uniform(0.3, 1));
             const Box box{centre - half, centre + half};
             const double tolerance = std::pow(10, draw.uniform(-2, -0.3));
-            if (!field.cover(box, tolerance, memory)) {
+            if (!field.cover(box, tolerance, cover, memory)) {
                 ++refused;
                 continue;
             }
@@ -70,7 +71,7 @@ TEST_CASE("sources that cover a box make the exact field there, up to the tolera
             for (int i = 0; i < 40; ++i) {
                 const Point p = place_in(draw, box);
                 const double exact = smallest_at(p, sources, all);
-                const double own = smallest_at(p, sources, memory.cover.sources());
+                const double own = smallest_at(p, sources, cover.sources());
                 REQUIRE(own <= (1 + tolerance) * exact * (1 + 1e-12));
                 most = std::max(most, (own / exact - 1) / tolerance);
             }
@@ -84,10 +85,11 @@ TEST_CASE("sources that cover a box make the exact field there, up to the tolera
 TEST_CASE("a cover takes no more sources than it needs") {
     const Box box{Point::Constant(-0.1), Point::Constant(0.1)};
     ConeField::Memory memory;
+    ConeCover cover;
     const auto count = [&](const std::vector<PointSource>& sources) {
         const ConeField field(sources, g, wide);
-        REQUIRE(field.cover(box, 0.05, memory));
-        return memory.cover.sources().size();
+        REQUIRE(field.cover(box, 0.05, cover, memory));
+        return cover.sources().size();
     };
     const PointSource here{Point(0.02, 0, 0), Metric::isotropic(0.1)};
     CHECK(count({}) == 0);
@@ -105,8 +107,9 @@ TEST_CASE("a box that more sources govern than there is room for is not covered"
     }
     const ConeField field(sources, g, wide);
     ConeField::Memory memory;
-    CHECK_FALSE(field.cover({Point::Constant(-1), Point::Constant(1)}, 0.1, memory));
-    CHECK(memory.cover.sources().size() <= ConeCover::room);
-    CHECK(field.cover({Point::Constant(0), Point::Constant(1)}, 0.1, memory));
-    CHECK(memory.cover.sources().size() == 8);
+    ConeCover cover;
+    CHECK_FALSE(field.cover({Point::Constant(-1), Point::Constant(1)}, 0.1, cover, memory));
+    CHECK(cover.sources().size() <= ConeCover::room);
+    CHECK(field.cover({Point::Constant(0), Point::Constant(1)}, 0.1, cover, memory));
+    CHECK(cover.sources().size() == 8);
 }
