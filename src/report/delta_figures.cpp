@@ -154,15 +154,15 @@ Figure cross_validation(const SampledFields& fields, const std::string& name,
         "nothing but the sources agree where both are right. Left: 95th percentile; right: "
         "maximum.";
     figure.made_by = made_by;
-    const int side = height_of(all.size(), 46);
-    figure.width = 2 * side;
-    figure.height = side;
     figure.data = "$pairs << EOD\n";
     std::string names;
+    std::size_t longest_name = 0;
     const std::size_t n = all.size();
     std::vector<Spread> spreads(n * n);
     for (std::size_t a = 0; a < n; ++a) {
-        names += fmt::format("{}{} {}", a == 0 ? "" : ", ", gnuplot_string(label_of(*all[a])), a);
+        const std::string label = label_of(*all[a]);
+        longest_name = std::max(longest_name, label.size());
+        names += fmt::format("{}{} {}", a == 0 ? "" : ", ", gnuplot_string(label), a);
         for (std::size_t b = 0; b < a; ++b) {
             spreads[a * n + b] = spreads[b * n + a] = spread_of(deltas(*all[a], *all[b]));
         }
@@ -171,24 +171,35 @@ Figure cross_validation(const SampledFields& fields, const std::string& name,
         figure.data += fmt::format("{} {} {} {}\n", i / n, i % n, spreads[i].p95, spreads[i].max);
     }
     figure.data += "EOD\n";
-    const auto panel = [&](int column, std::string_view title) {
+    // In pixels: gnuplot would shrink the cells to nothing beside long names.
+    const double side = std::clamp(40.0 * static_cast<double>(n), 240.0, 6000.0);
+    const double names_width = 8 + 7.5 * static_cast<double>(longest_name);
+    const double panel_width = names_width + 1.08 * side + 70;  // with the colours' bar
+    const double names_height = 30 + 0.65 * names_width;
+    figure.width = static_cast<int>(2 * panel_width);
+    figure.height = static_cast<int>(80 + side + names_height + 30);  // titles, the command
+    const auto panel = [&](double left, int column, std::string_view title) {
+        const double bottom = names_height + 30;
         // Light numbers on dark cells.
         return fmt::format(
-            "set title '{1}'\nplot $pairs using 1:2:(${0} > {2} ? ${0} : {2}) with image, "
-            "$pairs using 1:2:(sprintf('%.2g', ${0})):(${0} > 0.05 ? 0xffffff : 0x000000) with "
-            "labels font ',7' textcolor rgb variable\n",
-            column, title, smallest_drawn_error);
+            "set lmargin at screen {3:.5f}\nset rmargin at screen {4:.5f}\n"
+            "set bmargin at screen {5:.5f}\nset tmargin at screen {6:.5f}\n"
+            "set title '{1}'\nplot $pairs using 1:2:(${0} > {2} ? ${0} : {2}) with image pixels, "
+            "$pairs using 1:2:(sprintf(${0} > 0 && ${0} < 0.01 ? '%.0e' : '%.2g', ${0})):"
+            "(${0} > 0.05 ? 0xffffff : 0x000000) with labels font ',7' textcolor rgb variable\n",
+            column, title, smallest_drawn_error, (left + names_width) / figure.width,
+            (left + names_width + side) / figure.width, bottom / figure.height,
+            (bottom + side) / figure.height);
     };
     figure.commands =
         fmt::format(
-            "set multiplot layout 1,2 title {}\nunset key\nset size ratio 1\n"
-            "set logscale cb\nset cbrange [{}:10]\nset cblabel 'δ'\nset format cb '%g'\n"
+            "set multiplot title {}\nunset key\n"
+            "set logscale cb\nset cbrange [{}:10]\nset format cb '%g'\n"
             "set xrange [-0.5:{}.5]\nset yrange [{}.5:-0.5]\n"
             "set xtics ({}) rotate by 45 right scale 0\nset ytics ({}) scale 0\n",
-            gnuplot_title(figure.title), smallest_drawn_error, all.size() - 1, all.size() - 1,
-            names, names) +
-        std::string(error_palette) + panel(3, "95th percentile") + "unset label 999\n" +
-        panel(4, "maximum") + "unset multiplot\n";
+            gnuplot_title(figure.title), smallest_drawn_error, n - 1, n - 1, names, names) +
+        std::string(error_palette) + panel(0, 3, "δ, 95th percentile") + "unset label 999\n" +
+        panel(panel_width, 4, "δ, maximum") + "unset multiplot\n";
     return figure;
 }
 

@@ -97,7 +97,7 @@ std::string html_figure(const Figure& figure, std::string_view bytes) {
     return fmt::format(
         "<figure id=\"{0}\">\n<img src=\"data:image/{7};base64,{1}\" width=\"{2}\" "
         "height=\"{3}\" alt=\"{4}\" />\n<figcaption><b>{4}</b><br />{5}<br />Made by "
-        "<code>{6}</code>; pictures/{0}.svg, .png, .gp</figcaption>\n</figure>\n",
+        "<code>{6}</code>; report-pictures/{0}.svg, .png, .gp</figcaption>\n</figure>\n",
         html_text(figure.name), base64(bytes), figure.width, figure.height, html_text(figure.title),
         html_text(figure.caption), html_text(figure.made_by), figure.raster ? "png" : "svg+xml");
 }

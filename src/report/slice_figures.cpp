@@ -69,14 +69,14 @@ public:
     }
 
     std::string panel(std::string_view block, std::string_view title, const Range& colours,
-                      std::string_view unit, bool outlined) const {
+                      std::string_view quantity, bool outlined) const {
         const Vector cell = domain_.edges() / slice_cells;
         const double high = std::max(colours.high, 1.01 * colours.low);
         return fmt::format(
-            "set title {}\nset cblabel {}\nset logscale cb\nset cbrange [{:.6g}:{:.6g}]\nset "
+            "set title {}\nset logscale cb\nset cbrange [{:.6g}:{:.6g}]\nset "
             "cbtics {}\n"
             "plot ${} matrix using ({}+($1+0.5)*{}):({}+($2+0.5)*{}):3 with image{}\n",
-            gnuplot_string(title), gnuplot_string(unit), colours.low, high,
+            gnuplot_string(fmt::format("{}: {}", title, quantity)), colours.low, high,
             log_tics(colours.low, high), block, domain_.low.x(), cell.x(), domain_.low.y(),
             cell.y(),
             outlined ? ", $outlines using 1:2 with lines linewidth 0.4 linecolor rgb '#80ffffff'"

@@ -36,6 +36,7 @@ TEST_CASE("a report of results: one page that needs nothing else, and its pictur
     for (const char* name : {"pareto-01", "pareto-04", "paper-01", "access-01", "slice-01", "delta",
                              "cross-validation"}) {
         CAPTURE(name);
+        CHECK_THAT(page, Contains(std::string("; report-pictures/") + name + ".svg, .png, .gp<"));
         for (const char* ending : {".svg", ".png", ".gp"}) {
             CHECK(fs::exists(box / "out" / "report-pictures" / (std::string(name) + ending)));
         }

@@ -118,6 +118,19 @@ TEST_CASE("anisotropy is shown where there is any, and only there") {
     }
 }
 
+TEST_CASE("names of structures do not take the room of what is drawn of their pairs") {
+    const Measured m = measured(1);
+    SampledFields fields = sample_fields(m.study, first_setting(m.rows), tree_catalogue(), {});
+    const Figure before = cross_validation(fields, "pairs", "");
+    CHECK(before.height > 240);
+    Row renamed = *fields.structures.front().row;
+    renamed.setting.structure = std::string(60, 'K');
+    fields.structures.front().row = &renamed;
+    const Figure after = cross_validation(fields, "pairs", "");
+    CHECK(after.width - before.width > 2 * 50 * 7);
+    CHECK(after.height - before.height > 50 * 4);
+}
+
 TEST_CASE("what cannot be made anew is named with its reason") {
     Measured m = measured(1);
     for (Row& row : m.rows) {
