@@ -59,9 +59,12 @@ Command parse_command_line(int argc, const char* const* argv) {
     app.set_version_flag("--version", "controlspace " + version_text(current_provenance()));
     app.require_subcommand(1);
     const std::string statuses =
-        "Exit status: 0 if all went well, 1 for a failure of the program or of the system, 2 for "
-        "bad input,\n3 if some cases failed (results are written, their rows say why), 130 after "
-        "Ctrl-C.";
+        "Exit status:\n"
+        "  0    all went well\n"
+        "  1    the program or the system failed\n"
+        "  2    what was given cannot be used\n"
+        "  3    some cases failed: results are written, and their rows say why\n"
+        "  130  stopped by Ctrl-C";
     app.footer(statuses);
 
     CompareOptions options;

@@ -29,8 +29,12 @@ CLI::App* add_info(CLI::App& app, InfoOptions& options, WordsByKey& given) {
         ->required()
         ->option_text("FILE");
     command->footer(
-        "Exit status: 0 if the file could be read, tensors that are not positive definite "
-        "included:\ntheir share is told, and the numbers of the first ones. 2 if it could not.");
+        "Exit status:\n"
+        "  0    the file could be read, with tensors that are not positive definite too, whose "
+        "share "
+        "is told\n"
+        "  1    the program or the system failed\n"
+        "  2    the file cannot be read, or a setting does not fit");
     add_reading_options(*command, given);
     return command;
 }

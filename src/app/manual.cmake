@@ -8,18 +8,18 @@ if(CONTROLSPACE_GMSH)
     list(APPEND commands mesh)
 endif()
 
-set(program $<TARGET_FILE:controlspace_app>)
-function(add_man_page page title)
+set(script ${CMAKE_CURRENT_SOURCE_DIR}/manual_page.sh)
+function(add_man_page page)
     add_custom_command(OUTPUT ${page}
-        COMMAND ${HELP2MAN} --no-info --version-string=${PROJECT_VERSION} --name=${title}
-                --output=${page} "${program} ${ARGN}"
-        DEPENDS controlspace_app
+        COMMAND sh ${script} ${HELP2MAN} $<TARGET_FILE:controlspace_app> ${PROJECT_VERSION}
+                ${page} ${ARGN}
+        DEPENDS controlspace_app ${script}
         VERBATIM)
     set(pages ${pages} ${CMAKE_CURRENT_BINARY_DIR}/${page} PARENT_SCOPE)
 endfunction()
-add_man_page(controlspace.1 "compare control spaces for mesh generation")
+add_man_page(controlspace.1)
 foreach(command IN LISTS commands)
-    add_man_page(controlspace-${command}.1 "${command}, of controlspace" ${command})
+    add_man_page(controlspace-${command}.1 ${command})
 endforeach()
 add_custom_target(man ALL DEPENDS ${pages})
 install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)

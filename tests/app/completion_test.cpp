@@ -28,6 +28,7 @@ TEST_CASE("commands, options and values are completed as the program names them"
     CHECK(offered("compare --sched") == "--schedule");
     CHECK(offered("compare --splits s_") == "s_L s_G s_Gx s_M");
     CHECK(offered("compare --law ''") == "cone mean-length");
+    CHECK(offered("compare --quiet --sched") == "--schedule");
     CHECK_THAT(offered("compare -"), Contains("--help") && Contains("--dry-run"));
 }
 

@@ -7,14 +7,14 @@ _controlspace() {
         names=$("$program" --help 2>/dev/null |
             awk '/^Subcommands:/ { on = 1; next } /^$/ { on = 0 } on && /^  [a-z]/ { print $1 }')
         names+=' --help --version'
+    elif [[ $word == -* ]]; then
+        names=$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null |
+            grep -oE '^ +(-[a-z],)?--[a-z0-9-]+' | grep -oE -- '--[a-z0-9-]+')
     elif [[ $before == --* ]]; then
         # The section of the option, as "Splits of kd-trees (--splits)".
         names=$("$program" list 2>/dev/null |
             awk -v option="($before)" '/^[^ ]/ { on = index($0, option) } on && /^ / { print $1 }')
         [[ $word == *,* ]] && prefix=${word%,*},
-    elif [[ $word == -* ]]; then
-        names=$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null |
-            grep -oE '^ +(-[a-z],)?--[a-z0-9-]+' | grep -oE -- '--[a-z0-9-]+')
     fi
     # Without names, COMPREPLY stays empty and bash completes files.
     mapfile -t COMPREPLY < <(compgen -P "$prefix" -W "$names" -- "${word#"$prefix"}")
