@@ -1,9 +1,12 @@
 #include "app/command_line.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <map>
+#include <algorithm>
+#include <string>
+#include <vector>
 
 #include "app/export_command.h"
 #include "app/file_commands.h"
@@ -33,6 +36,15 @@ CLI::App* add_mesh(CLI::App& app, MeshOptions& options, WordsByKey& given) {
     return command;
 }
 #endif
+
+/// CLI11 would say of another word only that a command is missing.
+void require_command(CLI::App& app, const std::string& word) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    if (std::find(names.begin(), names.end(), word) != names.end()) return;
+    throw InputError(
+        fmt::format("unknown command '{}': give one of {}", word, fmt::join(names, ", ")));
+}
 
 /// The command line as a shell would take it again.
 std::string command_line_text(int argc, const char* const* argv) {
@@ -159,6 +171,7 @@ Command parse_command_line(int argc, const char* const* argv) {
     CLI::App* list =
         app.add_subcommand("list", "Name the structures, splits, laws, schedules and references");
 
+    if (argc > 1 && argv[1][0] != '-') require_command(app, argv[1]);
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {

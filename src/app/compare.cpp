@@ -9,6 +9,7 @@
 #include "app/signals.h"
 #include "app/standard_output.h"
 #include "baselines/catalogue.h"
+#include "error.h"
 #include "study/forecast.h"
 #include "study/study_file.h"
 #include "study/tables.h"
@@ -19,7 +20,12 @@ namespace {
 /// Without a study file: the paper's sphere in both modes, unless the command line says what
 /// concerns a mode or the sources.
 Study starting_point(const CompareOptions& options) {
-    if (!options.study_file.empty()) return read_study(options.study_file);
+    const std::filesystem::path& file = options.study_file;
+    if (file.has_extension() && file.extension() != ".toml") {
+        throw InputError(fmt::format(
+            "{0} is no study file (.toml): sources are given by --sources {0}", file.string()));
+    }
+    if (!file.empty()) return read_study(file);
     bool one_mode = options.as_published;
     for (const auto& [key, words] : options.settings) {
         one_mode |= key == "sources" || key == "field" || key == "law" || key == "schedule" ||

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <new>
 #include <string>
@@ -28,6 +29,8 @@ int fail(int status, std::string what) {
 
 int main(int argc, char** argv) {
     using namespace controlspace;
+    keep_standard_places();
+    std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit, writing fails as on a full disk
     try {
         spdlog::set_default_logger(spdlog::stderr_color_mt("controlspace"));
         spdlog::set_pattern("%n: %l: %v");

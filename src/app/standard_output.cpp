@@ -1,10 +1,20 @@
 #include "app/standard_output.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cstdio>
 
 #include "error.h"
 
 namespace controlspace {
+
+void keep_standard_places() {
+    for (const int place : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        // The lowest that is free; read-only, so that nobody takes it to have been written to.
+        if (::fcntl(place, F_GETFD) < 0) ::open("/dev/null", O_RDONLY);
+    }
+}
 
 void print(std::string_view text) {
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() ||

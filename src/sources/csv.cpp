@@ -12,6 +12,7 @@
 
 #include "error.h"
 #include "sources/indefinite_tensors.h"
+#include "sources/metric_rows.h"
 #include "sources/output_file.h"
 #include "sources/text_file.h"
 
@@ -235,7 +236,7 @@ private:
 
     void check_length(std::string_view name, double h) {
         if (!is_length(h)) {
-            fail(fmt::format("{} = {}: a length must be positive", name, h));
+            fail(fmt::format("{} = {}: {}", name, h, length_rule));
         }
     }
 

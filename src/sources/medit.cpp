@@ -42,7 +42,7 @@ std::vector<Metric> metrics_in(Reader& file, const std::filesystem::path& path) 
         for (std::size_t i = 0; i < n; ++i) {
             const double h = file.number("size", i);
             if (!is_length(h)) {
-                file.fail(fmt::format("size {} is {}: a length must be positive", i + 1, h));
+                file.fail(fmt::format("size {} is {}: {}", i + 1, h, length_rule));
             }
             metrics.add_size(h);
         }

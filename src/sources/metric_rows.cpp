@@ -15,8 +15,8 @@ namespace controlspace {
 
 void MetricRows::add_size(double h) {
     if (!is_length(h)) {
-        throw InputError(fmt::format("size {} of {} is {}: a length must be positive",
-                                     metrics_.size() + 1, path_.string(), h));
+        throw InputError(fmt::format("size {} of {} is {}: {}", metrics_.size() + 1, path_.string(),
+                                     h, length_rule));
     }
     metrics_.push_back(Metric::isotropic(h));
 }

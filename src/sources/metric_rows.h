@@ -11,6 +11,9 @@
 
 namespace controlspace {
 
+/// What is said of a number that is no length (is_length).
+constexpr std::string_view length_rule = "a length must be positive, from 1e-50 to 1e+50";
+
 /// Takes the rows of another program's field, one after the other: sizes, or Riemannian metrics.
 /// Tensors that are not positive definite are counted, since their share tells whether the order of
 /// the components is right: read in a wrong order, nine of ten are not.

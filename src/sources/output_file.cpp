@@ -33,12 +33,15 @@ OutputFile::OutputFile(const std::filesystem::path& path) {
         throw InputError(
             fmt::format("cannot write {}: it is a directory, name a file", path.string()));
     }
-    const bool special =
-        std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
+    // A file that output is sent to may hold other things already.
+    const bool standard_output = path == "/dev/stdout";
+    const bool special = standard_output || (std::filesystem::exists(path, ignored) &&
+                                             !std::filesystem::is_regular_file(path, ignored));
     target_ = special ? path : without_links(path);
     written_ = special ? path : partial(path);
     const int flags = O_WRONLY | O_CLOEXEC | (special ? 0 : O_CREAT | O_TRUNC);
-    const int descriptor = ::open(written_.c_str(), flags, 0666);
+    const int descriptor = standard_output ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
+                                           : ::open(written_.c_str(), flags, 0666);
     if (descriptor < 0) fail();
     file_ = ::fdopen(descriptor, "wb");
     if (file_ == nullptr) fail();

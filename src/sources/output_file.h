@@ -8,7 +8,8 @@ namespace controlspace {
 
 /// A file that is either written whole or not at all: the text goes to a temporary file beside it,
 /// which takes its name on `commit` and is removed otherwise. What is not a regular file
-/// (/dev/stdout) is written to directly. Failures, a full disk among them, throw InputError.
+/// is written to directly, and so is standard output (/dev/stdout), whatever it is. Failures, a
+/// full disk among them, throw InputError.
 class OutputFile {
 public:
     explicit OutputFile(const std::filesystem::path& path);

@@ -92,7 +92,7 @@ private:
             const double* value = &values_read_[numbers * i];
             if (is_scalar) {
                 if (!is_length(*value)) {
-                    fail(fmt::format("size {}: a length must be positive", *value));
+                    fail(fmt::format("size {}: {}", *value, length_rule));
                 }
                 metrics_.add_size(*value);
             } else {

@@ -122,6 +122,13 @@ TEST_CASE("query writes what a structure answers, as a table of sources") {
     REQUIRE(box.run("query study.toml p.csv -o out.csv").status == 0);
     CHECK(file_text(box / "out.csv") == expected);
     CHECK_THAT(box.run("info out.csv").out, Contains("3, all of them"));
+    // What standard output is sent to keeps what it holds.
+    REQUIRE(
+        box.run("query study.toml p.csv", "echo before >both; exec sh -c 'exec \"$@\" >>both' sh ")
+            .status == 0);
+    REQUIRE(file_text(box / "both") == "before\n" + expected);
+    check_refused(box.run("query study.toml p.csv", "exec sh -c 'exec \"$@\" >&-' sh "),
+                  "cannot write /dev/stdout");
 }
 
 TEST_CASE("commands on files that cannot be carried out end with one line") {
