@@ -55,9 +55,11 @@ int main(int argc, char** argv) {
     for (const CatalogueEntry& entry : tree_catalogue()) {
         benchmark::RegisterBenchmark(("saving/" + entry.id).c_str(), save, entry)
             ->Unit(benchmark::kMillisecond)
+            ->MeasureProcessCPUTime()
             ->UseRealTime();
         benchmark::RegisterBenchmark(("loading/" + entry.id).c_str(), load, entry)
             ->Unit(benchmark::kMillisecond)
+            ->MeasureProcessCPUTime()
             ->UseRealTime();
     }
     benchmark::Initialize(&argc, argv);

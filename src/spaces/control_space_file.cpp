@@ -1,6 +1,8 @@
 #include "spaces/control_space_file.h"
 
+#define XXH_INLINE_ALL  // nothing to link with
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <bit>
@@ -37,17 +39,14 @@ std::string_view bytes_of(const auto& value) {
     return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
-class Fnv1a {
+class Checksum {
 public:
-    void add(std::string_view bytes) {
-        for (const char c : bytes) {
-            hash_ = (hash_ ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-        }
-    }
-    std::uint64_t value() const { return hash_; }
+    Checksum() { XXH3_64bits_reset(&state_); }
+    void add(std::string_view bytes) { XXH3_64bits_update(&state_, bytes.data(), bytes.size()); }
+    std::uint64_t value() const { return XXH3_64bits_digest(&state_); }
 
 private:
-    std::uint64_t hash_ = 0xcbf29ce484222325u;
+    XXH3_state_t state_;
 };
 
 void require_little_endian() {
@@ -117,13 +116,17 @@ std::string_view checked_body(std::string_view bytes, const std::string& name) {
         fail(fmt::format("has format version {}, this program reads up to {}: take a newer one",
                          header.version, control_space_file_version));
     }
+    if (header.version < control_space_file_version) {
+        fail(fmt::format("has format version {}, of before the first release: build it again",
+                         header.version));
+    }
     if (bytes.size() < header.size) {
         fail(
             fmt::format("is truncated, {} of {} bytes: copy it again, or save the control space "
                         "again",
                         bytes.size(), header.size));
     }
-    Fnv1a checksum;
+    Checksum checksum;
     checksum.add(bytes.substr(0, bytes.size() - checksum_size));
     if (bytes.size() != header.size || !bytes.ends_with(bytes_of(checksum.value()))) {
         fail("is altered (its checksum differs): copy it again, or save the control space again");
@@ -148,7 +151,7 @@ void save_control_space(const std::filesystem::path& file, const ControlSpace& s
     space.save(state);
 
     const Header header{.size = header_size + state.bytes().size() + checksum_size};
-    Fnv1a checksum;
+    Checksum checksum;
     OutputFile out(file);
     for (const std::string_view part :
          {signature, bytes_of(header), std::string_view(state.bytes())}) {

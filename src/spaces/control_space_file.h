@@ -11,14 +11,15 @@ namespace controlspace {
 
 // A file of a control space (.ctrl), all numbers little-endian:
 //   8 bytes    89 43 54 52 4c 0d 0a 1a
-//   32 bits    version of the format: 1
+//   32 bits    version of the format: 2
 //   32 bits    01020304 (hexadecimal), by which the order of bytes can be seen
 //   64 bits    size of the file in bytes
 //   ...        named arrays of numbers, each in chunks that Blosc has compressed (state.h)
-//   64 bits    checksum of all bytes before: FNV-1a
+//   64 bits    checksum of all bytes before: XXH3
 
-/// Version of the format that is written, and the latest that is read.
-inline constexpr std::uint32_t control_space_file_version = 1;
+/// Version of the format that is written, and the only one that is read: version 1, whose checksum
+/// was another, was never released.
+inline constexpr std::uint32_t control_space_file_version = 2;
 
 /// Writes `space`, with all that it takes to go on with it, to `file`: whole or not at all. Throws
 /// InputError where it was not made by a CatalogueEntry, where it keeps a continuous field, and

@@ -11,6 +11,7 @@
 
 #include "geometry/box.h"
 #include "spaces/subdivision.h"
+#include "spaces/work_through.h"
 
 namespace controlspace {
 
@@ -91,16 +92,18 @@ public:
     /// Enters `ref`, which stands for `box`, for all cells inside; or what is deeper down.
     /// `node_of(ref)` is the inner node of a reference.
     template <class NodeOf>
-    void enter(Ref ref, const Box& box, NodeOf&& node_of) {
-        if (!may_hold_cells(box)) return;
-        Range range;
-        for (Axis a = 0; a < 3; ++a) {
-            const AxisCells& axis = axes_[index(a)];
-            range.first[index(a)] = box.low[a] <= domain_.low[a] ? 0 : axis.first_from(box.low[a]);
-            range.last[index(a)] =
-                box.high[a] >= domain_.high[a] ? axis.count() : axis.last_to(box.high[a]);
-        }
-        enter_range(ref, box, range, node_of);
+    void enter(Ref ref, const Box& box, const NodeOf& node_of) {
+        if (may_hold_cells(box)) enter(cells_in({ref, box, {}}), node_of);
+    }
+    /// The same for a whole tree, on all threads.
+    template <class NodeOf>
+    void enter_all(Ref root, const NodeOf& node_of) {
+        work_through(cells_in({root, domain_, {}}), [&](const Part& part, auto&& next) {
+            enter_own(part, node_of, [&](const Part& child) {
+                if (!child.ref.is_leaf()) __builtin_prefetch(&node_of(child.ref));
+                next(child);
+            });
+        });
     }
 
 private:
@@ -209,6 +212,13 @@ private:
         }
     };
 
+    /// Part of the tree with the cells inside of it.
+    struct Part {
+        Ref ref;
+        Box box;
+        Range cells;
+    };
+
     std::size_t cell(int i, int j, int k) const {
         const auto row = static_cast<std::size_t>(k) * static_cast<std::size_t>(axes_[1].count()) +
                          static_cast<std::size_t>(j);
@@ -223,15 +233,35 @@ private:
         }
     }
 
+    // All cells that lie in the box of `part`.
+    Part cells_in(Part part) const {
+        for (Axis a = 0; a < 3; ++a) {
+            const AxisCells& axis = axes_[index(a)];
+            const Box& box = part.box;
+            part.cells.first[index(a)] =
+                box.low[a] <= domain_.low[a] ? 0 : axis.first_from(box.low[a]);
+            part.cells.last[index(a)] =
+                box.high[a] >= domain_.high[a] ? axis.count() : axis.last_to(box.high[a]);
+        }
+        return part;
+    }
+
     template <class NodeOf>
-    void enter_range(Ref ref, const Box& box, const Range& range, NodeOf& node_of) {
-        if (range.is_empty()) return;
-        if (ref.is_leaf()) {
-            set(range, ref);
+    void enter(const Part& part, const NodeOf& node_of) {
+        enter_own(part, node_of, [&](const Part& child) { enter(child, node_of); });
+    }
+
+    // Enters a part for the cells that no child of it has to itself; calls next(child) for children
+    // that have some.
+    template <class NodeOf, class Next>
+    void enter_own(const Part& part, const NodeOf& node_of, Next&& next) {
+        const Range& range = part.cells;
+        if (part.ref.is_leaf()) {
+            set(range, part.ref);
             return;
         }
-        const auto& node = node_of(ref);
-        const Subdivision subdivision = node.subdivision(box);
+        const auto& node = node_of(part.ref);
+        const Subdivision subdivision = node.subdivision(part.box);
         std::array<int, 3> low_end = range.last;
         std::array<int, 3> high_begin = range.last;
         for (Axis a = 0; a < 3; ++a) {
@@ -244,20 +274,20 @@ private:
             Range cut_through = range;  // cells on both sides of the plane
             cut_through.first[index(a)] = low_end[index(a)];
             cut_through.last[index(a)] = high_begin[index(a)];
-            set(cut_through, ref);
+            set(cut_through, part.ref);
         }
         for (int c = 0; c < subdivision.children(); ++c) {
-            Range part = range;
+            Range cells = range;
             for (Axis a = 0; a < 3; ++a) {
                 if (!subdivision.cuts[index(a)]) continue;
                 if (subdivision.side(c, a) == 0) {
-                    part.last[index(a)] = low_end[index(a)];
+                    cells.last[index(a)] = low_end[index(a)];
                 } else {
-                    part.first[index(a)] = high_begin[index(a)];
+                    cells.first[index(a)] = high_begin[index(a)];
                 }
             }
-            enter_range(node.children[static_cast<std::size_t>(c)], subdivision.child(c), part,
-                        node_of);
+            if (cells.is_empty()) continue;
+            next({node.children[static_cast<std::size_t>(c)], subdivision.child(c), cells});
         }
     }
 

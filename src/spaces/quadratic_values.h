@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <array>
 #include <span>
@@ -88,10 +90,13 @@ public:
     template <class Node>
     void load(const Topology<Node>& tree, const StateReader& state) {
         LeafValues::load(tree, state);
-        boxes_.resize(tree.leaves());
-        tree.for_each_leaf([&](LeafIndex leaf, const Box& box) { boxes_[leaf] = box; });
         look_at_metrics();
-        remember_parts(tree);
+        tbb::parallel_invoke([&] { boxes_.resize(tree.leaves()); },
+                             [&] { across_.resize(tree.leaves()); });
+        for_each_parts_across(tree, [&](LeafIndex leaf, const Box& box, const PartsAcross& parts) {
+            boxes_[leaf] = box;
+            across_[leaf] = parts;
+        });
     }
 
     /// Makes answers faster until a leaf is split.

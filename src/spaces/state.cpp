@@ -2,12 +2,15 @@
 
 #include <blosc.h>
 #include <fmt/format.h>
+#include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
 #include <stdexcept>
 
 #include "error.h"
+#include "geometry/threads.h"
 
 namespace controlspace {
 
@@ -44,6 +47,33 @@ std::size_t chunk_elements(std::size_t element_size) {
     return std::max<std::size_t>(1, chunk_bytes / element_size);
 }
 
+std::size_t chunks_at_once() { return 2 * threads_allowed(); }
+
+// Calls make(i) on all threads and, in the order of i, take(i) on one at a time; what the two hand
+// over fits in `room` places i % room.
+template <class Make, class Take>
+void in_order(std::size_t count, std::size_t room, const Make& make, const Take& take) {
+    if (count == 1) {  // most arrays are single numbers: no other thread needs to wake up
+        make(0);
+        take(0);
+    }
+    if (count <= 1) return;
+    std::size_t next = 0;
+    const auto count_up = [&](tbb::flow_control& control) {
+        if (next == count) control.stop();
+        return next++;
+    };
+    const auto make_one = [&](std::size_t i) {
+        make(i);
+        return i;
+    };
+    using enum tbb::filter_mode;
+    tbb::parallel_pipeline(room,
+                           tbb::make_filter<void, std::size_t>(serial_in_order, count_up) &
+                               tbb::make_filter<std::size_t, std::size_t>(parallel, make_one) &
+                               tbb::make_filter<std::size_t, void>(serial_in_order, take));
+}
+
 }  // namespace
 
 // An array is: size of the name (32 bits), name, kind (32), bytes of an element (32), number of
@@ -57,20 +87,26 @@ void StateWriter::append(std::string_view name, NumberKind kind, std::size_t ele
     append_value(bytes_, static_cast<std::uint64_t>(elements));
     const auto* from = static_cast<const char*>(data);
     const std::size_t step = chunk_elements(element_size);
-    for (std::size_t first = 0; first < elements; first += step) {
+    const std::size_t chunks = (elements + step - 1) / step;
+    std::vector<std::string> compressed(std::min(chunks, chunks_at_once()));
+    const auto compress = [&](std::size_t chunk) {
+        const std::size_t first = chunk * step;
         const std::size_t size = std::min(step, elements - first) * element_size;
-        const std::size_t start = bytes_.size() + sizeof(std::uint32_t);
-        bytes_.resize(start + size + BLOSC_MAX_OVERHEAD);
+        std::string& out = compressed[chunk % compressed.size()];
+        out.resize(size + BLOSC_MAX_OVERHEAD);
         constexpr int level = 5;
         constexpr int threads = 1;
-        const int stored = blosc_compress_ctx(
-            level, BLOSC_SHUFFLE, element_size, size, from + first * element_size,
-            bytes_.data() + start, size + BLOSC_MAX_OVERHEAD, BLOSC_LZ4_COMPNAME, 0, threads);
+        const int stored = blosc_compress_ctx(level, BLOSC_SHUFFLE, element_size, size,
+                                              from + first * element_size, out.data(), out.size(),
+                                              BLOSC_LZ4_COMPNAME, 0, threads);
         if (stored <= 0) throw std::runtime_error("Blosc cannot compress with LZ4");
-        const auto stored_size = static_cast<std::uint32_t>(stored);
-        std::memcpy(bytes_.data() + start - sizeof stored_size, &stored_size, sizeof stored_size);
-        bytes_.resize(start + stored_size);
-    }
+        out.resize(static_cast<std::size_t>(stored));
+    };
+    in_order(chunks, compressed.size(), compress, [&](std::size_t chunk) {
+        const std::string& stored = compressed[chunk % compressed.size()];
+        append_value(bytes_, static_cast<std::uint32_t>(stored.size()));
+        bytes_ += stored;
+    });
 }
 
 StateReader::StateReader(std::string_view bytes, std::string file) : file_(std::move(file)) {
@@ -108,10 +144,6 @@ void StateReader::operator()(std::string_view name, std::string& text) const {
     text.assign(letters.begin(), letters.end());
 }
 
-std::size_t StateReader::elements_per_chunk(std::size_t element_size) {
-    return chunk_elements(element_size);
-}
-
 void StateReader::fail(std::string_view name, std::string_view what) const {
     std::string printable(name.substr(0, 60));
     std::replace_if(
@@ -129,17 +161,33 @@ const StateReader::Array& StateReader::find(std::string_view name, NumberKind ki
     return found->second;
 }
 
-void StateReader::decompress(std::string_view name, std::string_view chunk, void* out,
-                             std::size_t size) const {
-    constexpr int threads = 1;
-    const int got = blosc_decompress_ctx(chunk.data(), out, size, threads);
-    require(got >= 0 && static_cast<std::size_t>(got) == size, name, "cannot be decompressed");
+// By way of pieces that stay in a cache: so that what they are appended to is written once.
+void StateReader::decompress(std::string_view name, const Array& array,
+                             const std::function<void(const void*, std::size_t)>& append) const {
+    const std::size_t step = std::min(chunk_elements(array.element_size), array.elements);
+    const auto elements = [&](std::size_t chunk) {
+        return std::min(step, array.elements - chunk * step);
+    };
+    std::vector<std::unique_ptr<std::byte[]>> pieces(
+        std::min(array.chunks.size(), chunks_at_once()));
+    for (auto& piece : pieces) {
+        piece = std::make_unique_for_overwrite<std::byte[]>(step * array.element_size);
+    }
+    const auto decompress_one = [&](std::size_t chunk) {
+        const std::size_t size = elements(chunk) * array.element_size;
+        constexpr int threads = 1;
+        const int got = blosc_decompress_ctx(array.chunks[chunk].data(),
+                                             pieces[chunk % pieces.size()].get(), size, threads);
+        require(got >= 0 && static_cast<std::size_t>(got) == size, name, "cannot be decompressed");
+    };
+    in_order(array.chunks.size(), pieces.size(), decompress_one, [&](std::size_t chunk) {
+        append(pieces[chunk % pieces.size()].get(), elements(chunk));
+    });
 }
 
 void require_metrics(const StateReader& state, std::string_view name,
                      const std::vector<Metric>& metrics) {
-    state.require(std::all_of(metrics.begin(), metrics.end(), is_positive_definite), name,
-                  "holds what is no metric");
+    state.require(all_are(metrics, is_positive_definite), name, "holds what is no metric");
 }
 
 }  // namespace controlspace

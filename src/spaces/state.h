@@ -1,10 +1,14 @@
 #pragma once
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -92,14 +96,10 @@ public:
         const Array& array = find(name, number_kind<T>(), sizeof(T));
         values.clear();
         values.reserve(array.elements);
-        // By way of a piece that stays in the cache: so that the array is written once.
-        std::vector<T> piece(std::min(array.elements, elements_per_chunk(sizeof(T))));
-        for (const std::string_view chunk : array.chunks) {
-            const std::size_t n = std::min(piece.size(), array.elements - values.size());
-            decompress(name, chunk, piece.data(), n * sizeof(T));
-            values.insert(values.end(), piece.begin(),
-                          piece.begin() + static_cast<std::ptrdiff_t>(n));
-        }
+        decompress(name, array, [&](const void* piece, std::size_t elements) {
+            const T* const first = static_cast<const T*>(piece);
+            values.insert(values.end(), first, first + elements);
+        });
     }
     void operator()(std::string_view name, std::string& text) const;
     void operator()(std::string_view name, double& value) const { value = only<double>(name); }
@@ -134,11 +134,12 @@ private:
         std::vector<std::string_view> chunks;
     };
 
-    static std::size_t elements_per_chunk(std::size_t element_size);
     [[noreturn]] void fail(std::string_view name, std::string_view what) const;
     const Array& find(std::string_view name, NumberKind kind, std::size_t element_size) const;
-    void decompress(std::string_view name, std::string_view chunk, void* out,
-                    std::size_t size) const;
+    /// Calls append(piece, elements) with one piece of the array after the other, on one thread at
+    /// a time, while others decompress the next ones.
+    void decompress(std::string_view name, const Array& array,
+                    const std::function<void(const void*, std::size_t)>& append) const;
     template <class T>
     T only(std::string_view name) const {
         std::vector<T> values;
@@ -151,6 +152,20 @@ private:
     std::map<std::string_view, Array> arrays_;
 };
 
+/// Whether `holds(value)` for all values; asked on all threads.
+template <class T, class Predicate>
+bool all_are(const std::vector<T>& values, const Predicate& holds) {
+    constexpr std::size_t grain = 4096;
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, values.size(), grain), true,
+        [&](const tbb::blocked_range<std::size_t>& part, bool so_far) {
+            const auto first = values.begin() + static_cast<std::ptrdiff_t>(part.begin());
+            return so_far &&
+                   std::all_of(first, first + static_cast<std::ptrdiff_t>(part.size()), holds);
+        },
+        std::logical_and<>());
+}
+
 /// Throws InputError unless all numbers are below `end`.
 template <class T>
 void require_below(const StateReader& state, std::string_view name, const std::vector<T>& values,
@@ -162,8 +177,7 @@ void require_below(const StateReader& state, std::string_view name, const std::v
             return std::all_of(value.begin(), value.end(), [end](auto v) { return v < end; });
         }
     };
-    state.require(std::all_of(values.begin(), values.end(), is_below), name,
-                  "names what is not there");
+    state.require(all_are(values, is_below), name, "names what is not there");
 }
 
 /// Throws InputError unless all are positive definite.

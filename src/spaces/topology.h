@@ -75,6 +75,7 @@ struct KdNode {
     /// Where the planes stand.
     std::span<const double> planes() const { return {&at, 1}; }
     std::span<double> planes() { return {&at, 1}; }
+    Axis plane_axis(std::size_t) const { return axis(); }
     void set_child(int c, Ref ref) {
         Ref& child = children[static_cast<std::size_t>(c)];
         child = ref.with_spare(child.spare());
@@ -110,6 +111,7 @@ struct alignas(64) OctreeNode {
     OctreeNode(const Subdivision& s) : at{s.at.x(), s.at.y(), s.at.z()} {}
     std::span<const double> planes() const { return at; }
     std::span<double> planes() { return at; }
+    static Axis plane_axis(std::size_t plane) { return static_cast<Axis>(plane); }
     void set_child(int c, Ref ref) { children[static_cast<std::size_t>(c)] = ref; }
     Subdivision subdivision(const Box& box) const {
         return {box, {at[0], at[1], at[2]}, {true, true, true}};
@@ -182,7 +184,7 @@ public:
         const int halvings =
             std::clamp(static_cast<int>(std::bit_width(leaves_)) + 1, 0, largest_jump_table);
         const int cuts = halvings / std::countr_zero(static_cast<unsigned>(arity));
-        if (jumps_.resize(cuts, Node::even_subdivision)) enter_jumps(root_, domain_);
+        if (jumps_.resize(cuts, Node::even_subdivision)) jumps_.enter_all(root_, node_of());
     }
     /// The same while the tree grows, now and then.
     void fit_jumps_roughly() {
@@ -248,7 +250,7 @@ public:
             nodes_[place.slot / arity].set_child(static_cast<int>(place.slot % arity), inner);
         }
         deepest_ = std::max(deepest_, place.level + 1);
-        enter_jumps(inner, place.box);
+        jumps_.enter(inner, place.box, node_of());
     }
 
     /// The same tree with its nodes and leaves in depth-first order; leaf i was `former[i]`.
@@ -310,8 +312,8 @@ private:
         return Ref::inner(copy);
     }
 
-    void enter_jumps(Ref ref, const Box& box) {
-        jumps_.enter(ref, box, [this](Ref inner) -> const Node& { return node(inner); });
+    auto node_of() const {
+        return [this](Ref inner) -> const Node& { return node(inner); };
     }
 
     LeafPlace descend(Ref ref, LeafPlace place, const Point& x) const {

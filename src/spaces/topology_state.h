@@ -1,11 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <span>
 #include <vector>
 
 #include "spaces/state.h"
 #include "spaces/topology.h"
+#include "spaces/work_through.h"
 
 namespace controlspace {
 
@@ -55,16 +57,25 @@ bool is_tree(std::span<const Node> nodes) {
 
 /// Whether each node's planes stand inside of its box.
 template <class Node>
-bool cuts_properly(const Topology<Node>& tree, Ref ref, const Box& box) {
-    if (ref.is_leaf()) return true;
-    const Node& node = tree.node(ref);
-    const Subdivision subdivision = node.subdivision(box);
-    if (subdivision.children() != Node::arity || !subdivision.is_proper()) return false;
-    for (int c = 0; c < Node::arity; ++c) {
-        const Ref child = node.children[static_cast<std::size_t>(c)];
-        if (!cuts_properly(tree, child, subdivision.child(c))) return false;
-    }
-    return true;
+bool cuts_properly(const Topology<Node>& tree) {
+    std::atomic<bool> properly = true;
+    const TreePart all{tree.root(), tree.domain()};
+    work_through(all, [&](const TreePart& part, auto&& next) {
+        if (part.ref.is_leaf()) return;
+        const Node& node = tree.node(part.ref);
+        const Subdivision subdivision = node.subdivision(part.box);
+        if (subdivision.children() != Node::arity || !subdivision.is_proper()) {
+            properly = false;
+            return;
+        }
+        for (int c = 0; c < Node::arity; ++c) {
+            const Ref child = node.children[static_cast<std::size_t>(c)];
+            if (child.is_leaf()) continue;
+            __builtin_prefetch(&tree.node(child));
+            next({child, subdivision.child(c)});
+        }
+    });
+    return properly;
 }
 
 /// The tree that `save` has written, with the same numbers of leaves. Throws InputError.
@@ -87,7 +98,7 @@ Topology<Node> load_topology(const Box& domain, const StateReader& state) {
     }
     state.require(is_tree(std::span<const Node>(nodes)), "tree", "is no tree");
     Topology<Node> tree(domain, std::move(nodes));
-    state.require(cuts_properly(tree, tree.root(), domain), "tree", "has planes out of place");
+    state.require(cuts_properly(tree), "tree", "has planes out of place");
     return tree;
 }
 

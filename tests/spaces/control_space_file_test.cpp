@@ -1,5 +1,9 @@
 #include "spaces/control_space_file.h"
 
+#define XXH_INLINE_ALL
+#include <tbb/global_control.h>
+#include <xxhash.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -9,6 +13,7 @@
 #include "damaged_files.h"
 #include "fields/formula_field.h"
 #include "sources/files.h"
+#include "sources/sampled_surfaces.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;
@@ -47,11 +52,7 @@ void put(std::string& bytes, std::size_t at, T value) {
 // What makes a forged file pass for an intact one.
 void sign(std::string& bytes) {
     put(bytes, 16, static_cast<std::uint64_t>(bytes.size()));
-    std::uint64_t hash = 0xcbf29ce484222325u;
-    for (std::size_t i = 0; i + 8 < bytes.size(); ++i) {
-        hash = (hash ^ static_cast<unsigned char>(bytes[i])) * 0x100000001b3u;
-    }
-    put(bytes, bytes.size() - 8, hash);
+    put(bytes, bytes.size() - 8, XXH3_64bits(bytes.data(), bytes.size() - 8));
 }
 
 }  // namespace
@@ -59,9 +60,9 @@ void sign(std::string& bytes) {
 TEST_CASE("files of control spaces: what they begin with") {
     const ScratchDirectory scratch("ctrl");
     const std::string bytes = saved(scratch, "K_oL");
-    // Signature, version 1, order of bytes, size: little-endian.
+    // Signature, version 2, order of bytes, size: little-endian.
     CHECK(bytes.substr(0, 16) == std::string("\x89"
-                                             "CTRL\r\n\x1a\1\0\0\0\4\3\2\1",
+                                             "CTRL\r\n\x1a\2\0\0\0\4\3\2\1",
                                              16));
     std::string signed_again = bytes;
     sign(signed_again);
@@ -80,8 +81,11 @@ TEST_CASE("files of control spaces: what is refused, and why") {
                Contains("is a directory"));
 
     std::string newer = bytes;
-    put(newer, 8, std::uint32_t{2});
-    CHECK_THAT(loading_error(scratch, newer), Contains("format version 2, this program reads up"));
+    put(newer, 8, std::uint32_t{3});
+    CHECK_THAT(loading_error(scratch, newer), Contains("format version 3, this program reads up"));
+    std::string older = bytes;
+    put(older, 8, std::uint32_t{1});
+    CHECK_THAT(loading_error(scratch, older), Contains("version 1, of before the first release"));
     std::string turned = bytes;
     std::reverse(turned.begin() + 12, turned.begin() + 16);
     CHECK_THAT(loading_error(scratch, turned), Contains("order of bytes"));
@@ -125,6 +129,31 @@ TEST_CASE("forged files end in an error or in metrics, never in a crash or in mu
         check(*space);
         if (entry.can_freeze) check(*space->freeze(Precision::floats));
     }
+}
+
+TEST_CASE("files are the same to the bit however many threads there are, and read by any number") {
+    const ScratchDirectory scratch("ctrl");
+    const auto space = structures()[3].make({.domain = domain, .l_min = 1});
+    space->insert(sample_sphere({.rho = 0.5}));
+    REQUIRE(space->control_nodes(Neighbourhood::faces).metrics.size() > 50'000);  // some ten chunks
+    const auto all_threads = [](std::size_t threads) {
+        return tbb::global_control(tbb::global_control::max_allowed_parallelism, threads);
+    };
+    const auto saved_by = [&](const ControlSpace& saved, const char* name) {
+        save_control_space(scratch / name, saved);
+        return file_text(scratch / name);
+    };
+    std::string by_many;
+    {
+        const auto four = all_threads(4);
+        by_many = saved_by(*space, "many.ctrl");
+        const auto loaded = load_control_space(scratch / "many.ctrl", structures());
+        CHECK(saved_by(*loaded, "again.ctrl") == by_many);
+    }
+    const auto one = all_threads(1);
+    CHECK(saved_by(*space, "one.ctrl") == by_many);
+    const auto loaded = load_control_space(scratch / "many.ctrl", structures());
+    CHECK(saved_by(*loaded, "again.ctrl") == by_many);
 }
 
 TEST_CASE("an array that is said to be huge is refused before memory is asked for") {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
+#include <vector>
 
 #include "geometry/random_fractions.h"
 #include "spaces/adjacency.h"
@@ -37,14 +38,30 @@ Topology<Node> grown(SplitRule rule) {
     return tree;
 }
 
+struct Leaf {
+    int visits = 0;
+    Box box;
+    PartsAcross across;
+};
+
+// Visits come on several threads.
+template <class Node>
+std::vector<Leaf> leaves_of(const Topology<Node>& tree) {
+    std::vector<Leaf> leaves(tree.leaves());
+    for_each_parts_across(tree, [&](LeafIndex leaf, const Box& box, const PartsAcross& across) {
+        leaves[leaf] = {leaves[leaf].visits + 1, box, across};
+    });
+    return leaves;
+}
+
 template <class Node>
 void check_parts_across(const Topology<Node>& tree) {
     RandomFractions fraction(4);
-    std::set<LeafIndex> met;
     int inner = 0;
-    for_each_parts_across(tree, [&](LeafIndex leaf, const Box& box, const PartsAcross& across) {
+    LeafIndex leaf = 0;
+    for (const auto& [visits, box, across] : leaves_of(tree)) {
+        REQUIRE(visits == 1);
         REQUIRE(tree.find(box.centre()) == leaf);
-        met.insert(leaf);
         Box inside = box;  // what belongs to the leaf
         for (Axis a = 0; a < 3; ++a) inside.low[a] = std::nextafter(box.low[a], box.high[a]);
         for (int face = 0; face < 6; ++face) {
@@ -73,8 +90,8 @@ void check_parts_across(const Topology<Node>& tree) {
             ++inner;
             REQUIRE(children.size() > 1);
         }
-    });
-    CHECK(met.size() == tree.leaves());
+        ++leaf;
+    }
     CHECK(inner > 100);
 }
 
@@ -88,9 +105,9 @@ TEST_CASE("the part across a face holds all there, and no smaller part does") {
 }
 
 TEST_CASE("a tree of one leaf has itself across all faces") {
-    for_each_parts_across(Topology<KdNode>(domain),
-                          [](LeafIndex leaf, const Box& box, const PartsAcross& across) {
-                              CHECK(box == domain);
-                              for (const Ref part : across) CHECK(part.index() == leaf);
-                          });
+    const std::vector<Leaf> leaves = leaves_of(Topology<KdNode>(domain));
+    REQUIRE(leaves.size() == 1);
+    CHECK(leaves[0].visits == 1);
+    CHECK(leaves[0].box == domain);
+    for (const Ref part : leaves[0].across) CHECK(part.index() == 0);
 }
