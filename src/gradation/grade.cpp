@@ -1,11 +1,14 @@
 #include "gradation/grade.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include <functional>
 #include <type_traits>
 
 #include "error.h"
+#include "geometry/large_pages.h"
 #include "geometry/threads.h"
 #include "gradation/parallel_queue.h"
 #include "gradation/passes.h"
@@ -26,16 +29,25 @@ namespace {
 // Returns the number of metrics made smaller.
 template <class Graph>
 std::uint64_t grade_by_sizes(const Graph& graph, OrderedMetrics metrics, double g) {
-    std::vector<double> sizes(metrics.size());
-    for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = metrics[i].xx;
+    std::vector<double> sizes = large_array<double>(metrics.size());
+    constexpr std::size_t nodes_per_task = 4096;
+    using Range = tbb::blocked_range<std::size_t>;
+    const Range all(0, sizes.size(), nodes_per_task);
+    tbb::parallel_for(all, [&](const Range& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) sizes[i] = metrics[i].xx;
+    });
     SizeRounds(graph, sizes, g).run();
-    std::uint64_t operations = 0;
-    for (std::size_t i = 0; i < sizes.size(); ++i) {
-        if (sizes[i] == metrics[i].xx) continue;
-        metrics[i] = Metric::isotropic(sizes[i]);
-        ++operations;
-    }
-    return operations;
+    return tbb::parallel_reduce(
+        all, std::uint64_t{0},
+        [&](const Range& range, std::uint64_t operations) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                if (sizes[i] == metrics[i].xx) continue;
+                metrics[i] = Metric::isotropic(sizes[i]);
+                ++operations;
+            }
+            return operations;
+        },
+        std::plus<>());
 }
 
 template <class Graph>

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/large_pages.h"
 #include "gradation/node_graph.h"
 #include "spaces/corners.h"
 #include "spaces/topology.h"
@@ -42,10 +43,10 @@ template <class ForEachLink>
 void link(NodeGraph& graph, std::size_t nodes, ForEachLink&& for_each_link) {
     // Rows are counted two places on, and filled from one place on: that place then is where the
     // row ends and the next begins.
-    graph.first.assign(nodes + 2, 0);
+    graph.first = large_array<std::size_t>(nodes + 2);
     for_each_link([&](NodeIndex node, NodeIndex) { ++graph.first[std::size_t{node} + 2]; });
     std::partial_sum(graph.first.begin(), graph.first.end(), graph.first.begin());
-    graph.neighbours.resize(graph.first.back());
+    graph.neighbours = large_array<NodeIndex>(graph.first.back());
     for_each_link([&](NodeIndex node, NodeIndex neighbour) {
         graph.neighbours[graph.first[std::size_t{node} + 1]++] = neighbour;
     });

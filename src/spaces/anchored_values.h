@@ -31,6 +31,7 @@ public:
     static constexpr int order = 0;
     static constexpr CutBy cut_by = CutBy::longest_edge;
     static constexpr bool follows_neighbours = false;
+    static constexpr bool grows_by_leaf = false;
 
     explicit AnchoredValues(const SpaceOptions& options);
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "error.h"
 #include "spaces/goal_field.h"
 
@@ -56,6 +58,13 @@ void require_valid(const PointSource& source, std::size_t index, const Box& doma
             "source {} has the metric {} (xx yy zz xy xz yz), which is not positive definite",
             index, to_string(source.metric)));
     }
+}
+
+bool is_valid(const PointSource& source, const Box& domain) {
+    const Metric& m = source.metric;
+    const bool is_metric =
+        is_isotropic(m) ? m.xx > 0 && std::isfinite(m.xx) : is_positive_definite(m);
+    return is_metric && domain.contains(source.position);
 }
 
 }  // namespace controlspace

@@ -125,5 +125,7 @@ Metric sample_at(const ControlSpace& space, const Point& x);
 /// Throws InputError, naming the source by `index` (0-based), if its position is outside `domain`
 /// or its metric not positive definite.
 void require_valid(const PointSource& source, std::size_t index, const Box& domain);
+/// Whether it does not.
+bool is_valid(const PointSource& source, const Box& domain);
 
 }  // namespace controlspace

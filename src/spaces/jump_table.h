@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/box.h"
+#include "geometry/large_pages.h"
 #include "spaces/subdivision.h"
 #include "spaces/work_through.h"
 
@@ -48,8 +49,8 @@ public:
             axes_[index(a)].cut(domain_.low[a], domain_.high[a], cells[index(a)]);
         }
         set_fraction_bits();
-        refs_.assign(all, Ref());
-        refs_.shrink_to_fit();
+        refs_ = {};  // so that both are never there together
+        refs_ = large_array<Ref>(all);
         return true;
     }
 
@@ -90,7 +91,8 @@ public:
     }
 
     /// Enters `ref`, which stands for `box`, for all cells inside; or what is deeper down.
-    /// `node_of(ref)` is the inner node of a reference.
+    /// `node_of(ref)` is the inner node of a reference. Parts that have no place in common may be
+    /// entered at the same time.
     template <class NodeOf>
     void enter(Ref ref, const Box& box, const NodeOf& node_of) {
         if (may_hold_cells(box)) enter(cells_in({ref, box, {}}), node_of);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/large_pages.h"
 #include "gradation/node_graph.h"
 #include "spaces/adjacency.h"
 #include "spaces/face_pairs.h"
@@ -63,8 +64,8 @@ void number_leaves(const Topology<Node>& tree, const TreeParts& all, LeafGraph& 
         first[p + 1] = count;
     });
     std::partial_sum(first.begin(), first.end(), first.begin());
-    leaves.order.resize(first.back());
-    leaves.graph.positions.resize(first.back());
+    leaves.order = large_array<LeafIndex>(first.back());
+    leaves.graph.positions = large_array<Point>(first.back());
     each_part([&](std::size_t p) {
         std::size_t next = first[p];
         tree.for_each_leaf_in(all.parts[p], [&](LeafIndex leaf, const Box& box) {
@@ -101,7 +102,7 @@ LeafGraph leaf_graph(const Topology<Node>& tree, Neighbourhood neighbourhood) {
     const TreeParts all = parts_of(tree);
     LeafGraph leaves;
     number_leaves(tree, all, leaves);
-    std::vector<NodeIndex> rank(tree.leaves());
+    std::vector<NodeIndex> rank = large_array<NodeIndex>(tree.leaves());
     for (std::size_t i = 0; i < rank.size(); ++i) rank[leaves.order[i]] = static_cast<NodeIndex>(i);
 
     NodeGraph& graph = leaves.graph;

@@ -31,6 +31,8 @@ namespace controlspace {
 //                                        sources come; infinite where that is not known
 //   split(subdivision, leaf, first_new)  a leaf was cut; the field stays as it was
 //   lower(place, source)                 intersects what governs the leaf with the source
+//   grows_by_leaf                        what is asked for in a leaf is its own metric alone: then
+//   grow(leaves), metrics()              do the same for many leaves at once (LeafGrowth)
 //   fit(tree, leaves, field, proved)     sets the control nodes of these leaves to the field; if
 //                                        that will not be proved elsewhere, less closely
 //   is_fitted(leaf)                      is known to follow the field at the leaf's own places
@@ -53,6 +55,7 @@ public:
     static constexpr int order = 0;
     static constexpr CutBy cut_by = CutBy::corners;
     static constexpr bool follows_neighbours = false;
+    static constexpr bool grows_by_leaf = true;
 
     explicit LeafValues(const SpaceOptions& options)
         : metrics_(1, largest_metric(options.domain)) {}
@@ -85,6 +88,10 @@ public:
         metrics_.lower(place.leaf, source.metric);
         if (keeps_asked()) changes_.lower(place);
     }
+
+    /// Makes so many leaves more, whose metrics are then to be set.
+    void grow(std::size_t leaves) { metrics_.grow(leaves); }
+    std::span<Metric> metrics() { return metrics_.field(); }
 
     template <class Node>
     ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const;

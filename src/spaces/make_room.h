@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "geometry/large_pages.h"
+
 namespace controlspace {
 
 /// Makes room for `more` elements. An array that is full gets a quarter longer, where the standard
@@ -12,8 +14,14 @@ template <class T>
 void make_room(std::vector<T>& array, std::size_t more) {
     const std::size_t needed = array.size() + more;
     if (needed > array.capacity()) {
-        array.reserve(std::max(needed, array.capacity() + array.capacity() / 4));
+        reallocate(array, std::max(needed, array.capacity() + array.capacity() / 4));
     }
+}
+
+/// Gives back what an array that grew has too much.
+template <class T>
+void shrink_to_fit(std::vector<T>& array) {
+    if (array.capacity() > array.size()) reallocate(array, array.size());
 }
 
 }  // namespace controlspace

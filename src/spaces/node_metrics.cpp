@@ -27,6 +27,11 @@ void NodeMetrics::append(const Metric& asked, const Metric& field) {
     if (keeps_asked()) append_one(asked_, asked);
 }
 
+void NodeMetrics::grow(std::size_t nodes) {
+    make_room(field_, nodes);
+    field_.resize(field_.size() + nodes);
+}
+
 void NodeMetrics::lower(std::size_t node, const Metric& m) {
     field_[node] = intersection(field_[node], m);
     if (!keeps_asked()) return;
@@ -60,8 +65,8 @@ void NodeMetrics::describe(Footprint& footprint) const {
 }
 
 void NodeMetrics::shrink_to_fit() {
-    field_.shrink_to_fit();
-    asked_.shrink_to_fit();
+    controlspace::shrink_to_fit(field_);
+    controlspace::shrink_to_fit(asked_);
 }
 
 }  // namespace controlspace

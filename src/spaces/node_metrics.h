@@ -30,6 +30,8 @@ public:
     /// Appends `times` copies of a node.
     void repeat(std::size_t node, std::size_t times);
     void append(const Metric& asked, const Metric& field);
+    /// Appends so many nodes, which are to be set; for a field that is what is asked for.
+    void grow(std::size_t nodes);
     /// Intersects what is asked for, and so the field, with `m`.
     void lower(std::size_t node, const Metric& m);
     /// Sets the field alone.

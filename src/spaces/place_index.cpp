@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "geometry/large_pages.h"
+
 namespace controlspace {
 
 namespace {
@@ -48,7 +50,8 @@ void PlaceIndex::grow(std::span<const Point> positions) {
 }
 
 void PlaceIndex::enter_all(std::size_t slots, std::span<const Point> positions) {
-    table_.assign(slots, nobody);
+    table_ = {};  // so that both are never there together
+    table_ = large_array<NodeIndex>(slots, nobody);
     for (NodeIndex i = 0; i < positions.size(); ++i) table_[slot_of(positions[i], positions)] = i;
 }
 

@@ -22,6 +22,7 @@ public:
     static constexpr int order = 2;
     static constexpr CutBy cut_by = CutBy::faces;
     static constexpr bool follows_neighbours = true;
+    static constexpr bool grows_by_leaf = false;
 
     explicit QuadraticValues(const SpaceOptions& options)
         : LeafValues(options), boxes_(1, options.domain), slope_(options.ratio - 1) {}
@@ -116,7 +117,7 @@ public:
     }
     void shrink_to_fit() {
         LeafValues::shrink_to_fit();
-        boxes_.shrink_to_fit();
+        controlspace::shrink_to_fit(boxes_);
     }
 
 private:

@@ -136,6 +136,20 @@ struct alignas(64) OctreeNode {
     }
 };
 
+/// The leaf that holds `x` below `ref`, which is at `place`.
+template <class Node>
+LeafPlace descend(std::span<const Node> nodes, Ref ref, LeafPlace place, const Point& x) {
+    while (!ref.is_leaf()) {
+        const std::size_t inner = ref.index();
+        const auto c = static_cast<std::size_t>(nodes[inner].descend(x, place.box));
+        place.slot = inner * Node::arity + c;
+        ref = nodes[inner].children[c];
+        ++place.level;
+    }
+    place.leaf = ref.index();
+    return place;
+}
+
 /// Where the leaves of a tree are; what they hold is a storage's affair. Flat: inner nodes in one
 /// array, leaves as numbers without gaps.
 template <class Node>
@@ -176,7 +190,7 @@ public:
         footprint.bytes_auxiliary = bytes_of_jumps();
     }
 
-    void shrink_to_fit() { nodes_.shrink_to_fit(); }
+    void shrink_to_fit() { controlspace::shrink_to_fit(nodes_); }
     /// Fits the start of descents to the number of leaves: two to four cells for each, in octrees
     /// half to four, which takes 16 bytes a leaf at most. With fewer, queries where leaves are
     /// small take up to twice as long.
@@ -192,14 +206,16 @@ public:
     }
 
     /// The leaf that holds `x`; a place outside the domain is taken for the nearest one inside.
-    LeafPlace locate(const Point& x) const { return descend(root_, {0, root_slot, 0, domain_}, x); }
+    LeafPlace locate(const Point& x) const {
+        return descend(nodes(), root_, {0, root_slot, 0, domain_}, x);
+    }
 
     /// The same, starting at the place of a former leaf that has been split since.
     LeafPlace locate_from(const LeafPlace& parent, const Point& x) const {
         const Ref ref = parent.slot == root_slot
                             ? root_
                             : nodes_[parent.slot / arity].children[parent.slot % arity];
-        return descend(ref, parent, x);
+        return descend(nodes(), ref, parent, x);
     }
 
     /// The number alone of the leaf that holds `x`.
@@ -244,14 +260,29 @@ public:
         for (int c = 1; c < arity; ++c) node.set_child(c, Ref::leaf(leaves_++));
         make_room(nodes_, 1);
         nodes_.push_back(node);
+        deepen_to(place.level + 1);
+        graft(place, inner);
+    }
+
+    /// The same for many leaves at once: room for so many nodes and their leaves; all are then to
+    /// be entered, on any number of threads.
+    void grow(std::size_t nodes) {
+        make_room(nodes_, nodes);
+        nodes_.resize(nodes_.size() + nodes);
+        leaves_ += static_cast<LeafIndex>(nodes * (arity - 1));
+    }
+    void enter(std::size_t inner, const Node& node) { nodes_[inner] = node; }
+    /// Puts a node, with all below it, in the place of a leaf.
+    void graft(const LeafPlace& place, Ref inner) {
         if (place.slot == root_slot) {
             root_ = inner;
         } else {
             nodes_[place.slot / arity].set_child(static_cast<int>(place.slot % arity), inner);
         }
-        deepest_ = std::max(deepest_, place.level + 1);
         jumps_.enter(inner, place.box, node_of());
     }
+    /// Some leaf is of that level.
+    void deepen_to(int level) { deepest_ = std::max(deepest_, level); }
 
     /// The same tree with its nodes and leaves in depth-first order; leaf i was `former[i]`.
     Topology depth_first(std::vector<LeafIndex>& former) const {
@@ -266,8 +297,10 @@ public:
         return ordered;
     }
 
-    /// Whether one more split would outgrow the references.
-    bool is_full() const { return leaves_ + arity > Ref::max_index; }
+    /// Whether so many more splits would outgrow the references.
+    bool is_full(std::size_t splits) const {
+        return leaves_ + splits * (arity - 1) >= Ref::max_index;
+    }
 
     /// Calls visit(leaf, box) for all leaves, depth first, children in their order.
     template <class Visit>
@@ -314,18 +347,6 @@ private:
 
     auto node_of() const {
         return [this](Ref inner) -> const Node& { return node(inner); };
-    }
-
-    LeafPlace descend(Ref ref, LeafPlace place, const Point& x) const {
-        while (!ref.is_leaf()) {
-            const std::size_t inner = ref.index();
-            const auto c = static_cast<std::size_t>(nodes_[inner].descend(x, place.box));
-            place.slot = inner * arity + c;
-            ref = nodes_[inner].children[c];
-            ++place.level;
-        }
-        place.leaf = ref.index();
-        return place;
     }
 
     template <class Visit>

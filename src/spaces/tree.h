@@ -14,12 +14,13 @@
 #include "spaces/anchored_values.h"
 #include "spaces/catalogue.h"
 #include "spaces/control_space.h"
+#include "spaces/leaf_growth.h"
 #include "spaces/leaf_values.h"
 #include "spaces/met_sources.h"
 #include "spaces/past_state.h"
 #include "spaces/published_bytes.h"
 #include "spaces/sample_leaves.h"
-#include "spaces/split_rule.h"
+#include "spaces/source_cuts.h"
 #include "spaces/topology.h"
 #include "spaces/topology_state.h"
 
@@ -46,18 +47,10 @@ public:
 
     InsertionReport insert(std::span<const PointSource> sources) override {
         InsertionReport report;
-        MetSources met;
-        while (report.sources < sources.size()) {
-            const auto part = met.next_part(sources.subspan(report.sources));
-            if constexpr (!keeps_sources) {
-                met.look(topology_, storage_, options_.tolerance, part);
-            }
-            for (std::size_t k = 0; k < part.size(); ++k, ++report.sources) {
-                if (met.is_met(k)) continue;
-                require_valid(part[k], report.sources, domain());
-                if (insert_valid(part[k]) == Insertion::inserted) ++report.inserted;
-            }
+        if constexpr (Storage::grows_by_leaf) {
+            if (!balanced_ && !storage_.keeps_asked()) report = insert_by_leaf(sources);
         }
+        insert_in_turn(sources, report);
         // Copying everything would be out of proportion to a few sources more.
         if (!options_.takes_later_sources) settle();
         return report;
@@ -80,7 +73,9 @@ public:
             return grade_sources(options);
         } else {
             require_valid(options);
-            if (options.neighbourhood == Neighbourhood::all) require_memory(options.neighbourhood);
+            if (options.neighbourhood == Neighbourhood::all) {
+                require_memory(topology_.leaves(), options.neighbourhood);
+            }
             topology_.fit_jumps();
             return options_.takes_later_sources ? grade_beside_asked(options)
                                                 : storage_.grade(topology_, options);
@@ -108,8 +103,9 @@ public:
         });
         report.met = report.reached <= goal.target;
         if (too_deep) {
-            report.shortfall = fmt::format(
-                "leaves of level {} are not cut: raise target_delta or the depth", max_depth());
+            report.shortfall =
+                fmt::format("leaves of level {} are not cut: raise target_delta or the depth",
+                            cuts().max_depth());
         } else if (too_short) {
             report.shortfall =
                 "the field jumps: leaves far shorter than an element are not cut: raise "
@@ -158,7 +154,42 @@ private:
     static constexpr bool keeps_sources = std::is_same_v<Storage, AnchoredValues>;
     static constexpr bool is_octree = std::is_same_v<Node, OctreeNode>;
 
-    int max_depth() const { return is_octree ? options_.octree_depth : options_.kd_depth; }
+    SourceCuts<Node> cuts() const { return SourceCuts<Node>(options_); }
+
+    InsertionReport insert_by_leaf(std::span<const PointSource> sources) {
+        InsertionReport report;
+        const SourceCuts<Node> cuts = this->cuts();
+        LeafGrowth<Node> growth(cuts, options_.tolerance);
+        while (report.sources < sources.size()) {
+            const auto batch = growth.next_batch(sources.subspan(report.sources));
+            const std::size_t valid = growth.grow(topology_, storage_.metrics(), batch);
+            if (valid == 0) require_valid(batch.front(), report.sources, domain());
+            make_room_for(growth.cuts_made());
+            topology_.grow(growth.cuts_made());
+            storage_.grow(growth.cuts_made() * (Node::arity - 1));
+            growth.enter(topology_, storage_.metrics());
+            topology_.fit_jumps_roughly();
+            report.sources += valid;
+            report.inserted += growth.inserted();
+        }
+        return report;
+    }
+
+    // One after the other, those left after the report's.
+    void insert_in_turn(std::span<const PointSource> sources, InsertionReport& report) {
+        MetSources met;
+        while (report.sources < sources.size()) {
+            const auto part = met.next_part(sources.subspan(report.sources));
+            if constexpr (!keeps_sources) {
+                met.look(topology_, storage_, options_.tolerance, part);
+            }
+            for (std::size_t k = 0; k < part.size(); ++k, ++report.sources) {
+                if (met.is_met(k)) continue;
+                require_valid(part[k], report.sources, domain());
+                if (insert_valid(part[k]) == Insertion::inserted) ++report.inserted;
+            }
+        }
+    }
 
     Insertion insert_valid(const PointSource& source) {
         const Point& q = source.position;
@@ -166,10 +197,8 @@ private:
             return Insertion::already_met;
         }
         LeafPlace place = topology_.locate(q);
-        while (place.level < max_depth() && is_too_long(source.metric, place.box)) {
-            const Subdivision subdivision = subdivide(place.box, source);
-            if (!subdivision.is_proper()) break;
-            split(place, subdivision);
+        while (const auto cut = cuts().cut(place, source)) {
+            split(place, *cut);
             place = topology_.locate_from(place, q);
         }
         storage_.lower(place, source);
@@ -205,7 +234,7 @@ private:
         TreeAdaptation adaptation(topology_, storage_, field, goal);
         adaptation.run(false, [&](const Box& box, const auto& along, auto& cut) {
             ++report.operations;
-            return is_too_long(storage_.value(topology_, box.centre()), box) &&
+            return cuts().is_too_long(storage_.value(topology_, box.centre()), box) &&
                    split_across(box, along, cut);
         });
         settle();
@@ -221,7 +250,7 @@ private:
                       std::vector<LeafIndex>& cut) {
         const LeafPlace place = topology_.locate(box.centre());
         const Subdivision subdivision = Node::subdivision_across(place.box, along);
-        if (place.level >= max_depth() || !subdivision.is_proper()) return false;
+        if (place.level >= cuts().max_depth() || !subdivision.is_proper()) return false;
         split(place, subdivision, &cut);
         return true;
     }
@@ -235,27 +264,10 @@ private:
         return std::max({lengths[0], lengths[1], lengths[2]}) < share_of_element;
     }
 
-    // Whether any edge of `box` is longer than l_min in the metric.
-    bool is_too_long(const Metric& metric, const Box& box) const {
-        const auto lengths = metric_edge_lengths(metric, box.edges());
-        return std::max({lengths[0], lengths[1], lengths[2]}) > options_.l_min;
-    }
-
-    Subdivision subdivide(const Box& box, const PointSource& source) const {
-        if constexpr (is_octree) {
-            return octants(box);
-        } else {
-            return cut(options_.split, box, source, options_.l_min);
-        }
-    }
-
     // Appends to `cut`, if given, the leaf and all neighbours that had to be split before it.
     void split(const LeafPlace& place, const Subdivision& subdivision,
                std::vector<LeafIndex>* cut = nullptr) {
-        if (topology_.is_full()) {
-            throw InputError("a tree holds 2^30 leaves at most: raise l_min or lower the depth");
-        }
-        if (topology_.leaves() >= next_look_) require_memory();
+        make_room_for(1);
         if constexpr (is_octree) {
             if (balanced_) refine_coarser_neighbours(place, cut);
         }
@@ -264,6 +276,15 @@ private:
         topology_.fit_jumps_roughly();
         storage_.split(subdivision, place.leaf, first_new);
         if (cut != nullptr) cut->push_back(place.leaf);
+    }
+
+    // Throws InputError where the tree is not to have so many inner nodes more.
+    void make_room_for(std::size_t cuts) {
+        if (topology_.is_full(cuts)) {
+            throw InputError("a tree holds 2^30 leaves at most: raise l_min or lower the depth");
+        }
+        const std::size_t leaves = topology_.leaves() + (cuts - 1) * (Node::arity - 1);
+        if (leaves >= next_look_) require_memory(leaves);
     }
 
     // Gives back what only growing needs, and makes what only answers need.
@@ -277,14 +298,14 @@ private:
         }
     }
 
-    // Stops a tree that outgrows the cap, long before the system stops the program.
-    void require_memory(Neighbourhood neighbourhood = Neighbourhood::faces) {
+    // Stops a tree of so many leaves that outgrows the cap, long before the system stops the
+    // program.
+    void require_memory(std::size_t leaves, Neighbourhood neighbourhood = Neighbourhood::faces) {
         // Gradation copies the nodes and links them: over faces 145 bytes for a leaf, 290 for its
         // vertices; with all neighbours up to 640.
         const std::size_t gradation_bytes_per_leaf =
             neighbourhood == Neighbourhood::all ? 700 : 300;
-        const std::size_t bytes =
-            footprint().bytes_total() + topology_.leaves() * gradation_bytes_per_leaf;
+        const std::size_t bytes = footprint().bytes_total() + leaves * gradation_bytes_per_leaf;
         if (bytes > options_.max_bytes) {
             constexpr double gib = 1024.0 * 1024 * 1024;
             throw InputError(
@@ -293,7 +314,7 @@ private:
                             "or max_memory",
                             static_cast<double>(options_.max_bytes) / gib));
         }
-        next_look_ = topology_.leaves() + topology_.leaves() / 16;
+        next_look_ = leaves + leaves / 16;
     }
 
     // Brings all face neighbours to the leaf's own level at least, so that it may be split.

@@ -119,9 +119,9 @@ void VertexValues::describe(Footprint& footprint) const {
 }
 
 void VertexValues::shrink_to_fit() {
-    corners_.shrink_to_fit();
+    controlspace::shrink_to_fit(corners_);
     metrics_.shrink_to_fit();
-    positions_.shrink_to_fit();
+    controlspace::shrink_to_fit(positions_);
 }
 
 }  // namespace controlspace

@@ -50,6 +50,7 @@ public:
     static constexpr int order = 1;
     static constexpr CutBy cut_by = CutBy::edges;
     static constexpr bool follows_neighbours = false;
+    static constexpr bool grows_by_leaf = false;
 
     explicit VertexValues(const SpaceOptions& options);
 
