@@ -118,13 +118,9 @@ Write format_of(const ExportOptions& options) {
         throw InputError(fmt::format("{}: name a file of one of {}", options.output.string(),
                                      exported_formats()));
     }
-    const bool at_vertices = format->second == write_solution;
-    if (at_vertices && options.mesh.empty()) {
+    if (format->second == write_solution && options.mesh.empty()) {
         throw InputError(
             fmt::format("{}: name the mesh that it is for by --mesh", options.output.string()));
-    }
-    if (!at_vertices && !options.mesh.empty()) {
-        throw InputError("--mesh is for .sol and .solb: leave it out");
     }
     return format->second;
 }

@@ -1,5 +1,14 @@
 #include "app/export_command.h"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "error.h"
+#include "sources/read_sources.h"
 #ifdef CONTROLSPACE_OPENVDB
 #include "export/metric_grids.h"
 #endif
@@ -63,6 +72,24 @@ void add_vtk_options(CLI::App& command, ExportOptions& options) {
 }
 #endif
 
+/// Refuses options of formats other than that of `output`.
+void require_of_format(const CLI::App& command, const std::filesystem::path& output) {
+    const std::vector<std::string> solution{".sol", ".solb"}, image{".vti"}, grid{".vtu"},
+        volume{".vdb"};
+    const std::map<std::string, std::vector<std::string>> formats{
+        {"--mesh", solution}, {"--nodes", grid},   {"--slice", image},
+        {"--samples", image}, {"--voxel", volume}, {"--tolerance", volume},
+        {"--grids", volume},  {"--half", volume},  {"--compression", volume}};
+    const std::string ending = lower_case_extension(output);
+    for (const CLI::Option* option : command.get_options()) {
+        const auto of = formats.find(option->get_name());
+        if (option->count() == 0 || of == formats.end()) continue;
+        if (std::find(of->second.begin(), of->second.end(), ending) != of->second.end()) continue;
+        throw InputError(
+            fmt::format("{} is for {}: leave it out", of->first, fmt::join(of->second, " and ")));
+    }
+}
+
 }  // namespace
 
 CLI::App* add_export(CLI::App& app, ExportOptions& options, WordsByKey& given) {
@@ -88,7 +115,8 @@ CLI::App* add_export(CLI::App& app, ExportOptions& options, WordsByKey& given) {
     // --voxel is the file's, not that of a grid that is exported.
     add_making_options(*command, given, "voxel");
     command->add_flag("--quiet", options.quiet, "No progress on standard error");
-    command->callback([&options] {
+    command->callback([command, &options] {
+        require_of_format(*command, options.output);
 #ifdef CONTROLSPACE_OPENVDB
         options.with_sources = std::erase(options.vdb.grids, sources_grid) > 0;
 #endif

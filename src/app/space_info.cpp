@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "app/info.h"
 #include "baselines/catalogue.h"
 #include "gradation/grade.h"
@@ -16,9 +14,7 @@ namespace {
 double mb(std::size_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
 const CatalogueEntry& entry_of(const Making& making) {
-    const auto all = structures();
-    return *std::find_if(all.begin(), all.end(),
-                         [&](const CatalogueEntry& entry) { return entry.id == making.structure; });
+    return *find_entry(structures(), making.structure);
 }
 
 /// Those that this structure heeds, by the names that `build` has for them.

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
+#include <iterator>
 #include <memory>
 #include <new>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +15,7 @@
 #include "baselines/catalogue.h"
 #include "c/option_text.h"
 #include "error.h"
+#include "sources/riemannian.h"
 #include "spaces/control_space_file.h"
 #include "version.h"
 
@@ -65,19 +69,43 @@ Point point_at(const double* positions, std::size_t i) {
     return {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
 }
 
-// `metric_at(i)` of each source.
-template <class MetricAt>
-void insert(cspace* handle, std::size_t n, const double* positions, MetricAt&& metric_at) {
+Metric metric_at(const double* metrics, std::size_t i) {
+    const double* m = metrics + 6 * i;
+    return {m[0], m[1], m[2], m[3], m[4], m[5]};
+}
+
+// Puts `metric_of(i)` at each position.
+template <class MetricOf>
+std::vector<PointSource> sources_at(std::size_t n, const double* positions, MetricOf&& metric_of) {
     std::vector<PointSource> sources;
     sources.reserve(n);
-    for (std::size_t i = 0; i < n; ++i) sources.push_back({point_at(positions, i), metric_at(i)});
-    space_of(handle).insert(sources);
+    for (std::size_t i = 0; i < n; ++i) sources.push_back({point_at(positions, i), metric_of(i)});
+    return sources;
+}
+
+std::vector<PointSource> sources_of(std::size_t n, const double* positions, const double* metrics) {
+    if (n > 0) require(positions, "positions");
+    if (n > 0) require(metrics, "metrics");
+    return sources_at(n, positions, [&](std::size_t i) { return metric_at(metrics, i); });
+}
+
+// Writes `converted` of each of `n` metrics; what converts to nothing is named by its index.
+template <class Converted>
+void convert(std::size_t n, const double* from, double* to, Converted&& converted) {
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::optional<Metric> m = converted(metric_at(from, i));
+        if (!m) {
+            throw InputError(fmt::format(
+                "metric {} is not positive definite: check the order of its numbers", i));
+        }
+        const double numbers[] = {m->xx, m->yy, m->zz, m->xy, m->xz, m->yz};
+        std::copy(std::begin(numbers), std::end(numbers), to + 6 * i);
+    }
 }
 
 const CatalogueEntry& entry_named(std::string_view name) {
-    for (const CatalogueEntry& entry : structures()) {
-        if (entry.id == name) return entry;
-    }
+    const CatalogueEntry* entry = find_entry(structures(), name);
+    if (entry != nullptr) return *entry;
     throw InputError(fmt::format("there is no structure {}: cspace_structure lists them", name));
 }
 
@@ -108,14 +136,7 @@ void cspace_free(cspace* space) { delete space; }
 
 cspace_status cspace_insert(cspace* space, size_t n, const double* positions,
                             const double* metrics) {
-    return guarded([&] {
-        if (n > 0) require(positions, "positions");
-        if (n > 0) require(metrics, "metrics");
-        insert(space, n, positions, [&](std::size_t i) {
-            const double* m = metrics + 6 * i;
-            return Metric{m[0], m[1], m[2], m[3], m[4], m[5]};
-        });
-    });
+    return guarded([&] { space_of(space).insert(sources_of(n, positions, metrics)); });
 }
 
 cspace_status cspace_insert_lengths(cspace* space, size_t n, const double* positions,
@@ -123,12 +144,22 @@ cspace_status cspace_insert_lengths(cspace* space, size_t n, const double* posit
     return guarded([&] {
         if (n > 0) require(positions, "positions");
         if (n > 0) require(lengths, "lengths");
-        insert(space, n, positions, [&](std::size_t i) { return Metric::isotropic(lengths[i]); });
+        space_of(space).insert(
+            sources_at(n, positions, [&](std::size_t i) { return Metric::isotropic(lengths[i]); }));
     });
 }
 
 cspace_status cspace_grade(cspace* space, double ratio) {
     return guarded([&] { space_of(space).grade({.ratio = ratio}); });
+}
+
+cspace_status cspace_adapt(cspace* space, size_t n, const double* positions, const double* metrics,
+                           double ratio, double target, double* reached) {
+    return guarded([&] {
+        const std::vector<PointSource> sources = sources_of(n, positions, metrics);
+        const AdaptationReport report = space_of(space).adapt({sources, nullptr, ratio, target});
+        if (reached != nullptr) *reached = report.reached;
+    });
 }
 
 cspace_status cspace_sample(const cspace* space, size_t n, const double* positions,
@@ -139,6 +170,24 @@ cspace_status cspace_sample(const cspace* space, size_t n, const double* positio
         // Point and Metric are three and six numbers without gaps (spaces/state.h).
         space_of(space).sample({reinterpret_cast<const Point*>(positions), n},
                                {reinterpret_cast<Metric*>(metrics), n});
+    });
+}
+
+cspace_status cspace_to_riemannian(size_t n, const double* metrics, double* riemannian) {
+    return guarded([&] {
+        if (n > 0) require(metrics, "metrics");
+        if (n > 0) require(riemannian, "riemannian");
+        convert(n, metrics, riemannian, [](const Metric& m) {
+            return is_source_metric(m) ? std::optional(to_riemannian(m)) : std::nullopt;
+        });
+    });
+}
+
+cspace_status cspace_from_riemannian(size_t n, const double* riemannian, double* metrics) {
+    return guarded([&] {
+        if (n > 0) require(riemannian, "riemannian");
+        if (n > 0) require(metrics, "metrics");
+        convert(n, riemannian, metrics, from_riemannian);
     });
 }
 

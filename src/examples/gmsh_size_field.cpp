@@ -6,7 +6,7 @@
 using namespace controlspace;
 
 int main() {
-    const CatalogueEntry& octree = tree_catalogue()[5];  // K_oV
+    const CatalogueEntry& octree = *find_entry(tree_catalogue(), "K_oV");
     const auto space = octree.make({.domain = {Point(-1, -1, -1), Point(1, 1, 1)}});
     space->insert(PointSource{Point(0.3, 0.2, 0), Metric::isotropic(0.02)});
     space->insert(PointSource{Point(-1, -1, -1), Metric::isotropic(0.05)});

@@ -124,9 +124,9 @@ vtkDataArray& chosen_array(const std::filesystem::path& path, vtkPointData& data
         if (is_named) chosen.push_back(array);
     }
     if (chosen.size() == 1) return *chosen.front();
+    if (names.empty()) fail(path, "its points have no arrays: give sizes or metrics at points");
     fail(path, fmt::format("{} arrays of points are {}; there are {}: name one (--source-array)",
-                           chosen.size(), name.empty() ? "named :metric" : quote(name),
-                           names.empty() ? "none" : names));
+                           chosen.size(), name.empty() ? "named :metric" : quote(name), names));
 }
 
 std::vector<Metric> metrics_of(const std::filesystem::path& path, vtkDataArray& array) {

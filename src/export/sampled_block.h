@@ -43,7 +43,6 @@ struct SampledBlock {
     static std::size_t index(std::int32_t i, std::int32_t j, std::int32_t k) {
         return static_cast<std::size_t>((i * side + j) * side + k);
     }
-    bool is_uniform() const { return same_as[size - 1] == 0; }
 };
 
 /// Samples `field` at the centres of the block of voxels from `first` on (multiples of 8; voxels

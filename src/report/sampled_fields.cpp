@@ -41,11 +41,8 @@ std::unique_ptr<ControlSpace> make_again(const Study& study, const Row& row,
         why_not = fmt::format("took longer than {} s to make", longest_creation_s);
         return nullptr;
     }
-    const std::string& id = row.setting.structure;
-    const auto entry = std::find_if(catalogue.begin(), catalogue.end(), [&](const auto& candidate) {
-        return candidate.id == id || (!id.empty() && candidate.former_id == id);
-    });
-    if (entry == catalogue.end()) {
+    const CatalogueEntry* entry = find_entry(catalogue, row.setting.structure);
+    if (entry == nullptr) {
         why_not = "this program has no such structure";
         return nullptr;
     }

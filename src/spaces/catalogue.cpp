@@ -1,5 +1,6 @@
 #include "spaces/catalogue.h"
 
+#include <algorithm>
 #include <array>
 
 #include "spaces/anchored_values.h"
@@ -40,6 +41,14 @@ std::unique_ptr<ControlSpace> CatalogueEntry::make(const SpaceOptions& options) 
     auto space = construct(options);
     space->set_making({id, options});
     return space;
+}
+
+const CatalogueEntry* find_entry(std::span<const CatalogueEntry> entries, std::string_view id) {
+    const auto named = [&](const CatalogueEntry& entry) {
+        return entry.id == id || (!id.empty() && entry.former_id == id);
+    };
+    const auto found = std::find_if(entries.begin(), entries.end(), named);
+    return found == entries.end() ? nullptr : &*found;
 }
 
 std::span<const CatalogueEntry> tree_catalogue() {

@@ -37,6 +37,9 @@ struct CatalogueEntry {
     std::unique_ptr<ControlSpace> make(const SpaceOptions& options) const;
 };
 
+/// The entry that is named `id`, or once was; null where there is none.
+const CatalogueEntry* find_entry(std::span<const CatalogueEntry> entries, std::string_view id);
+
 /// The six trees of the paper.
 std::span<const CatalogueEntry> tree_catalogue();
 

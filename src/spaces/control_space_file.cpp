@@ -172,11 +172,8 @@ std::unique_ptr<ControlSpace> load_control_space(const std::filesystem::path& fi
     SpaceOptions options;
     state("structure", structure);
     exchange(options, state);
-    const auto entry =
-        std::find_if(structures.begin(), structures.end(), [&](const CatalogueEntry& candidate) {
-            return candidate.id == structure || candidate.former_id == structure;
-        });
-    if (entry == structures.end()) {
+    const CatalogueEntry* entry = find_entry(structures, structure);
+    if (entry == nullptr) {
         throw InputError(fmt::format(
             "{} holds the structure {}, which is not known here: take a build that has it", name,
             quote(structure)));

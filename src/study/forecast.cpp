@@ -148,6 +148,9 @@ std::string forecast_text(const PreparedStudy& prepared,
         unknown += f ? 0 : 1;
     }
     std::string text = render(table, TableStyle::terminal);
+    if (unknown == forecasts.size()) {
+        return text + fmt::format("\n{} cases: no trial tells what they cost (–)\n", unknown);
+    }
     text += fmt::format("\n{} cases: about {} in all, structures of up to {:.2g} MB",
                         forecasts.size(), duration_text(seconds), 1e-6 * most_bytes);
     if (unknown > 0) text += fmt::format("; {} of them (–) not counted", unknown);

@@ -79,8 +79,7 @@ bool share_probes(const Case& a, const Case& b) {
 }
 
 const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> catalogue) {
-    return *std::find_if(catalogue.begin(), catalogue.end(),
-                         [&](const CatalogueEntry& entry) { return entry.id == c.structure; });
+    return *find_entry(catalogue, c.structure);
 }
 
 namespace {

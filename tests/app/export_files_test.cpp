@@ -78,6 +78,7 @@ TEST_CASE("elements, nodes, octrees and slices are files for ParaView") {
         CHECK_THAT(outcome.out, Catch::Matchers::StartsWith("a.v") ||
                                     Catch::Matchers::StartsWith("a.htg: an octree"));
     }
+    check_refused(box.run("info a.vtu"), "a.vtu: its points have no arrays");
     REQUIRE(box.run("export s.csv -o nodes.vtu --nodes --structures K_V").status == 0);
     CHECK_THAT(box.run("info nodes.vtu").out, Contains("0.1 to "));
 }

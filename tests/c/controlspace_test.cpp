@@ -1,6 +1,7 @@
 // The C library answers as the C++ library does, and turns every failure into a status.
 #include <controlspace/controlspace.h>
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <string>
@@ -114,6 +115,42 @@ TEST_CASE("C: what cannot be used is refused with a reason") {
     CHECK(cspace_sample(space, 0, nullptr, nullptr) == CSPACE_OK);
     CHECK(sampled(space) == before);
     cspace_free(space);
+}
+
+TEST_CASE("C: a tree that is given a target is that of C++") {
+    cspace* space = made("K_oLA");
+    double reached = -1;
+    REQUIRE(cspace_adapt(space, 1, place.data(), tensor.data(), 1.5, 0.05, &reached) == CSPACE_OK);
+    const auto own = find_entry(structures(), "K_oLA")->make({.domain = domain, .l_min = 0.5});
+    const PointSource source{Point(0.3, 0.2, 0.1), {0.1, 0.2, 0.3, 0.01, 0.02, 0.03}};
+    CHECK(reached == own->adapt({{&source, 1}, nullptr, 1.5, 0.05}).reached);
+    CHECK(reached <= 0.05);
+    const std::vector<double> metrics = sampled(space);
+    const std::vector<Point> x = random_points(domain, 200, 1);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        CHECK(metrics[6 * k + 3] == sample_at(*own, x[k]).xy);
+    }
+    CHECK(cspace_adapt(space, 1, place.data(), tensor.data(), 1.5, 0, nullptr) == CSPACE_BAD_INPUT);
+    CHECK(cspace_adapt(space, 1, nullptr, tensor.data(), 1.5, 0.1, nullptr) == CSPACE_BAD_INPUT);
+    cspace_free(space);
+}
+
+TEST_CASE("C: metrics become Riemannian ones and come back") {
+    std::array<double, 12> metrics{0.5, 0.25, 0.1, 0, 0, 0};
+    std::copy(tensor.begin(), tensor.end(), metrics.begin() + 6);
+    std::array<double, 12> other = metrics;
+    REQUIRE(cspace_to_riemannian(2, other.data(), other.data()) == CSPACE_OK);
+    CHECK(other[0] == Approx(4));
+    CHECK(other[1] == Approx(16));
+    CHECK(other[2] == Approx(100));
+    CHECK(other[3] == Approx(0).margin(1e-12));
+    REQUIRE(cspace_from_riemannian(2, other.data(), other.data()) == CSPACE_OK);
+    for (std::size_t i = 0; i < 12; ++i) CHECK(other[i] == Approx(metrics[i]).margin(1e-12));
+    metrics[8] = -1;
+    CHECK(cspace_to_riemannian(2, metrics.data(), other.data()) == CSPACE_BAD_INPUT);
+    CHECK_THAT(cspace_last_error(), Contains("metric 1 is not positive definite"));
+    CHECK(cspace_from_riemannian(2, metrics.data(), other.data()) == CSPACE_BAD_INPUT);
+    CHECK(cspace_from_riemannian(1, nullptr, other.data()) == CSPACE_BAD_INPUT);
 }
 
 TEST_CASE("C: each thread has a last error of its own") {

@@ -59,6 +59,9 @@ TEST_CASE("more sources take more memory; what only running tells has no forecas
     CHECK(bytes[0] < bytes[1]);
     CHECK_THAT(forecast_text(prepared, forecasts),
                Contains("4 cases: about 0:") && Contains("2 of them (–) not counted"));
+    study.runs[0].target_delta = {0.1};
+    const PreparedStudy adapted(study, structures());
+    CHECK_THAT(forecast_text(adapted, forecast(adapted)), Contains("2 cases: no trial tells"));
 }
 
 TEST_CASE("a grid that outgrows the cap on memory is foretold at the cap") {
