@@ -19,6 +19,9 @@ public:
 
     std::size_t size() const { return field_.size(); }
     const Metric& operator[](std::size_t node) const { return field_[node]; }
+    [[gnu::always_inline]] void prefetch(std::size_t node) const {
+        __builtin_prefetch(&field_[node]);
+    }
     std::span<const Metric> field() const { return field_; }
     std::span<Metric> field() { return field_; }
     /// What the sources alone ask for: the same as the field unless that is kept apart.

@@ -30,6 +30,14 @@ std::size_t PlaceIndex::slot_of(const Point& x, std::span<const Point> positions
     return slot;
 }
 
+void PlaceIndex::prefetch(const Point& x) const {
+    if (!table_.empty()) __builtin_prefetch(&table_[hash(x) & (table_.size() - 1)]);
+}
+
+NodeIndex PlaceIndex::likely_at(const Point& x) const {
+    return table_.empty() ? nobody : table_[hash(x) & (table_.size() - 1)];
+}
+
 PlaceIndex::PlaceIndex(std::span<const Point> positions) : used_(positions.size()) {
     enter_all(std::max(smallest_table, std::bit_ceil(2 * positions.size())), positions);
 }

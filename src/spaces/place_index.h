@@ -21,6 +21,11 @@ public:
     /// append `x` to its positions as number `next` before the next call.
     NodeIndex find_or_enter(const Point& x, NodeIndex next, std::span<const Point> positions);
 
+    /// Asks memory for what a search for `x` reads first; and the node that it compares with first,
+    /// or a number beyond all nodes.
+    void prefetch(const Point& x) const;
+    NodeIndex likely_at(const Point& x) const;
+
     bool is_empty() const { return used_ == 0; }
     std::size_t bytes() const { return table_.capacity() * sizeof(NodeIndex); }
 

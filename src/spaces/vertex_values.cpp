@@ -42,12 +42,18 @@ void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafInd
     const Corners old = corners_[leaf];
     if (keeps_asked()) changes_.cut(leaf, old);
     const Box& box = subdivision.box;
-    constexpr NodeIndex unknown = ~NodeIndex{0};
+    constexpr NodeIndex unknown = ~NodeIndex{0}, wanted = unknown - 1;
     std::array<NodeIndex, 27> lattice;
     lattice.fill(unknown);
-    const auto node_at = [&](const std::array<int, 3>& step) {
-        NodeIndex& node = lattice[static_cast<std::size_t>(step[0] + 3 * step[1] + 9 * step[2])];
-        if (node != unknown) return node;
+    struct Place {
+        std::size_t at;  // in the lattice
+        Point x;
+    };
+    std::array<Place, 19> fresh;
+    std::size_t count = 0;
+    const auto enter = [&](const std::array<int, 3>& step) {
+        const auto at = static_cast<std::size_t>(step[0] + 3 * step[1] + 9 * step[2]);
+        if (lattice[at] != unknown) return at;
         Point x;
         int old_corner = 0;
         bool is_old = true;
@@ -57,15 +63,14 @@ void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafInd
             old_corner |= (s / 2) << a;
             is_old = is_old && s != 1;
         }
-        node = is_old ? old[static_cast<std::size_t>(old_corner)] : vertex_at(x, box, old);
-        return node;
+        lattice[at] = is_old ? old[static_cast<std::size_t>(old_corner)] : wanted;
+        if (!is_old) fresh[count++] = {at, x};
+        return at;
     };
 
     const int children = subdivision.children();
-    make_room(corners_, static_cast<std::size_t>(children - 1));
-    corners_.resize(corners_.size() + static_cast<std::size_t>(children - 1));
+    std::array<std::array<std::size_t, 8>, 8> corners_at;  // in the lattice
     for (int c = 0; c < children; ++c) {
-        const LeafIndex child = c == 0 ? leaf : first_new + static_cast<LeafIndex>(c - 1);
         for (int i = 0; i < 8; ++i) {
             std::array<int, 3> step{};
             for (Axis a = 0; a < 3; ++a) {
@@ -73,7 +78,26 @@ void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafInd
                 const int bit = i >> a & 1;
                 step[axis] = subdivision.cuts[axis] ? subdivision.side(c, a) + bit : 2 * bit;
             }
-            corners_[child][static_cast<std::size_t>(i)] = node_at(step);
+            corners_at[static_cast<std::size_t>(c)][static_cast<std::size_t>(i)] = enter(step);
+        }
+    }
+    // Memory is asked for all of them, before the first has to wait for it.
+    const auto places = std::span(fresh).first(count);
+    for (const Place& place : places) places_.prefetch(place.x);
+    for (const Place& place : places) {
+        const NodeIndex node = places_.likely_at(place.x);
+        if (node >= positions_.size()) continue;
+        __builtin_prefetch(&positions_[node]);
+        metrics_.prefetch(node);
+    }
+    for (const Place& place : places) lattice[place.at] = vertex_at(place.x, box, old);
+
+    make_room(corners_, static_cast<std::size_t>(children - 1));
+    corners_.resize(corners_.size() + static_cast<std::size_t>(children - 1));
+    for (int c = 0; c < children; ++c) {
+        const LeafIndex child = c == 0 ? leaf : first_new + static_cast<LeafIndex>(c - 1);
+        for (std::size_t i = 0; i < 8; ++i) {
+            corners_[child][i] = lattice[corners_at[static_cast<std::size_t>(c)][i]];
         }
     }
     if (!keeps_asked()) return;
