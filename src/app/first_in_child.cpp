@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <string>
@@ -47,6 +48,14 @@ rlim_t memory_limit(const std::filesystem::path& file) {
            bytes_per_byte * (none ? 0 : size);
 }
 
+/// Seconds of processors that reading the file may take: far more than the slowest reader does.
+rlim_t time_limit(const std::filesystem::path& file) {
+    constexpr std::uintmax_t bytes_per_second = 100'000;
+    std::error_code none;
+    const auto size = std::filesystem::file_size(file, none);
+    return 20 + (none ? 0 : size) / bytes_per_second;
+}
+
 [[noreturn]] void read_in_child(const std::filesystem::path& file,
                                 const std::function<void()>& read, int answer) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -56,6 +65,7 @@ rlim_t memory_limit(const std::filesystem::path& file) {
     ::dup2(nowhere, STDERR_FILENO);
     limit(RLIMIT_CORE, 0);
     if (limits_memory) limit(RLIMIT_AS, memory_limit(file));
+    limit(RLIMIT_CPU, time_limit(file));
     int status = failed;
     try {
         read();

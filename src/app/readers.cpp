@@ -20,6 +20,16 @@
 #endif
 
 namespace controlspace {
+namespace {
+
+/// What `read` makes of `file`, for libraries that may crash on it.
+template <class Read>
+auto read_twice(const std::filesystem::path& file, const Read& read) {
+    require_readable(file, read);
+    return read();
+}
+
+}  // namespace
 
 FileReaders file_readers() {
     FileReaders readers;
@@ -28,10 +38,11 @@ FileReaders file_readers() {
     };
 #ifdef CONTROLSPACE_OPENVDB
     readers.sources[".vdb"] = [](const SourcesChoice& choice) {
-        return read_vdb_sources(choice.file, choice.surface);
+        return read_twice(choice.file,
+                          [&] { return read_vdb_sources(choice.file, choice.surface); });
     };
     readers.vdb_field = [](const FieldChoice& choice) {
-        return read_vdb_field(choice.file, choice.vdb);
+        return read_twice(choice.file, [&] { return read_vdb_field(choice.file, choice.vdb); });
     };
 #endif
 #ifdef CONTROLSPACE_CGAL
@@ -44,17 +55,15 @@ FileReaders file_readers() {
 #endif
 #ifdef CONTROLSPACE_GMSH
     readers.sources[".msh"] = [](const SourcesChoice& choice) {
-        const auto read = [&] { return read_msh_sources(choice.file, choice.in_file.array); };
-        require_readable(choice.file, read);
-        return read();
+        return read_twice(choice.file,
+                          [&] { return read_msh_sources(choice.file, choice.in_file.array); });
     };
 #endif
 #ifdef CONTROLSPACE_VTK
     for (const char* ending : {".vtu", ".vtp"}) {
         readers.sources[ending] = [](const SourcesChoice& choice) {
-            const auto read = [&] { return read_vtk_sources(choice.file, choice.in_file.array); };
-            require_readable(choice.file, read);
-            return read();
+            return read_twice(choice.file,
+                              [&] { return read_vtk_sources(choice.file, choice.in_file.array); });
         };
     }
 #endif

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 
@@ -46,8 +47,10 @@ std::string value_type(openvdb::io::File& file, const std::string& grid) {
     }
 }
 
+/// Names of grids, and what libraries say, may hold anything.
 std::string one_line(std::string text) {
-    std::replace(text.begin(), text.end(), '\n', ' ');
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c >= '\0' && c < ' '; }, ' ');
     return text;
 }
 
@@ -87,7 +90,7 @@ VdbFile::VdbFile(const std::filesystem::path& path) : path_(path) {
             types_.push_back(value_type(file, *name));
         }
     } catch (const std::exception& error) {
-        fail(fmt::format("is no .vdb file that can be read ({})", one_line(error.what())));
+        fail(fmt::format("is no .vdb file that can be read ({})", error.what()));
     }
     if (names_.empty()) fail("holds no grid: name another file");
 }
@@ -112,7 +115,7 @@ openvdb::GridBase::Ptr VdbFile::read(std::string_view grid) const {
         file.open(/*delayLoad=*/false);
         read = file.readGrid(std::string(grid));
     } catch (const std::exception& error) {
-        fail(fmt::format("grid '{}' cannot be read ({})", grid, one_line(error.what())));
+        fail(fmt::format("grid '{}' cannot be read ({})", grid, error.what()));
     }
     require_usable(*read);
     return read;
@@ -123,13 +126,24 @@ void VdbFile::require_usable(const openvdb::GridBase& grid) const {
         fail(fmt::format("grid '{}' has a transform that is not linear ({}): resample it",
                          grid.getName(), grid.transform().mapType()));
     }
+    const double volume = std::abs(grid.transform().voxelVolume());
+    if (!(volume > 0 && std::isfinite(volume))) {
+        fail(fmt::format("grid '{}' has a transform whose voxels have the volume {}: resample it",
+                         grid.getName(), volume));
+    }
     if (grid.activeVoxelCount() == 0) {
         fail(fmt::format("grid '{}' is empty: it has no active voxel", grid.getName()));
+    }
+    try {
+        require_volume(active_box(grid));
+    } catch (const InputError& error) {
+        fail(fmt::format("grid '{}' lies where nothing can be computed ({}): resample it",
+                         grid.getName(), error.what()));
     }
 }
 
 void VdbFile::fail(const std::string& what) const {
-    throw InputError(fmt::format("{}: {}", path_.string(), what));
+    throw InputError(fmt::format("{}: {}", path_.string(), one_line(what)));
 }
 
 Box active_box(const openvdb::GridBase& grid) {

@@ -126,15 +126,16 @@ const std::string msh =
     "$NodeData\n1\n\"h\"\n1\n0\n3\n0\n1\n3\n1 0.5\n2 0.25\n3 0.125\n$EndNodeData\n";
 
 /// Reads all copies of a file that were damaged: the program ends as its help says.
-void check_damaged(const Sandbox& box, const std::string& name, const std::string& bytes) {
+void check_damaged(const Sandbox& box, const std::string& name, const std::string& bytes,
+                   const std::string& command = "info ") {
     CAPTURE(name);
     box.write(name, bytes);
-    REQUIRE(box.run("info " + name).status == 0);
+    REQUIRE(box.run(command + name).status == 0);
     int copy = 0;
     for (const std::string& damaged : damaged_copies(bytes, 5)) {
         CAPTURE(copy++);
         box.write(name, damaged);
-        const Outcome outcome = box.run("info " + name);
+        const Outcome outcome = box.run(command + name);
         CAPTURE(outcome.err);
         CHECK((outcome.status == 0 || outcome.status == 2));
         CHECK(lines(outcome.err) == (outcome.status == 0 ? 0 : 1));
@@ -169,5 +170,21 @@ TEST_CASE("damaged files of VTK are read or refused") {
     box.write("s.csv", "x,y,z,h\n0,0,0,0.1\n1,0,0,0.2\n0,1,0,0.2\n1,1,1,0.4\n");
     REQUIRE(box.run("convert s.csv d.vtu").status == 0);
     check_damaged(box, "d.vtu", file_text(box / "d.vtu"));
+}
+#endif
+
+#ifdef CONTROLSPACE_OPENVDB
+TEST_CASE("damaged files of OpenVDB are read or refused") {
+    const Sandbox box("damaged-vdb");
+    box.write("s.csv", "x,y,z,h\n0,0,0,0.3\n1,0,0,0.3\n0,1,0,0.3\n1,1,1,0.4\n");
+    const std::string compression = GENERATE("blosc", "zip");
+    REQUIRE(box.run("export s.csv --grids density,metric_diag,metric_off --voxel 0.25 -o d.vdb "
+                    "--compression " +
+                    compression)
+                .status == 0);
+    const std::string bytes = file_text(box / "d.vdb");
+    check_damaged(box, "d.vdb", bytes, "info --vdb-grid density --vdb-size 0.1 ");
+    check_damaged(box, "d.vdb", bytes,
+                  "compare --structures K_oL --dry-run --sources none --field file --field-file ");
 }
 #endif

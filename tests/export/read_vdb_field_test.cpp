@@ -223,6 +223,27 @@ TEST_CASE("files that cannot be used are refused in one line") {
         openvdb::BBoxd({0, 0, 0}, {3, 3, 3}), 0.5, 10, 1));
     CHECK_THAT(foreign({bent}, {.grid = "a"}), Contains("not linear"));
 
+    const auto mapped = [&](const openvdb::math::MapBase::Ptr& map) {
+        const auto grid = lengths("a", 1);
+        grid->setTransform(openvdb::math::Transform::Ptr(new openvdb::math::Transform(map)));
+        return foreign({grid}, {.grid = "a"});
+    };
+    const auto scaled = [&](double by) {
+        return mapped(std::make_shared<openvdb::math::UniformScaleMap>(by));
+    };
+    const auto moved = [&](double by) {
+        return mapped(std::make_shared<openvdb::math::TranslationMap>(openvdb::Vec3d(by, 0, 0)));
+    };
+    CHECK(scaled(1e9).empty());
+    CHECK(moved(-1e6).empty());
+    CHECK_THAT(scaled(1e60), Contains("where nothing can be computed"));
+    CHECK_THAT(scaled(1e200), Contains("voxels have the volume inf"));
+    CHECK_THAT(moved(std::nan("")), Contains("voxels have the volume nan"));
+    const auto named = lengths("two\nlines", 1);
+    CHECK(error_of([&] {
+              read_vdb_field(write_grids(folder, {named}), {.grid = "one"});
+          }).find('\n') == std::string::npos);
+
     CHECK_THAT(
         foreign({tensors("metric_diag", one), tensors("metric_off", openvdb::Vec3s(0, 2, 0))}, {}),
         Contains("not positive definite"));
