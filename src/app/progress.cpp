@@ -52,11 +52,13 @@ void Progress::case_finished(const Row& row) {
 void Progress::show() {
     const std::lock_guard lock(mutex_);
     if (style_ != ProgressStyle::live || over_ || finished_ == count_) return;
-    const auto left = estimate_.seconds_left();
-    const std::string line =
-        fmt::format("case {}/{}  {}  {}  {} elapsed{}", finished_ + 1, count_, case_, phase_,
-                    duration_text(seconds_between(start_, Clock::now())),
-                    left ? ", about " + duration_text(*left) + " left" : "");
+    const double elapsed = seconds_between(start_, Clock::now());
+    std::string line = fmt::format("case {}/{}  {}  {}  {} elapsed", finished_ + 1, count_, case_,
+                                   phase_, duration_text(elapsed));
+    if (const auto left = estimate_.seconds_left()) {
+        line += fmt::format(", {:.2g} cases/s, about {} left",
+                            static_cast<double>(finished_) / elapsed, duration_text(*left));
+    }
     show_live_line(line);
 }
 

@@ -22,7 +22,7 @@ enum class ProgressStyle {
 /// live on a terminal, lines elsewhere.
 ProgressStyle progress_style_of_stderr();
 
-/// Progress of a study on standard error: which case, what runs, elapsed and estimated time.
+/// Progress of a study on standard error: which case, what runs, elapsed time, rate and time left.
 /// May be shown by one thread while another reports.
 class Progress {
 public:

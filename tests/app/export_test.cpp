@@ -93,7 +93,7 @@ TEST_CASE("an exported field is a field, and its fog a surface, of another study
         box.run(compare + "field --sources none --field file --field-file out.vdb --voxel 0.05");
     INFO(field.err);
     REQUIRE(field.status == 0);
-    CHECK(row("field")["rows"][0]["delta_r_max"] < 0.2);
+    CHECK(row("field")["rows"][0]["delta_R_max"] < 0.2);
     CHECK(row("field")["settings"]["field_file"] == "out.vdb");
 
     const Outcome painted =
