@@ -19,7 +19,7 @@ namespace controlspace {
 
 // What the leaves of a tree hold once it is only read, its leaves numbered depth first. What
 // FrozenTree asks of each:
-//   prefetch(leaf), value_in(tree, leaf, x)
+//   prefetch(leaf), if it is worth it; value_in(tree, leaf, x), or values_in(tree, leaves, x, out)
 //   control_nodes(tree, neighbourhood), describe(footprint)
 //   kind, save(state)                    see frozen_state.h
 // `Number` is what metrics are kept in, `Plane` what planes are numbered in.
@@ -33,7 +33,6 @@ public:
     explicit FrozenLeaves(std::vector<StoredMetric<Number>> metrics)
         : metrics_(std::move(metrics)) {}
 
-    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&metrics_[leaf]); }
     template <class Node>
     Metric value_in(const Topology<Node>&, LeafIndex leaf, const Point&) const {
         return metrics_[leaf];

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -11,6 +10,7 @@
 
 #include "geometry/box.h"
 #include "geometry/large_pages.h"
+#include "spaces/cell_steps.h"
 #include "spaces/subdivision.h"
 #include "spaces/work_through.h"
 
@@ -28,6 +28,7 @@ public:
     /// One cell: the root.
     explicit JumpTable(const Box& domain) : domain_(domain) {
         for (Axis a = 0; a < 3; ++a) axes_[index(a)].cut(domain.low[a], domain.high[a], 1);
+        count_steps();
     }
 
     /// As many cells as leaves of a tree of that depth that is cut evenly by `subdivide`. False if
@@ -48,7 +49,7 @@ public:
         for (Axis a = 0; a < 3; ++a) {
             axes_[index(a)].cut(domain_.low[a], domain_.high[a], cells[index(a)]);
         }
-        set_fraction_bits();
+        count_steps();
         refs_ = {};  // so that both are never there together
         refs_ = large_array<Ref>(all);
         return true;
@@ -66,26 +67,8 @@ public:
         return refs_[cell(axes_[0].find(x.x()), axes_[1].find(x.y()), axes_[2].find(x.z()))];
     }
 
-    /// Numbers of the cells that hold places, for `at`: one pass over all, which the compiler turns
-    /// into vector instructions. Negative for places that `at` has to compare with planes.
-    ///
-    /// Cells are numbered in steps of 2^-fraction_bits_. The computed number of steps never falls
-    /// as a coordinate grows, and is less than one off at planes; so a place whose steps are not
-    /// the last before a plane nor the first behind it is on the side of that plane that they say.
-    void find(std::span<const Point> x, std::span<int> cells) const {
-        const int bits = fraction_bits_;
-        const unsigned fraction = (1u << bits) - 1;
-        const Steps sx(axes_[0], bits), sy(axes_[1], bits), sz(axes_[2], bits);
-        const int across = std::countr_zero(static_cast<unsigned>(axes_[0].count()));
-        const int up = across + std::countr_zero(static_cast<unsigned>(axes_[1].count()));
-        for (std::size_t p = 0; p < x.size(); ++p) {
-            const unsigned i = sx.below(x[p].x()), j = sy.below(x[p].y()), k = sz.below(x[p].z());
-            const unsigned near =
-                std::min(std::min((i + 1) & fraction, (j + 1) & fraction), (k + 1) & fraction);
-            const unsigned cell = i >> bits | j >> bits << across | k >> bits << up;
-            cells[p] = near > 1 ? static_cast<int>(cell) : -1;
-        }
-    }
+    /// Numbers of the cells that hold places, for `at`; see CellSteps::find.
+    void find(std::span<const Point> x, std::span<int> cells) const { steps_.find(x, cells); }
     Ref at(int cell, const Point& x) const {
         return cell >= 0 ? refs_[static_cast<std::size_t>(cell)] : at(x);
     }
@@ -111,17 +94,12 @@ public:
 private:
     static std::size_t index(Axis a) { return static_cast<std::size_t>(a); }
 
-    // As many as integers have room for, as long as the steps of `find` are longer than what
-    // quotients are off by at planes.
-    void set_fraction_bits() {
-        int most_cells = 0;
-        double error = 0;
-        for (const AxisCells& axis : axes_) {
-            most_cells = std::max(most_cells, axis.count());
-            error = std::max(error, axis.largest_error());
-        }
-        fraction_bits_ = 30 - std::countr_zero(static_cast<unsigned>(most_cells));
-        while (fraction_bits_ > 0 && error * (1 << fraction_bits_) > 0.5) --fraction_bits_;
+    void count_steps() {
+        std::array<CellSteps::Axis, 3> axes;
+        std::transform(axes_.begin(), axes_.end(), axes.begin(), [](const AxisCells& axis) {
+            return CellSteps::Axis{axis.low, axis.per_length, axis.count(), axis.largest_error()};
+        });
+        steps_ = CellSteps(axes);
     }
 
     // Whether the box is as long as a cell along all axes, or shorter by rounding alone.
@@ -187,23 +165,6 @@ private:
         }
 
         static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-    };
-
-    /// The cells along one axis, in steps of 2^-bits cells.
-    struct Steps {
-        double low, per_length, most;
-
-        Steps(const AxisCells& axis, int bits)
-            : low(axis.low),
-              per_length(axis.per_length * (1 << bits)),
-              most((axis.count() - 0.5) * (1 << bits)) {}
-        /// How many lie below x as a whole.
-        unsigned below(double x) const {
-            double steps = (x - low) * per_length;
-            steps = steps > 0 ? steps : 0;
-            steps = steps < most ? steps : most;
-            return static_cast<unsigned>(static_cast<int>(steps));
-        }
     };
 
     struct Range {
@@ -295,7 +256,7 @@ private:
 
     Box domain_;
     std::array<AxisCells, 3> axes_;
-    int fraction_bits_ = 0;
+    CellSteps steps_;
     std::vector<Ref> refs_{Ref()};
 };
 

@@ -24,7 +24,7 @@ namespace controlspace {
 //   value(tree, x)                       metric at x
 //   value_in(tree, leaf, x)              the same where the leaf that holds x is known; or
 //   values_in(tree, leaves, x, out)      the same for many
-//   prefetch(leaf)                       what that will read first
+//   prefetch(leaf)                       what that will read first, if it is worth it
 //   asked(tree, x)                       the same before gradation (see NodeMetrics)
 //   ceiling(leaf, x)                     length that what is asked for at x, in this leaf, will
 //                                        not exceed by more than rounding as long as isotropic
@@ -68,7 +68,6 @@ public:
     const Metric& value_in(const Topology<Node>&, LeafIndex leaf, const Point&) const {
         return metrics_[leaf];
     }
-    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&metrics_[leaf]); }
     template <class Node>
     Metric asked(const Topology<Node>& tree, const Point& x) const {
         return metrics_.asked()[tree.find(x)];

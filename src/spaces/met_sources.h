@@ -53,7 +53,9 @@ public:
             const std::size_t n = last - first;
             for (std::size_t i = 0; i < n; ++i) x[i] = part[first + i].position;
             tree.find({x.data(), n}, leaves);
-            for (std::size_t i = 0; i < n; ++i) storage.prefetch(leaves[i]);
+            if constexpr (requires { storage.prefetch(leaves[0]); }) {
+                for (std::size_t i = 0; i < n; ++i) storage.prefetch(leaves[i]);
+            }
             for (std::size_t i = 0; i < n; ++i) {
                 const double asked = let_pass * part[first + i].metric.xx;
                 const bool met = storage.ceiling(leaves[i], x[i]) <= asked &&

@@ -19,7 +19,9 @@ void sample_leaves(const Topology<Node>& tree, const Values& values, std::span<c
     for (std::size_t first = 0; first < x.size(); first += leaves.size()) {
         const auto part = x.subspan(first, std::min(leaves.size(), x.size() - first));
         tree.find(part, leaves);
-        for (std::size_t i = 0; i < part.size(); ++i) values.prefetch(leaves[i]);
+        if constexpr (requires { values.prefetch(leaves[0]); }) {
+            for (std::size_t i = 0; i < part.size(); ++i) values.prefetch(leaves[i]);
+        }
         if constexpr (requires { values.values_in(tree, leaves, part, out); }) {
             values.values_in(tree, std::span(leaves).first(part.size()), part,
                              out.subspan(first, part.size()));

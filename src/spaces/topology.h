@@ -234,18 +234,19 @@ public:
         std::array<int, most_found> cells;
         std::array<std::uint8_t, most_found> going;
         jumps_.find(x, cells);
+        for (std::size_t i = 0; i < x.size(); ++i) leaves[i] = jumps_.at(cells[i], x[i]).bits();
         std::size_t left = 0;
-        const auto reached = [&](std::size_t i, Ref ref) {
-            leaves[i] = ref.bits();
+        const auto go_on = [&](std::size_t i) {
             going[left] = static_cast<std::uint8_t>(i);
-            left += ref.is_leaf() ? 0 : 1;
+            left += Ref::from_bits(leaves[i]).is_leaf() ? 0 : 1;
         };
-        for (std::size_t i = 0; i < x.size(); ++i) reached(i, jumps_.at(cells[i], x[i]));
+        for (std::size_t i = 0; i < x.size(); ++i) go_on(i);
         while (left > 0) {
             const std::size_t before = std::exchange(left, 0);
             for (std::size_t k = 0; k < before; ++k) {
                 const std::size_t i = going[k];
-                reached(i, child_with(Ref::from_bits(leaves[i]), x[i]));
+                leaves[i] = child_with(Ref::from_bits(leaves[i]), x[i]).bits();
+                go_on(i);
             }
         }
         for (LeafIndex& leaf : leaves.first(x.size())) leaf = Ref::from_bits(leaf).index();
