@@ -20,7 +20,7 @@
 
 #include "baselines/catalogue.h"
 #include "metric/blend.h"
-#include "spaces/vertex_values.h"
+#include "spaces/trilinear_in_leaves.h"
 #include "works.h"
 
 using namespace controlspace;

@@ -29,20 +29,26 @@ namespace controlspace {
 /// `lengths` is the paper's (§3.1) and the default everywhere.
 enum class Blend { lengths, riemannian, inverse, log_euclidean };
 
-/// Weighted mean of `metrics`, linear in M; weights and metrics are of the same number.
-/// `metric_at(i)` gives metric i: structures blend straight from their arrays, of Metric or
-/// StoredMetric.
-template <class MetricAt>
-Metric blend_lengths(std::span<const double> weights, MetricAt&& metric_at) {
+/// Weighted mean of `count` metrics, linear in M. `metric_at(i)` gives metric i, a Metric or a
+/// StoredMetric: structures blend straight from their arrays.
+template <class WeightAt, class MetricAt>
+[[gnu::always_inline]] inline Metric blend_lengths(std::size_t count, WeightAt&& weight_at,
+                                                   MetricAt&& metric_at) {
     // In two vectors of numbers: left alone, the compiler mostly does one number after the other.
     Eigen::Array4d first = Eigen::Array4d::Zero();
     Eigen::Array2d rest = Eigen::Array2d::Zero();
-    for (std::size_t i = 0; i < weights.size(); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
         const auto& m = metric_at(i);
-        first += weights[i] * Eigen::Array4d(m.xx, m.yy, m.zz, m.xy);
-        rest += weights[i] * Eigen::Array2d(m.xz, m.yz);
+        const double weight = weight_at(i);
+        first += weight * Eigen::Array4d(m.xx, m.yy, m.zz, m.xy);
+        rest += weight * Eigen::Array2d(m.xz, m.yz);
     }
     return {first[0], first[1], first[2], first[3], rest[0], rest[1]};
+}
+template <class MetricAt>
+Metric blend_lengths(std::span<const double> weights, MetricAt&& metric_at) {
+    return blend_lengths(
+        weights.size(), [&](std::size_t i) { return weights[i]; }, metric_at);
 }
 
 /// Weighted mean of `metrics` by the given scheme; the spans must be of equal size.

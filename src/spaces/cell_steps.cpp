@@ -25,11 +25,10 @@ CellSteps::CellSteps(const std::array<Axis, 3>& axes)
     fraction_bits_ = 30 - bits_of(most_cells);
     while (fraction_bits_ > 0 && error * (1 << fraction_bits_) > 0.5) --fraction_bits_;
     const double steps = 1 << fraction_bits_;
-    for (std::size_t l = 0; l < lanes; ++l) {
-        const Axis& axis = axes[l % 3];
-        low_[l] = axis.low;
-        per_length_[l] = axis.per_length * steps;
-        most_[l] = (axis.cells - 0.5) * steps;
+    for (std::size_t a = 0; a < 3; ++a) {
+        low_[a] = axes[a].low;
+        per_length_[a] = axes[a].per_length * steps;
+        most_[a] = (axes[a].cells - 0.5) * steps;
     }
 }
 
@@ -38,6 +37,13 @@ CONTROLSPACE_VECTOR_CLONES
 void CellSteps::find(std::span<const Point> x, std::span<int> cells) const {
     static_assert(sizeof(Point) == 3 * sizeof(double));
     constexpr std::size_t places = 128;
+    constexpr std::size_t lanes = 12;  // four places, which fill vectors of any length
+    std::array<double, lanes> low, per_length, most;
+    for (std::size_t l = 0; l < lanes; ++l) {
+        low[l] = low_[l % 3];
+        per_length[l] = per_length_[l % 3];
+        most[l] = most_[l % 3];
+    }
     std::array<int, 3 * places> steps;
     const unsigned fraction = (1u << fraction_bits_) - 1;
     for (std::size_t first = 0; first < x.size(); first += places) {
@@ -46,9 +52,9 @@ void CellSteps::find(std::span<const Point> x, std::span<int> cells) const {
         for (std::size_t i = 0; i < 3 * count; i += lanes) {
             const std::size_t rest = 3 * count - i;
             for (std::size_t l = 0; l < std::min(lanes, rest); ++l) {
-                double s = (coordinates[i + l] - low_[l]) * per_length_[l];
+                double s = (coordinates[i + l] - low[l]) * per_length[l];
                 s = s > 0 ? s : 0;
-                s = s < most_[l] ? s : most_[l];
+                s = s < most[l] ? s : most[l];
                 steps[i + l] = static_cast<int>(s);
             }
         }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <span>
 
 #include "geometry/point.h"
@@ -31,11 +30,7 @@ public:
     void find(std::span<const Point> x, std::span<int> cells) const;
 
 private:
-    // Three numbers for a place, four places side by side: twelve fill vectors of any length.
-    static constexpr std::size_t lanes = 12;
-    using Lanes = std::array<double, lanes>;
-
-    Lanes low_{}, per_length_{}, most_{};
+    std::array<double, 3> low_{}, per_length_{}, most_{};  // in steps
     int fraction_bits_ = 0;
     int across_ = 0;  // bits that number cells along x
     int up_ = 0;      // the same along x and y

@@ -13,7 +13,7 @@
 #include "spaces/leaf_graph.h"
 #include "spaces/parts_across.h"
 #include "spaces/quadratic_in_leaves.h"
-#include "spaces/vertex_values.h"
+#include "spaces/trilinear_in_leaves.h"
 
 namespace controlspace {
 
@@ -132,17 +132,14 @@ public:
     }
 
     void prefetch(LeafIndex leaf) const { __builtin_prefetch(&leaves_[leaf]); }
-    // Inlined for the reason that VertexValues gives.
-    [[gnu::always_inline]] void prefetch_nodes(LeafIndex leaf) const {
-        for (const NodeIndex corner : leaves_[leaf].corners) __builtin_prefetch(&metrics_[corner]);
-    }
     template <class Node>
-    Metric value_in(const Topology<Node>&, LeafIndex leaf, const Point& place) const {
-        const Leaf& l = leaves_[leaf];
-        return trilinear_in(
-            l.faces.box(planes_), place,
-            [&](std::size_t i) -> const StoredMetric<Number>& { return metrics_[l.corners[i]]; });
+    void values_in(const Topology<Node>&, std::span<const LeafIndex> leaves,
+                   std::span<const Point> x, std::span<Metric> out) const {
+        trilinear_in_leaves(*this, leaves, x, out);
     }
+    const Corners& corners(LeafIndex leaf) const { return leaves_[leaf].corners; }
+    Box box(LeafIndex leaf) const { return leaves_[leaf].faces.box(planes_); }
+    std::span<const StoredMetric<Number>> metrics() const { return metrics_; }
 
     template <class Node>
     ControlNodes control_nodes(const Topology<Node>&, Neighbourhood neighbourhood) const {
@@ -153,7 +150,7 @@ public:
                 positions[leaf.corners[static_cast<std::size_t>(i)]] = corner(box, i);
             }
         }
-        return {vertex_graph(corners(), std::move(positions), neighbourhood),
+        return {vertex_graph(all_corners(), std::move(positions), neighbourhood),
                 {metrics_.begin(), metrics_.end()}};
     }
     void describe(Footprint& footprint) const {
@@ -163,7 +160,7 @@ public:
     }
     void save(StateWriter& state) const {
         state("frozen.metrics", std::vector<Metric>(metrics_.begin(), metrics_.end()));
-        state("frozen.corners", corners());
+        state("frozen.corners", all_corners());
     }
 
 private:
@@ -172,7 +169,7 @@ private:
         Faces<Plane> faces;
     };
 
-    std::vector<Corners> corners() const {
+    std::vector<Corners> all_corners() const {
         std::vector<Corners> corners;
         corners.reserve(leaves_.size());
         for (const Leaf& leaf : leaves_) corners.push_back(leaf.corners);

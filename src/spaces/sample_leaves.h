@@ -9,9 +9,8 @@
 namespace controlspace {
 
 /// Metrics at `x`: leaves are found for many places side by side, then read. Of `values` it asks
-/// prefetch(leaf), and value_in(tree, leaf, x) or
-/// values_in(tree, leaves, x, out) for many. Where the leaf says where its metrics are,
-/// prefetch_nodes(leaf) is called a few places ahead of value_in.
+/// prefetch(leaf), if it is worth it, and value_in(tree, leaf, x) or values_in(tree, leaves, x,
+/// out) for many.
 template <class Node, class Values>
 void sample_leaves(const Topology<Node>& tree, const Values& values, std::span<const Point> x,
                    std::span<Metric> out) {
@@ -26,11 +25,7 @@ void sample_leaves(const Topology<Node>& tree, const Values& values, std::span<c
             values.values_in(tree, std::span(leaves).first(part.size()), part,
                              out.subspan(first, part.size()));
         } else {
-            constexpr std::size_t ahead = 6;
             for (std::size_t i = 0; i < part.size(); ++i) {
-                if constexpr (requires { values.prefetch_nodes(leaves[i]); }) {
-                    if (i + ahead < part.size()) values.prefetch_nodes(leaves[i + ahead]);
-                }
                 out[first + i] = values.value_in(tree, leaves[i], part[i]);
             }
         }

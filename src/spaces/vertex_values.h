@@ -16,27 +16,10 @@
 #include "spaces/space_options.h"
 #include "spaces/state.h"
 #include "spaces/topology.h"
+#include "spaces/trilinear_in_leaves.h"
 #include "spaces/vertex_changes.h"
 
 namespace controlspace {
-
-/// Place of `x` in `box`, each coordinate from 0 to 1, as the weights of its eight corners.
-inline std::array<double, 8> corner_weights(const Box& box, const Point& x) {
-    const Vector t = (x - box.low).cwiseQuotient(box.edges());
-    const std::array<double, 2> wx{1 - t.x(), t.x()}, wy{1 - t.y(), t.y()}, wz{1 - t.z(), t.z()};
-    std::array<double, 8> weights{};
-    for (std::size_t i = 0; i < 8; ++i) weights[i] = wx[i & 1] * wy[i >> 1 & 1] * wz[i >> 2];
-    return weights;
-}
-
-/// Trilinear between the corners of `box`, at the nearest place of it to `place`; metric_at(i) is
-/// the metric of corner i. Inlined, so that boxes stay in registers.
-template <class MetricAt>
-[[gnu::always_inline]] inline Metric trilinear_in(const Box& box, const Point& place,
-                                                  MetricAt&& metric_at) {
-    const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
-    return blend_lengths(corner_weights(box, x), metric_at);
-}
 
 /// A metric at each vertex of the leaves, trilinear between the eight of a leaf (K_V, K_oV).
 ///
@@ -59,17 +42,21 @@ public:
         return interpolate(tree.find(place), place, metrics_.field());
     }
     template <class Node>
-    Metric value_in(const Topology<Node>&, LeafIndex leaf, const Point& place) const {
-        return interpolate(leaf, place, metrics_.field());
+    void values_in(const Topology<Node>&, std::span<const LeafIndex> leaves,
+                   std::span<const Point> x, std::span<Metric> out) const {
+        trilinear_in_leaves(*this, leaves, x, out);
     }
     void prefetch(LeafIndex leaf) const { __builtin_prefetch(&corners_[leaf]); }
+    const Corners& corners(LeafIndex leaf) const { return corners_[leaf]; }
     // Inlined, since GCC 12 leaves out calls of functions that do nothing but prefetch.
-    [[gnu::always_inline]] void prefetch_nodes(LeafIndex leaf) const {
-        const Corners& corners = corners_[leaf];
-        __builtin_prefetch(&positions_[corners.front()]);
-        __builtin_prefetch(&positions_[corners.back()]);
-        for (const NodeIndex corner : corners) __builtin_prefetch(&metrics_[corner]);
+    [[gnu::always_inline]] void prefetch_box(LeafIndex leaf) const {
+        __builtin_prefetch(&positions_[corners_[leaf].front()]);
+        __builtin_prefetch(&positions_[corners_[leaf].back()]);
     }
+    Box box(LeafIndex leaf) const {
+        return {positions_[corners_[leaf].front()], positions_[corners_[leaf].back()]};
+    }
+    std::span<const Metric> metrics() const { return metrics_.field(); }
     template <class Node>
     Metric asked(const Topology<Node>& tree, const Point& place) const {
         return interpolate(tree.find(place), place, metrics_.asked());
@@ -149,10 +136,9 @@ private:
     }
     // At the nearest place of the leaf.
     Metric interpolate(LeafIndex leaf, const Point& place, std::span<const Metric> metrics) const {
-        const Corners& corners = corners_[leaf];
-        const Box box{positions_[corners.front()], positions_[corners.back()]};
-        return trilinear_in(box, place,
-                            [&](std::size_t i) -> const Metric& { return metrics[corners[i]]; });
+        const Box box = this->box(leaf);
+        const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
+        return interpolate(corners_[leaf], corner_weights(box, x), metrics);
     }
     void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field);
     NodeIndex vertex_at(const Point& x, const Box& box, const Corners& corners);
