@@ -44,6 +44,15 @@ std::string list_text() {
     const Entry schedules[] = {
         {name_of(GradationSchedule::queue), "until nothing changes"},
         {name_of(GradationSchedule::passes), "at most ten passes, as in the paper's tables"}};
+    const Entry neighbourhoods[] = {
+        {name_of(Neighbourhood::faces), "nodes across faces, at vertices along edges"},
+        {name_of(Neighbourhood::all), "those across edges and corners too"}};
+    const Entry node_values[] = {
+        {name_of(NodeValues::graded), "as gradation leaves them"},
+        {name_of(NodeValues::exact), "the reference there: the error of interpolation alone"}};
+    const Entry frozen[] = {{name_of(Frozen::no), "trees stay as they are made"},
+                            {name_of(Frozen::doubles), "compact and only read, the same bits"},
+                            {name_of(Frozen::floats), "metrics rounded by 6e-8"}};
     const Entry references[] = {
         {name_of(ReferenceKind::exact), "intersection of the cones of all sources"},
         {name_of(ReferenceKind::published_sphere),
@@ -63,6 +72,9 @@ std::string list_text() {
            section("\nSplits of kd-trees (--splits)", splits) +
            section("\nLaws of gradation (--law)", laws) +
            section("\nSchedules of gradation (--schedule)", schedules) +
+           section("\nNodes that gradation compares (--neighbourhood)", neighbourhoods) +
+           section("\nWhat control nodes hold (--node-values)", node_values) +
+           section("\nForms of trees (--frozen)", frozen) +
            section("\nReferences (--reference)", references) +
            section("\nSampling of surfaces (--sampling)", samplings) +
            section("\nAnalytic fields (--field)", fields);

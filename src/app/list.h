@@ -4,7 +4,7 @@
 
 namespace controlspace {
 
-/// Text of `controlspace list`: structures, splits, laws, schedules and references.
+/// Text of `controlspace list`: the names that settings take, and what they stand for.
 std::string list_text();
 
 }  // namespace controlspace

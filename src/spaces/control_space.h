@@ -59,7 +59,8 @@ class StateReader;
 /// A metric at every point of a box, learnt from point sources (paper §2-3).
 ///
 /// A new control space holds M_max = H I everywhere, H the half diagonal of its domain. Points
-/// outside the domain are answered as the nearest point of the domain would be.
+/// outside the domain are answered as the nearest point of the domain would be; no coordinate may be
+/// NaN.
 /// Reading is thread-safe as long as nobody writes.
 class ControlSpace {
 public:

@@ -71,13 +71,13 @@ std::string sources_label(const SourcesChoice& s) {
 }  // namespace
 
 std::string setting_label(const Case& c) {
-    return fmt::format("{}tau {}, epsilon {}, g_r {}; {} law, {}, {} reference",
+    return fmt::format("{}tau {}, epsilon {}, g_r {:.6g}; {} law, {}, {} reference",
                        sources_label(c.sources), c.tau, c.epsilon, c.g_r, name_of(c.law),
                        name_of(c.schedule), name_of(c.reference));
 }
 
 std::string work_label(const Case& c) {
-    return fmt::format("{}g_r {}; {} law, {} reference", sources_label(c.sources), c.g_r,
+    return fmt::format("{}g_r {:.6g}; {} law, {} reference", sources_label(c.sources), c.g_r,
                        name_of(c.law), name_of(c.reference));
 }
 
