@@ -283,8 +283,8 @@ private:
         if (topology_.is_full(cuts)) {
             throw InputError("a tree holds 2^30 leaves at most: raise l_min or lower the depth");
         }
-        const std::size_t leaves = topology_.leaves() + (cuts - 1) * (Node::arity - 1);
-        if (leaves >= next_look_) require_memory(leaves);
+        const std::size_t leaves = topology_.leaves() + cuts * (Node::arity - 1);
+        if (leaves > next_look_) require_memory(leaves);
     }
 
     // Gives back what only growing needs, and makes what only answers need.

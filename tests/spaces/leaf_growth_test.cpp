@@ -55,11 +55,18 @@ std::vector<PointSource> on_planes() {
     return sources;
 }
 
+// What a new tree holds is shorter.
+std::vector<PointSource> too_long_to_matter() {
+    return {{Point(0.1, 0.2, 0.3), Metric::isotropic(10)},
+            {Point(0.3, 0.2, 0.1), Metric{9, 8, 7, 0, 0, 0}}};
+}
+
 }  // namespace
 
 TEST_CASE("many sources at once make the tree of one by one, whatever the number of threads") {
     const std::vector<PointSource> sources = GENERATE(
-        sample_sphere({.h = 0.05, .rho = 0.5}), shuffled(sample_sphere({.h = 0.05})),
+        too_long_to_matter(), sample_sphere({.h = 0.05, .rho = 0.5}),
+        shuffled(sample_sphere({.h = 0.05})),
         shuffled(sample_sphere({.h = 0.05, .s_a = 4, .s_n = 0.25, .rho = 2})), on_planes());
     const SplitRule split = GENERATE(SplitRule::middle, SplitRule::metric);
     for (const CatalogueEntry& entry : tree_catalogue()) {
