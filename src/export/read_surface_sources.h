@@ -15,6 +15,9 @@ namespace controlspace {
 ///
 /// Throws InputError that names the file for what cannot be read; for a vertex where those around
 /// do not determine the curvature; and for bounds or an angle that are none.
+///
+/// CGAL trusts what a file says: a damaged one may crash it, or take all memory. Read files of
+/// unknown origin in a process of their own first, as the program does.
 std::vector<PointSource> read_surface_sources(const std::filesystem::path& path,
                                               const CurvatureSizes& sizes = {});
 

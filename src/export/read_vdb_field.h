@@ -16,6 +16,9 @@ namespace controlspace {
 /// Throws InputError that names the file for what cannot be read, grids that are missing (with a
 /// list of what is there), of another type, empty, or under a transform that is not linear; and for
 /// voxels that are not a number, not positive (lengths), or not positive definite.
+///
+/// OpenVDB trusts what a file says: a damaged one may crash it, or take all memory. Read files of
+/// unknown origin in a process of their own first, as the program does.
 AnalyticField read_vdb_field(const std::filesystem::path& path, const VdbLengths& what = {});
 
 }  // namespace controlspace
