@@ -1,4 +1,4 @@
-#include "baselines/catalogue.h"
+#include "controlspace/baselines/catalogue.h"
 
 #include <iterator>
 #include <vector>

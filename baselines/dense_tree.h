@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "geometry/point.h"
-#include "gradation/node_graph.h"
-#include "spaces/control_space.h"
+#include "controlspace/geometry/point.h"
+#include "controlspace/gradation/node_graph.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 

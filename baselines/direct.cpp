@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "cones/cone_field.h"
-#include "error.h"
-#include "metric/intersection.h"
-#include "spaces/goal_field.h"
-#include "spaces/state.h"
+#include "controlspace/error.h"
+#include "controlspace/metric/intersection.h"
+#include "space/state.h"
+#include "trees/adaptation/goal_field.h"
 
 namespace controlspace {
 

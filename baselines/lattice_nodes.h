@@ -1,7 +1,7 @@
 #pragma once
 
-#include "gradation/node_graph.h"
-#include "metric/metric.h"
+#include "controlspace/gradation/node_graph.h"
+#include "controlspace/metric/metric.h"
 
 namespace controlspace {
 

@@ -13,13 +13,13 @@
 #include "baselines/lattice_nodes.h"
 #include "baselines/stencil.h"
 #include "baselines/voxels.h"
-#include "error.h"
+#include "controlspace/error.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/space/catalogue.h"
+#include "controlspace/space/control_space.h"
 #include "gradation/regrade.h"
-#include "metric/intersection.h"
-#include "spaces/catalogue.h"
-#include "spaces/control_space.h"
-#include "spaces/past_state.h"
-#include "spaces/state.h"
+#include "space/state.h"
+#include "trees/regradation/past_state.h"
 
 namespace controlspace {
 

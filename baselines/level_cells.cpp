@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "error.h"
+#include "controlspace/error.h"
 
 namespace controlspace {
 

@@ -7,7 +7,7 @@
 
 #include "baselines/stencil.h"
 #include "baselines/voxels.h"
-#include "spaces/space_options.h"
+#include "controlspace/space/space_options.h"
 
 namespace controlspace {
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "spaces/adjacency.h"
-#include "spaces/corners.h"
+#include "trees/topology/adjacency.h"
+#include "trees/topology/corners.h"
 
 namespace controlspace {
 

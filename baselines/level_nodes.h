@@ -6,7 +6,7 @@
 
 #include "baselines/level_cells.h"
 #include "baselines/level_values.h"
-#include "gradation/node_graph.h"
+#include "controlspace/gradation/node_graph.h"
 
 namespace controlspace {
 

@@ -5,7 +5,7 @@
 
 #include "baselines/level_cells.h"
 #include "baselines/level_values.h"
-#include "spaces/state.h"
+#include "space/state.h"
 
 namespace controlspace {
 

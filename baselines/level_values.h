@@ -8,8 +8,8 @@
 
 #include "baselines/level_cells.h"
 #include "baselines/openvdb_value.h"
-#include "metric/blend.h"
-#include "metric/intersection.h"
+#include "controlspace/metric/blend.h"
+#include "controlspace/metric/intersection.h"
 
 namespace controlspace {
 

@@ -10,9 +10,9 @@
 #include "baselines/level_nodes.h"
 #include "baselines/level_state.h"
 #include "baselines/vdb_prune.h"
-#include "error.h"
+#include "controlspace/error.h"
 #include "gradation/regrade.h"
-#include "spaces/past_state.h"
+#include "trees/regradation/past_state.h"
 
 namespace controlspace {
 

@@ -6,7 +6,7 @@
 #include <ostream>
 #include <tuple>
 
-#include "metric/metric.h"
+#include "controlspace/metric/metric.h"
 
 namespace controlspace {
 

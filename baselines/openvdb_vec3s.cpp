@@ -6,7 +6,7 @@
 
 #include "baselines/dense_tree.h"
 #include "baselines/lattice_space.h"
-#include "error.h"
+#include "controlspace/error.h"
 
 namespace controlspace {
 

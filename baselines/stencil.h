@@ -5,9 +5,9 @@
 #include <cstdint>
 
 #include "baselines/voxels.h"
-#include "geometry/box.h"
-#include "gradation/node_graph.h"
-#include "metric/blend.h"
+#include "controlspace/geometry/box.h"
+#include "controlspace/gradation/node_graph.h"
+#include "controlspace/metric/blend.h"
 
 namespace controlspace {
 

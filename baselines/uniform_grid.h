@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "baselines/voxels.h"
-#include "spaces/catalogue.h"
-#include "spaces/control_space.h"
+#include "controlspace/space/catalogue.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 

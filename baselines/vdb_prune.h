@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "baselines/openvdb_value.h"
-#include "metric/intersection.h"
-#include "metric/nonconformity.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
 
 namespace controlspace {
 

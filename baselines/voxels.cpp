@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "error.h"
-#include "gradation/node_graph.h"
+#include "controlspace/error.h"
+#include "controlspace/gradation/node_graph.h"
 
 namespace controlspace {
 

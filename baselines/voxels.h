@@ -3,8 +3,8 @@
 #include <functional>
 #include <string>
 
-#include "geometry/point.h"
-#include "spaces/catalogue.h"
+#include "controlspace/geometry/point.h"
+#include "controlspace/space/catalogue.h"
 
 namespace controlspace {
 

@@ -18,9 +18,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "baselines/catalogue.h"
-#include "metric/blend.h"
-#include "spaces/trilinear_in_leaves.h"
+#include "controlspace/baselines/catalogue.h"
+#include "controlspace/metric/blend.h"
+#include "trees/values/trilinear_in_leaves.h"
 #include "works.h"
 
 using namespace controlspace;

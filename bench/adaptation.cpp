@@ -14,10 +14,10 @@
 #include <memory>
 #include <vector>
 
-#include "measure/accuracy.h"
-#include "measure/reference.h"
-#include "sources/sampled_surfaces.h"
-#include "spaces/catalogue.h"
+#include "controlspace/measure/accuracy.h"
+#include "controlspace/measure/reference.h"
+#include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/catalogue.h"
 
 using namespace controlspace;
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "sources/sampled_surfaces.h"
-#include "spaces/catalogue.h"
+#include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/catalogue.h"
 
 using namespace controlspace;
 

@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
-#include "baselines/catalogue.h"
-#include "error.h"
+#include "controlspace/baselines/catalogue.h"
+#include "controlspace/error.h"
+#include "controlspace/measure/reference.h"
+#include "controlspace/sources/sampled_surfaces.h"
 #include "measure/access_time.h"
-#include "measure/reference.h"
-#include "sources/sampled_surfaces.h"
 
 using namespace controlspace;
 

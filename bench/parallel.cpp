@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
+#include "controlspace/space/sample_parallel.h"
 #include "measure/access_time.h"
-#include "spaces/sample_parallel.h"
 #include "works.h"
 
 using namespace controlspace;

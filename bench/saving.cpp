@@ -9,9 +9,9 @@
 #include <memory>
 #include <string>
 
-#include "sources/sampled_surfaces.h"
-#include "spaces/catalogue.h"
-#include "spaces/control_space_file.h"
+#include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/catalogue.h"
+#include "controlspace/space/control_space_file.h"
 
 using namespace controlspace;
 

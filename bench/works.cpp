@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "controlspace/measure/accuracy.h"
 #include "geometry/random_fractions.h"
 #include "measure/access_time.h"
-#include "measure/accuracy.h"
 
 namespace controlspace {
 

@@ -1,4 +1,4 @@
-#include "version.h"
+#include "controlspace/version.h"
 
 namespace controlspace {
 

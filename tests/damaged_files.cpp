@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
+#include "controlspace/error.h"
 #include "counting_allocator.h"
 #include "damaged_copies.h"
-#include "error.h"
 
 namespace controlspace {
 

@@ -14,9 +14,9 @@ namespace {
 
 // Folders with the same number know nothing of each other.
 const std::map<std::string, int> layers{
-    {"geometry", 0}, {"metric", 1}, {"sources", 2},   {"gradation", 2}, {"cones", 3},
-    {"fields", 3},   {"spaces", 4}, {"baselines", 5}, {"measure", 5},   {"study", 6},
-    {"c", 7},        {"mesh", 7},   {"export", 7},    {"report", 8},    {"app", 9}};
+    {"geometry", 0}, {"metric", 1}, {"sources", 2}, {"gradation", 2}, {"cones", 3},   {"space", 4},
+    {"fields", 4},   {"io", 5},     {"trees", 5},   {"baselines", 6}, {"measure", 6}, {"mesh", 7},
+    {"gmsh", 8},     {"study", 9},  {"c", 9},       {"report", 10},   {"cli", 11}};
 
 bool is_source(const fs::path& path) {
     return path.extension() == ".h" || path.extension() == ".cpp";

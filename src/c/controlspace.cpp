@@ -1,4 +1,4 @@
-#include "c/controlspace.h"
+#include "controlspace/controlspace.h"
 
 #include <fmt/format.h>
 
@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "baselines/catalogue.h"
 #include "c/option_text.h"
-#include "error.h"
-#include "sources/riemannian.h"
-#include "spaces/control_space_file.h"
-#include "version.h"
+#include "controlspace/baselines/catalogue.h"
+#include "controlspace/error.h"
+#include "controlspace/sources/riemannian.h"
+#include "controlspace/space/control_space_file.h"
+#include "controlspace/version.h"
 
 struct cspace {
     std::unique_ptr<controlspace::ControlSpace> space;

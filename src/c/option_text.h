@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "spaces/space_options.h"
+#include "controlspace/space/space_options.h"
 
 namespace controlspace {
 

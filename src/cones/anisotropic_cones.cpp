@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "cones/cone.h"
+#include "controlspace/metric/intersection.h"
 #include "metric/decompose.h"
-#include "metric/intersection.h"
 #include "metric/running_intersection.h"
 
 namespace controlspace {

@@ -7,8 +7,8 @@
 
 #include "cones/length_queue.h"
 #include "cones/tensor_tree.h"
-#include "metric/metric.h"
-#include "sources/point_source.h"
+#include "controlspace/metric/metric.h"
+#include "controlspace/sources/point_source.h"
 
 namespace controlspace {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "metric/metric.h"
-#include "sources/point_source.h"
+#include "controlspace/metric/metric.h"
+#include "controlspace/sources/point_source.h"
 
 namespace controlspace {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cones/cone_list.h"
-#include "geometry/box.h"
-#include "geometry/point.h"
+#include "controlspace/geometry/box.h"
+#include "controlspace/geometry/point.h"
 
 namespace controlspace {
 

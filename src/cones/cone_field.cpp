@@ -4,7 +4,7 @@
 #include <cassert>
 
 #include "cones/spatial_order.h"
-#include "metric/intersection.h"
+#include "controlspace/metric/intersection.h"
 
 namespace controlspace {
 

@@ -9,8 +9,8 @@
 
 #include "cones/anisotropic_cones.h"
 #include "cones/isotropic_cones.h"
-#include "metric/metric.h"
-#include "sources/point_source.h"
+#include "controlspace/metric/metric.h"
+#include "controlspace/sources/point_source.h"
 
 namespace controlspace {
 

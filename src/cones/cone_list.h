@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cones/tensor_lanes.h"
-#include "geometry/point.h"
+#include "controlspace/geometry/point.h"
 
 namespace controlspace {
 

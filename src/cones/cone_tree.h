@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/point.h"
+#include "controlspace/geometry/point.h"
 
 namespace controlspace {
 

@@ -10,9 +10,9 @@
 #include "cones/cone_cover.h"
 #include "cones/cone_tree.h"
 #include "cones/nearby_cones.h"
-#include "geometry/box.h"
-#include "geometry/point.h"
-#include "sources/point_source.h"
+#include "controlspace/geometry/box.h"
+#include "controlspace/geometry/point.h"
+#include "controlspace/sources/point_source.h"
 
 namespace controlspace {
 

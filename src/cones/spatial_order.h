@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/point.h"
+#include "controlspace/geometry/point.h"
 
 namespace controlspace {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <limits>
 
-#include "geometry/point.h"
-#include "metric/metric.h"
+#include "controlspace/geometry/point.h"
+#include "controlspace/metric/metric.h"
 
 namespace controlspace {
 

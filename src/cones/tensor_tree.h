@@ -5,7 +5,7 @@
 
 #include "cones/cone_tree.h"
 #include "cones/tensor_lanes.h"
-#include "sources/point_source.h"
+#include "controlspace/sources/point_source.h"
 
 namespace controlspace {
 

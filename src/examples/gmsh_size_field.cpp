@@ -1,6 +1,6 @@
 // A control space as the size field of a Gmsh program of one's own: sources say how long edges are
 // to be at some places, and the control space says it everywhere.
-#include <controlspace/spaces/catalogue.h>
+#include <controlspace/space/catalogue.h>
 #include <gmsh.h>
 
 using namespace controlspace;

@@ -1,12 +1,12 @@
-#include "fields/analytic_field.h"
+#include "controlspace/fields/analytic_field.h"
 
 #include <fmt/format.h>
 
 #include <utility>
 
-#include "error.h"
-#include "fields/formula_field.h"
-#include "sources/point_source.h"
+#include "controlspace/error.h"
+#include "controlspace/fields/formula_field.h"
+#include "controlspace/sources/point_source.h"
 
 namespace controlspace {
 

@@ -1,10 +1,10 @@
-#include "fields/mixture.h"
+#include "controlspace/fields/mixture.h"
 
 #include <utility>
 
-#include "error.h"
-#include "metric/evaluate.h"
-#include "metric/intersection.h"
+#include "controlspace/error.h"
+#include "controlspace/metric/evaluate.h"
+#include "controlspace/metric/intersection.h"
 
 namespace controlspace {
 

@@ -1,4 +1,4 @@
-#include "fields/surface_fields.h"
+#include "controlspace/fields/surface_fields.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <string_view>
 
-#include "error.h"
-#include "fields/formula_field.h"
-#include "metric/intersection.h"
-#include "sources/point_source.h"
+#include "controlspace/error.h"
+#include "controlspace/fields/formula_field.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/sources/point_source.h"
 
 namespace controlspace {
 

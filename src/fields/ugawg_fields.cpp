@@ -1,9 +1,9 @@
-#include "fields/ugawg_fields.h"
+#include "controlspace/fields/ugawg_fields.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fields/formula_field.h"
+#include "controlspace/fields/formula_field.h"
 
 namespace controlspace {
 

@@ -1,4 +1,4 @@
-#include "geometry/box.h"
+#include "controlspace/geometry/box.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <string_view>
 
-#include "error.h"
+#include "controlspace/error.h"
 
 namespace controlspace {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "geometry/point.h"
+#include "controlspace/geometry/point.h"
 
 namespace controlspace {
 

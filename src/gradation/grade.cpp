@@ -1,4 +1,4 @@
-#include "gradation/grade.h"
+#include "controlspace/gradation/grade.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -7,7 +7,7 @@
 #include <functional>
 #include <type_traits>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "geometry/large_pages.h"
 #include "geometry/threads.h"
 #include "gradation/parallel_queue.h"

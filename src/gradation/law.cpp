@@ -1,9 +1,9 @@
-#include "gradation/law.h"
+#include "controlspace/gradation/law.h"
 
 #include <fmt/format.h>
 
-#include "error.h"
-#include "metric/intersection.h"
+#include "controlspace/error.h"
+#include "controlspace/metric/intersection.h"
 
 namespace controlspace {
 

@@ -5,11 +5,11 @@
 #include <numeric>
 #include <vector>
 
-#include "gradation/law.h"
-#include "gradation/node_graph.h"
-#include "gradation/ordered_metrics.h"
-#include "metric/intersection.h"
-#include "metric/nonconformity.h"
+#include "controlspace/gradation/law.h"
+#include "controlspace/gradation/node_graph.h"
+#include "controlspace/gradation/ordered_metrics.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
 
 namespace controlspace {
 

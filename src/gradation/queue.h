@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "gradation/law.h"
-#include "gradation/node_graph.h"
-#include "gradation/ordered_metrics.h"
+#include "controlspace/gradation/law.h"
+#include "controlspace/gradation/node_graph.h"
+#include "controlspace/gradation/ordered_metrics.h"
 
 namespace controlspace {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "gradation/grade.h"
-#include "gradation/law.h"
+#include "controlspace/gradation/grade.h"
+#include "controlspace/gradation/law.h"
 
 namespace controlspace {
 

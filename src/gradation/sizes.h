@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "gradation/law.h"
-#include "gradation/node_graph.h"
+#include "controlspace/gradation/law.h"
+#include "controlspace/gradation/node_graph.h"
 
 namespace controlspace {
 

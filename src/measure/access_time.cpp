@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "geometry/random_fractions.h"
 
 namespace controlspace {

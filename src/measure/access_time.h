@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "geometry/box.h"
-#include "spaces/control_space.h"
+#include "controlspace/geometry/box.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 

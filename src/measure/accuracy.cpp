@@ -1,4 +1,4 @@
-#include "measure/accuracy.h"
+#include "controlspace/measure/accuracy.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -8,10 +8,10 @@
 #include <limits>
 #include <utility>
 
-#include "error.h"
+#include "controlspace/error.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
 #include "measure/percentile.h"
-#include "metric/intersection.h"
-#include "metric/nonconformity.h"
 
 namespace controlspace {
 

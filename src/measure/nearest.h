@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <span>
 
-#include "geometry/point.h"
-#include "gradation/node_graph.h"
+#include "controlspace/geometry/point.h"
+#include "controlspace/gradation/node_graph.h"
 
 namespace controlspace {
 

@@ -1,4 +1,4 @@
-#include "measure/reference.h"
+#include "controlspace/measure/reference.h"
 
 #include <fmt/format.h>
 
@@ -10,10 +10,10 @@
 
 #include "cones/cone.h"
 #include "cones/cone_field.h"
-#include "error.h"
-#include "fields/surface_fields.h"
-#include "metric/evaluate.h"
-#include "metric/intersection.h"
+#include "controlspace/error.h"
+#include "controlspace/fields/surface_fields.h"
+#include "controlspace/metric/evaluate.h"
+#include "controlspace/metric/intersection.h"
 
 namespace controlspace {
 

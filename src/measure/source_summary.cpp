@@ -4,9 +4,9 @@
 #include <limits>
 #include <vector>
 
-#include "error.h"
+#include "controlspace/error.h"
+#include "controlspace/gradation/grade.h"
 #include "geometry/point_order.h"
-#include "gradation/grade.h"
 #include "measure/nearest.h"
 
 namespace controlspace {

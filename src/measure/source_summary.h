@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <span>
 
-#include "geometry/box.h"
-#include "sources/point_source.h"
+#include "controlspace/geometry/box.h"
+#include "controlspace/sources/point_source.h"
 
 namespace controlspace {
 

@@ -1,4 +1,4 @@
-#include "mesh/conformity.h"
+#include "controlspace/mesh/conformity.h"
 
 #include <tbb/parallel_for.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "error.h"
-#include "metric/blend.h"
+#include "controlspace/error.h"
+#include "controlspace/metric/blend.h"
 
 namespace controlspace {
 namespace {

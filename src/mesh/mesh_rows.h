@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/conformity.h"
+#include "controlspace/mesh/conformity.h"
 #include "mesh/mesh_settings.h"
 #include "study/case.h"
 #include "study/provenance.h"

@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "study/setting_values.h"
 
 namespace controlspace {

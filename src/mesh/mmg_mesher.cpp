@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "error.h"
+#include "controlspace/error.h"
+#include "controlspace/mesh/write_medit.h"
+#include "io/text/write_medit_sources.h"
 #include "mesh/read_medit_mesh.h"
 #include "mesh/size_query.h"
 #include "mesh/stopwatch.h"
-#include "mesh/write_medit.h"
-#include "sources/write_medit_sources.h"
 #include "study/child_program.h"
 
 namespace controlspace {

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <filesystem>
 
-#include "mesh/tet_mesh.h"
-#include "metric/metric_field.h"
+#include "controlspace/mesh/tet_mesh.h"
+#include "controlspace/metric/metric_field.h"
 
 namespace controlspace {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "sources/medit.h"
+#include "io/text/medit.h"
 
 namespace controlspace {
 namespace {

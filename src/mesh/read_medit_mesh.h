@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "mesh/tet_mesh.h"
+#include "controlspace/mesh/tet_mesh.h"
 
 namespace controlspace {
 

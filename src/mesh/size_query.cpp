@@ -6,7 +6,7 @@
 #include <chrono>
 #include <limits>
 
-#include "error.h"
+#include "controlspace/error.h"
 
 namespace controlspace {
 namespace {

@@ -7,8 +7,8 @@
 #include <exception>
 #include <mutex>
 
-#include "geometry/box.h"
-#include "metric/metric_field.h"
+#include "controlspace/geometry/box.h"
+#include "controlspace/metric/metric_field.h"
 
 namespace controlspace {
 

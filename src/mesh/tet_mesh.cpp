@@ -1,4 +1,4 @@
-#include "mesh/tet_mesh.h"
+#include "controlspace/mesh/tet_mesh.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

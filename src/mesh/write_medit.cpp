@@ -1,10 +1,10 @@
-#include "mesh/write_medit.h"
+#include "controlspace/mesh/write_medit.h"
 
 #include <fmt/format.h>
 
 #include <iterator>
 
-#include "sources/output_file.h"
+#include "io/text/output_file.h"
 
 namespace controlspace {
 namespace {

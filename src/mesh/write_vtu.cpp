@@ -1,4 +1,4 @@
-#include "mesh/write_vtu.h"
+#include "controlspace/mesh/write_vtu.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "mesh/conformity.h"
-#include "sources/output_file.h"
+#include "controlspace/mesh/conformity.h"
+#include "io/text/output_file.h"
 
 namespace controlspace {
 namespace {

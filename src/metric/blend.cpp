@@ -1,4 +1,4 @@
-#include "metric/blend.h"
+#include "controlspace/metric/blend.h"
 
 namespace controlspace {
 

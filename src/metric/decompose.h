@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "metric/metric.h"
+#include "controlspace/metric/metric.h"
 
 namespace controlspace {
 

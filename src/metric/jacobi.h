@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "geometry/point.h"
+#include "controlspace/geometry/point.h"
 
 namespace controlspace {
 

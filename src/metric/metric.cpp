@@ -1,4 +1,4 @@
-#include "metric/metric.h"
+#include "controlspace/metric/metric.h"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "controlspace/metric/intersection.h"
 #include "metric/decompose.h"
-#include "metric/intersection.h"
 
 namespace controlspace {
 

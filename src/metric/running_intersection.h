@@ -1,6 +1,6 @@
 #pragma once
 
-#include "metric/metric.h"
+#include "controlspace/metric/metric.h"
 
 namespace controlspace {
 

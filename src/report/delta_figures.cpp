@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "controlspace/metric/nonconformity.h"
 #include "measure/percentile.h"
-#include "metric/nonconformity.h"
 #include "report/colours.h"
 #include "report/style.h"
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "study/child_program.h"
 #include "study/results.h"
 

@@ -5,9 +5,9 @@
 
 #include <utility>
 
-#include "error.h"
+#include "controlspace/error.h"
+#include "io/text/output_file.h"
 #include "report/html.h"
-#include "sources/output_file.h"
 
 namespace controlspace {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <new>
 
-#include "error.h"
-#include "measure/accuracy.h"
+#include "controlspace/error.h"
+#include "controlspace/measure/accuracy.h"
 #include "study/run.h"
 
 namespace controlspace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "geometry/box.h"
-#include "metric/metric.h"
-#include "spaces/catalogue.h"
+#include "controlspace/geometry/box.h"
+#include "controlspace/metric/metric.h"
+#include "controlspace/space/catalogue.h"
 #include "study/file_readers.h"
 #include "study/row.h"
 #include "study/study.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "metric/nonconformity.h"
+#include "controlspace/metric/nonconformity.h"
 #include "report/colours.h"
 #include "report/style.h"
 

@@ -1,9 +1,9 @@
-#include "sources/point_source.h"
+#include "controlspace/sources/point_source.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "error.h"
+#include "controlspace/error.h"
 
 namespace controlspace {
 

@@ -1,8 +1,8 @@
-#include "sources/riemannian.h"
+#include "controlspace/sources/riemannian.h"
 
 #include <cmath>
 
-#include "sources/point_source.h"
+#include "controlspace/sources/point_source.h"
 
 namespace controlspace {
 

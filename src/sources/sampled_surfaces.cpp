@@ -1,4 +1,4 @@
-#include "sources/sampled_surfaces.h"
+#include "controlspace/sources/sampled_surfaces.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "error.h"
+#include "controlspace/error.h"
 
 namespace controlspace {
 

@@ -1,4 +1,4 @@
-#include "sources/scattered_surfaces.h"
+#include "controlspace/sources/scattered_surfaces.h"
 
 #include <cmath>
 #include <numbers>

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/point.h"
+#include "controlspace/geometry/point.h"
 
 namespace controlspace {
 

@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
-#include "gradation/grade.h"
-#include "sources/scattered_surfaces.h"
-#include "spaces/catalogue.h"
+#include "controlspace/gradation/grade.h"
+#include "controlspace/io/file_choice.h"
+#include "controlspace/io/vdb_choice.h"
+#include "controlspace/sources/scattered_surfaces.h"
+#include "controlspace/space/catalogue.h"
 #include "study/field_choice.h"
-#include "study/file_choice.h"
-#include "study/vdb_choice.h"
 
 namespace controlspace {
 

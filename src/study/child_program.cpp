@@ -17,7 +17,7 @@
 #include <fstream>
 #include <thread>
 
-#include "error.h"
+#include "controlspace/error.h"
 
 namespace controlspace {
 namespace {

@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "spaces/catalogue.h"
+#include "controlspace/space/catalogue.h"
 #include "study/case.h"
 
 namespace controlspace {

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "fields/ugawg_fields.h"
+#include "controlspace/fields/ugawg_fields.h"
 
 namespace controlspace {
 

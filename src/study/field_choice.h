@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
-#include "fields/analytic_field.h"
-#include "fields/surface_fields.h"
-#include "study/vdb_choice.h"
+#include "controlspace/fields/analytic_field.h"
+#include "controlspace/fields/surface_fields.h"
+#include "controlspace/io/vdb_choice.h"
 
 namespace controlspace {
 

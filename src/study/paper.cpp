@@ -6,7 +6,7 @@
 #include <array>
 #include <charconv>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "study/names.h"
 
 namespace controlspace {

@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "error.h"
-#include "sources/text_file.h"
+#include "controlspace/error.h"
+#include "io/text/text_file.h"
 #include "study/results.h"
 #include "study/row_json.h"
 #include "study/settings.h"

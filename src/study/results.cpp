@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "error.h"
-#include "sources/output_file.h"
+#include "controlspace/error.h"
+#include "io/text/output_file.h"
 #include "study/paper_page.h"
 #include "study/pareto.h"
 #include "study/row_json.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "study/settings.h"
 
 namespace controlspace {

@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "gradation/grade.h"
+#include "controlspace/gradation/grade.h"
+#include "controlspace/measure/accuracy.h"
+#include "controlspace/space/control_space.h"
 #include "measure/access_time.h"
-#include "measure/accuracy.h"
-#include "spaces/control_space.h"
 #include "study/case.h"
 
 namespace controlspace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "study/names.h"
 
 namespace controlspace {

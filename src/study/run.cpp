@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "study/equal_setting.h"
 
 namespace controlspace {

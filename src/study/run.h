@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "spaces/catalogue.h"
+#include "controlspace/space/catalogue.h"
 #include "study/row.h"
 #include "study/study.h"
 #include "study/workload.h"

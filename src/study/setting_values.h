@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "study/settings.h"
 
 namespace controlspace {

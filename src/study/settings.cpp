@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "error.h"
-#include "gradation/law.h"
+#include "controlspace/error.h"
+#include "controlspace/gradation/law.h"
 #include "study/field_settings.h"
 #include "study/file_settings.h"
 #include "study/names.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "study/file_readers.h"
 
 namespace controlspace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/box.h"
-#include "spaces/catalogue.h"
+#include "controlspace/geometry/box.h"
+#include "controlspace/space/catalogue.h"
 #include "study/case.h"
 
 namespace controlspace {

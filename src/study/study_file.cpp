@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "error.h"
-#include "sources/text_file.h"
+#include "controlspace/error.h"
+#include "io/text/text_file.h"
 #include "study/settings.h"
 
 namespace controlspace {

@@ -9,11 +9,11 @@
 #include <string_view>
 #include <utility>
 
-#include "error.h"
-#include "fields/mixture.h"
-#include "measure/reference.h"
-#include "sources/read_sources.h"
-#include "spaces/control_space.h"
+#include "controlspace/error.h"
+#include "controlspace/fields/mixture.h"
+#include "controlspace/io/read_sources.h"
+#include "controlspace/measure/reference.h"
+#include "controlspace/space/control_space.h"
 #include "study/names.h"
 
 namespace controlspace {

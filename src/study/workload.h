@@ -3,10 +3,10 @@
 #include <memory>
 #include <vector>
 
-#include "fields/analytic_field.h"
-#include "geometry/box.h"
-#include "measure/accuracy.h"
-#include "sources/point_source.h"
+#include "controlspace/fields/analytic_field.h"
+#include "controlspace/geometry/box.h"
+#include "controlspace/measure/accuracy.h"
+#include "controlspace/sources/point_source.h"
 #include "study/file_readers.h"
 #include "study/study.h"
 

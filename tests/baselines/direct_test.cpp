@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "baselines/fixtures.h"
+#include "controlspace/error.h"
+#include "controlspace/measure/reference.h"
 #include "counting_allocator.h"
-#include "error.h"
-#include "measure/reference.h"
 
 using Catch::Matchers::Contains;
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "baselines/catalogue.h"
+#include "controlspace/baselines/catalogue.h"
 
 namespace controlspace {
 

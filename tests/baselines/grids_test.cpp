@@ -7,11 +7,11 @@
 
 #include "baselines/fixtures.h"
 #include "baselines/uniform_grid.h"
-#include "error.h"
-#include "measure/reference.h"
-#include "metric/intersection.h"
-#include "metric/nonconformity.h"
-#include "sources/sampled_surfaces.h"
+#include "controlspace/error.h"
+#include "controlspace/measure/reference.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/sources/sampled_surfaces.h"
 
 // The laws of every grid, whatever stores it.
 

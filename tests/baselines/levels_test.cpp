@@ -8,10 +8,10 @@
 #include "baselines/openvdb_levels.h"
 #include "baselines/openvdb_value.h"
 #include "baselines/vdb_prune.h"
+#include "controlspace/error.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
 #include "counting_allocator.h"
-#include "error.h"
-#include "metric/intersection.h"
-#include "metric/nonconformity.h"
 
 // The laws of grids in levels.
 

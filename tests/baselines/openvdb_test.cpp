@@ -7,9 +7,9 @@
 #include "baselines/openvdb_value.h"
 #include "baselines/openvdb_vec3s.h"
 #include "baselines/uniform_grid.h"
+#include "controlspace/error.h"
+#include "controlspace/metric/nonconformity.h"
 #include "counting_allocator.h"
-#include "error.h"
-#include "metric/nonconformity.h"
 
 namespace controlspace {
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "error.h"
+#include "controlspace/error.h"
 
 namespace controlspace {
 namespace {

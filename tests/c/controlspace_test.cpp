@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "baselines/catalogue.h"
+#include "controlspace/baselines/catalogue.h"
 #include "measure/access_time.h"
 #include "scratch_directory.h"
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cones/cone_field.h"
+#include "controlspace/sources/sampled_surfaces.h"
 #include "metric/draw.h"
-#include "sources/sampled_surfaces.h"
 
 using namespace controlspace;
 

@@ -6,10 +6,10 @@
 
 #include "cones/cone.h"
 #include "cones/spatial_order.h"
-#include "measure/reference.h"
+#include "controlspace/measure/reference.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/sources/sampled_surfaces.h"
 #include "metric/draw.h"
-#include "metric/intersection.h"
-#include "sources/sampled_surfaces.h"
 
 using namespace controlspace;
 

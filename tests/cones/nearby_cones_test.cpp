@@ -6,8 +6,8 @@
 
 #include "cones/cone.h"
 #include "cones/cone_field.h"
+#include "controlspace/sources/sampled_surfaces.h"
 #include "metric/draw.h"
-#include "sources/sampled_surfaces.h"
 
 using namespace controlspace;
 

@@ -4,10 +4,10 @@
 #include <catch2/catch.hpp>
 
 #include "contract/structures_under_test.h"
+#include "controlspace/measure/reference.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
 #include "measure/access_time.h"
-#include "measure/reference.h"
-#include "metric/intersection.h"
-#include "metric/nonconformity.h"
 
 using namespace controlspace;
 

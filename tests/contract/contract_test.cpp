@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "contract/structures_under_test.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
 #include "measure/access_time.h"
-#include "metric/intersection.h"
-#include "metric/nonconformity.h"
 
 using namespace controlspace;
 

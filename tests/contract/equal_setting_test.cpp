@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "baselines/catalogue.h"
+#include "controlspace/baselines/catalogue.h"
 #include "study/run.h"
 
 using namespace controlspace;

@@ -4,10 +4,10 @@
 #include <random>
 
 #include "contract/structures_under_test.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
 #include "measure/access_time.h"
 #include "metric/draw.h"
-#include "metric/intersection.h"
-#include "metric/nonconformity.h"
 
 using namespace controlspace;
 

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include "contract/structures_under_test.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/sources/scattered_surfaces.h"
 #include "measure/access_time.h"
-#include "metric/intersection.h"
-#include "sources/scattered_surfaces.h"
 
 using namespace controlspace;
 

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "contract/structures_under_test.h"
+#include "controlspace/metric/nonconformity.h"
 #include "measure/access_time.h"
-#include "metric/nonconformity.h"
 
 using namespace controlspace;
 

@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 
 #include "contract/structures_under_test.h"
-#include "error.h"
+#include "controlspace/error.h"
+#include "controlspace/space/control_space_file.h"
 #include "measure/access_time.h"
 #include "sources/files.h"
-#include "spaces/control_space_file.h"
 
 using namespace controlspace;
 

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "baselines/catalogue.h"
-#include "gradation/grade.h"
-#include "sources/sampled_surfaces.h"
-#include "spaces/catalogue.h"
+#include "controlspace/baselines/catalogue.h"
+#include "controlspace/gradation/grade.h"
+#include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/catalogue.h"
 
 namespace controlspace {
 

@@ -1,5 +1,5 @@
 // Elements found by asking, against what structures say of themselves.
-#include "export/elements.h"
+#include "io/vtk/elements.h"
 
 #include <catch2/catch.hpp>
 

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <string>
 
-#include "fields/formula_field.h"
-#include "geometry/box.h"
+#include "controlspace/fields/formula_field.h"
+#include "controlspace/geometry/box.h"
 #include "sources/files.h"
 
 namespace controlspace {

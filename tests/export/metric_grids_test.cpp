@@ -1,4 +1,4 @@
-#include "export/metric_grids.h"
+#include "controlspace/io/metric_grids.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,11 +1,11 @@
-#include "export/read_vdb_field.h"
+#include "controlspace/io/read_vdb_field.h"
 
 #include <limits>
 
-#include "baselines/catalogue.h"
+#include "controlspace/baselines/catalogue.h"
+#include "controlspace/io/write_vdb.h"
+#include "controlspace/metric/nonconformity.h"
 #include "export/fixtures.h"
-#include "export/write_vdb.h"
-#include "metric/nonconformity.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

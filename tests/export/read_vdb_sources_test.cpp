@@ -1,4 +1,4 @@
-#include "export/read_vdb_sources.h"
+#include "controlspace/io/read_vdb_sources.h"
 
 #include <openvdb/tools/LevelSetSphere.h>
 #include <openvdb/tools/LevelSetUtil.h>

@@ -1,11 +1,11 @@
-#include "export/sampled_block.h"
+#include "io/openvdb/sampled_block.h"
 
 #include <cmath>
 #include <limits>
 #include <set>
 
+#include "controlspace/metric/nonconformity.h"
 #include "export/fixtures.h"
-#include "metric/nonconformity.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

@@ -8,8 +8,8 @@
 #include <functional>
 #include <numbers>
 
-#include "export/read_surface_sources.h"
-#include "export/surface_mesh.h"
+#include "controlspace/io/read_surface_sources.h"
+#include "io/surface/surface_mesh.h"
 #include "sources/files.h"
 
 using namespace controlspace;

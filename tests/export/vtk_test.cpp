@@ -19,15 +19,15 @@
 #include <array>
 #include <catch2/catch.hpp>
 
-#include "export/elements.h"
-#include "export/read_vtk_sources.h"
-#include "export/vtk_fields.h"
-#include "export/write_vtk.h"
-#include "fields/formula_field.h"
+#include "controlspace/fields/formula_field.h"
+#include "controlspace/io/read_vtk_sources.h"
+#include "controlspace/io/write_vtk.h"
+#include "controlspace/sources/riemannian.h"
+#include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/catalogue.h"
+#include "io/vtk/elements.h"
+#include "io/vtk/vtk_fields.h"
 #include "sources/files.h"
-#include "sources/riemannian.h"
-#include "sources/sampled_surfaces.h"
-#include "spaces/catalogue.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

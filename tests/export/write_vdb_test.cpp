@@ -1,4 +1,4 @@
-#include "export/write_vdb.h"
+#include "controlspace/io/write_vdb.h"
 
 #include <openvdb/points/PointDataGrid.h>
 #include <signal.h>
@@ -9,10 +9,10 @@
 #include <map>
 #include <sstream>
 
-#include "baselines/catalogue.h"
+#include "controlspace/baselines/catalogue.h"
+#include "controlspace/io/metric_grids.h"
+#include "controlspace/metric/nonconformity.h"
 #include "export/fixtures.h"
-#include "export/metric_grids.h"
-#include "metric/nonconformity.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

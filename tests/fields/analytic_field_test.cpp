@@ -1,9 +1,9 @@
-#include "fields/analytic_field.h"
+#include "controlspace/fields/analytic_field.h"
 
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "fields/values.h"
 
 using namespace controlspace;

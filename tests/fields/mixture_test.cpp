@@ -1,13 +1,13 @@
-#include "fields/mixture.h"
+#include "controlspace/fields/mixture.h"
 
 #include <catch2/catch.hpp>
 
-#include "error.h"
-#include "fields/surface_fields.h"
-#include "fields/ugawg_fields.h"
+#include "controlspace/error.h"
+#include "controlspace/fields/surface_fields.h"
+#include "controlspace/fields/ugawg_fields.h"
+#include "controlspace/metric/intersection.h"
 #include "fields/values.h"
 #include "metric/draw.h"
-#include "metric/intersection.h"
 
 using namespace controlspace;
 

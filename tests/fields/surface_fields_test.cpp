@@ -1,14 +1,14 @@
-#include "fields/surface_fields.h"
+#include "controlspace/fields/surface_fields.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "error.h"
+#include "controlspace/error.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/sources/sampled_surfaces.h"
 #include "fields/values.h"
 #include "metric/draw.h"
-#include "metric/intersection.h"
-#include "sources/sampled_surfaces.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

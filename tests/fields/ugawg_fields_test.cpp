@@ -1,4 +1,4 @@
-#include "fields/ugawg_fields.h"
+#include "controlspace/fields/ugawg_fields.h"
 
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>

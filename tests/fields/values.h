@@ -1,6 +1,6 @@
 #pragma once
 
-#include "metric/metric_field.h"
+#include "controlspace/metric/metric_field.h"
 
 namespace controlspace {
 

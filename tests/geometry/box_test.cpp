@@ -1,10 +1,10 @@
-#include "geometry/box.h"
+#include "controlspace/geometry/box.h"
 
 #include <catch2/catch.hpp>
 #include <limits>
 #include <vector>
 
-#include "error.h"
+#include "controlspace/error.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

@@ -1,14 +1,14 @@
-#include "gradation/grade.h"
+#include "controlspace/gradation/grade.h"
 
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
 
-#include "error.h"
+#include "controlspace/error.h"
+#include "controlspace/metric/intersection.h"
 #include "gradation/queue.h"
 #include "gradation/sizes.h"
 #include "metric/draw.h"
-#include "metric/intersection.h"
 
 using namespace controlspace;
 

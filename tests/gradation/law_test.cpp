@@ -1,11 +1,11 @@
-#include "gradation/law.h"
+#include "controlspace/gradation/law.h"
 
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "error.h"
+#include "controlspace/error.h"
+#include "controlspace/metric/intersection.h"
 #include "metric/draw.h"
-#include "metric/intersection.h"
 
 using namespace controlspace;
 

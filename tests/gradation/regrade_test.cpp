@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "gradation/grade.h"
+#include "controlspace/gradation/grade.h"
 
 using namespace controlspace;
 

@@ -6,7 +6,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "measure/fake_spaces.h"
 
 using namespace controlspace;

@@ -1,4 +1,4 @@
-#include "measure/accuracy.h"
+#include "controlspace/measure/accuracy.h"
 
 #include <tbb/global_control.h>
 
@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "measure/access_time.h"
 #include "measure/fake_spaces.h"
 #include "metric/draw.h"

@@ -3,7 +3,7 @@
 #include <functional>
 #include <utility>
 
-#include "spaces/control_space.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 

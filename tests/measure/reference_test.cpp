@@ -1,4 +1,4 @@
-#include "measure/reference.h"
+#include "controlspace/measure/reference.h"
 
 #include <tbb/global_control.h>
 
@@ -6,9 +6,9 @@
 #include <limits>
 #include <string>
 
-#include "error.h"
+#include "controlspace/error.h"
+#include "controlspace/metric/intersection.h"
 #include "metric/draw.h"
-#include "metric/intersection.h"
 
 using namespace controlspace;
 

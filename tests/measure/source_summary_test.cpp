@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "error.h"
-#include "sources/sampled_surfaces.h"
+#include "controlspace/error.h"
+#include "controlspace/sources/sampled_surfaces.h"
 
 using namespace controlspace;
 

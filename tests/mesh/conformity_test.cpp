@@ -1,12 +1,12 @@
-#include "mesh/conformity.h"
+#include "controlspace/mesh/conformity.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 
-#include "error.h"
-#include "fields/formula_field.h"
+#include "controlspace/error.h"
+#include "controlspace/fields/formula_field.h"
 #include "mesh/fixtures.h"
 
 using namespace controlspace;

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/box.h"
-#include "mesh/tet_mesh.h"
-#include "metric/metric.h"
+#include "controlspace/geometry/box.h"
+#include "controlspace/mesh/tet_mesh.h"
+#include "controlspace/metric/metric.h"
 
 namespace controlspace {
 

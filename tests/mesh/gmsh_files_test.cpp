@@ -5,12 +5,12 @@
 #include <cstring>
 #include <fstream>
 
-#include "mesh/gmsh_session.h"
-#include "mesh/read_msh_sources.h"
+#include "controlspace/sources/riemannian.h"
+#include "gmsh/gmsh_session.h"
+#include "gmsh/read_msh_sources.h"
+#include "io/text/pos.h"
+#include "io/text/text_file.h"
 #include "sources/files.h"
-#include "sources/pos.h"
-#include "sources/riemannian.h"
-#include "sources/text_file.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

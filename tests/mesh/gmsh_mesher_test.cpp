@@ -1,14 +1,14 @@
-#include "mesh/gmsh_mesher.h"
+#include "controlspace/gmsh/gmsh_mesher.h"
 
 #include <gmsh.h>
 
 #include <catch2/catch.hpp>
 #include <stdexcept>
 
-#include "fields/formula_field.h"
-#include "mesh/conformity.h"
+#include "controlspace/fields/formula_field.h"
+#include "controlspace/mesh/conformity.h"
+#include "controlspace/mesh/write_msh.h"
 #include "mesh/fixtures.h"
-#include "mesh/write_msh.h"
 #include "sources/files.h"
 
 using namespace controlspace;

@@ -6,8 +6,8 @@
 #include <iostream>
 #include <thread>
 
-#include "fields/formula_field.h"
-#include "mesh/conformity.h"
+#include "controlspace/fields/formula_field.h"
+#include "controlspace/mesh/conformity.h"
 #include "mesh/fixtures.h"
 #include "sources/files.h"
 

@@ -4,8 +4,8 @@
 #include <thread>
 #include <vector>
 
-#include "fields/formula_field.h"
-#include "mesh/estimate.h"
+#include "controlspace/fields/formula_field.h"
+#include "gmsh/estimate.h"
 #include "mesh/fixtures.h"
 #include "sources/files.h"
 

@@ -1,4 +1,4 @@
-#include "mesh/tet_mesh.h"
+#include "controlspace/mesh/tet_mesh.h"
 
 #include <catch2/catch.hpp>
 #include <set>

@@ -3,15 +3,15 @@
 #include <cstring>
 #include <regex>
 
-#include "fields/formula_field.h"
-#include "mesh/conformity.h"
+#include "controlspace/fields/formula_field.h"
+#include "controlspace/mesh/conformity.h"
+#include "controlspace/mesh/write_medit.h"
+#include "controlspace/mesh/write_vtu.h"
+#include "io/text/medit.h"
+#include "io/text/text_file.h"
+#include "io/text/write_medit_sources.h"
 #include "mesh/fixtures.h"
-#include "mesh/write_medit.h"
-#include "mesh/write_vtu.h"
 #include "sources/files.h"
-#include "sources/medit.h"
-#include "sources/text_file.h"
-#include "sources/write_medit_sources.h"
 
 using namespace controlspace;
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "controlspace/metric/metric.h"
 #include "metric/decompose.h"
-#include "metric/metric.h"
 
 namespace controlspace {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
 #include "data_folder.h"
 #include "metric/draw.h"
-#include "metric/intersection.h"
-#include "metric/nonconformity.h"
 
 using namespace controlspace;
 

@@ -1,4 +1,4 @@
-#include "metric/intersection.h"
+#include "controlspace/metric/intersection.h"
 
 #include <catch2/catch.hpp>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "metric/metric.h"
+#include "controlspace/metric/metric.h"
 
 #include <catch2/catch.hpp>
 #include <limits>

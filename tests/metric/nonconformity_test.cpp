@@ -1,4 +1,4 @@
-#include "metric/nonconformity.h"
+#include "controlspace/metric/nonconformity.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "controlspace/metric/intersection.h"
 #include "metric/draw.h"
-#include "metric/intersection.h"
 
 using namespace controlspace;
 

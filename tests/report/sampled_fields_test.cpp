@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "metric/nonconformity.h"
+#include "controlspace/metric/nonconformity.h"
 #include "report/delta_figures.h"
 #include "report/slice_figures.h"
 #include "study/run.h"

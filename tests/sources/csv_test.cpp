@@ -1,4 +1,4 @@
-#include "sources/csv.h"
+#include "io/text/csv.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -3,10 +3,10 @@
 
 #include <catch2/catch.hpp>
 
+#include "controlspace/io/read_sources.h"
+#include "io/text/csv.h"
+#include "io/text/write_sources.h"
 #include "scratch_directory.h"
-#include "sources/csv.h"
-#include "sources/read_sources.h"
-#include "sources/write_sources.h"
 
 using namespace controlspace;
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "scratch_directory.h"
 
 namespace controlspace {

@@ -1,13 +1,13 @@
 // Binary Medit files against ASCII ones, and against bytes put together by hand.
-#include "sources/medit_blocks.h"
+#include "io/text/medit_blocks.h"
 
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "io/text/medit.h"
+#include "io/text/write_medit_sources.h"
 #include "sources/files.h"
-#include "sources/medit.h"
 #include "sources/medit_bytes.h"
-#include "sources/write_medit_sources.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

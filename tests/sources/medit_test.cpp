@@ -1,4 +1,4 @@
-#include "sources/medit.h"
+#include "io/text/medit.h"
 
 #include <Eigen/LU>
 #include <catch2/catch.hpp>

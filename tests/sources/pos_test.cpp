@@ -1,4 +1,4 @@
-#include "sources/pos.h"
+#include "io/text/pos.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,11 +1,11 @@
-#include "sources/read_sources.h"
+#include "controlspace/io/read_sources.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "data_folder.h"
+#include "io/text/write_medit_sources.h"
 #include "sources/files.h"
-#include "sources/write_medit_sources.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

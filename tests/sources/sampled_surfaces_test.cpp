@@ -1,4 +1,4 @@
-#include "sources/sampled_surfaces.h"
+#include "controlspace/sources/sampled_surfaces.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sources/text_file.h"
+#include "io/text/text_file.h"
 
 #include <signal.h>
 #include <sys/stat.h>
@@ -7,8 +7,8 @@
 #include <fstream>
 #include <thread>
 
+#include "controlspace/io/read_sources.h"
 #include "sources/files.h"
-#include "sources/read_sources.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

@@ -1,4 +1,4 @@
-#include "spaces/adaptation.h"
+#include "controlspace/space/adaptation.h"
 
 #include <tbb/global_control.h>
 
@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 
-#include "baselines/catalogue.h"
-#include "error.h"
+#include "controlspace/baselines/catalogue.h"
+#include "controlspace/error.h"
+#include "controlspace/measure/accuracy.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/sources/sampled_surfaces.h"
 #include "measure/access_time.h"
-#include "measure/accuracy.h"
-#include "metric/nonconformity.h"
-#include "sources/sampled_surfaces.h"
 
 using namespace controlspace;
 

@@ -1,11 +1,11 @@
-#include "spaces/anchored_values.h"
+#include "trees/values/anchored_values.h"
 
 #include <catch2/catch.hpp>
 
-#include "measure/accuracy.h"
-#include "metric/nonconformity.h"
-#include "sources/sampled_surfaces.h"
-#include "spaces/catalogue.h"
+#include "controlspace/measure/accuracy.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/catalogue.h"
 
 using namespace controlspace;
 

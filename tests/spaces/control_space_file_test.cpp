@@ -1,4 +1,4 @@
-#include "spaces/control_space_file.h"
+#include "controlspace/space/control_space_file.h"
 
 #define XXH_INLINE_ALL
 #include <tbb/global_control.h>
@@ -9,11 +9,11 @@
 #include <cstring>
 #include <fstream>
 
-#include "baselines/catalogue.h"
+#include "controlspace/baselines/catalogue.h"
+#include "controlspace/fields/formula_field.h"
+#include "controlspace/sources/sampled_surfaces.h"
 #include "damaged_files.h"
-#include "fields/formula_field.h"
 #include "sources/files.h"
-#include "sources/sampled_surfaces.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

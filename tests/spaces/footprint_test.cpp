@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "controlspace/error.h"
+#include "controlspace/gradation/grade.h"
+#include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/catalogue.h"
 #include "counting_allocator.h"
-#include "error.h"
-#include "gradation/grade.h"
-#include "sources/sampled_surfaces.h"
-#include "spaces/catalogue.h"
 
 using namespace controlspace;
 

@@ -6,13 +6,13 @@
 #include <tuple>
 #include <vector>
 
+#include "controlspace/error.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/catalogue.h"
 #include "counting_allocator.h"
-#include "error.h"
 #include "geometry/random_fractions.h"
 #include "measure/access_time.h"
-#include "metric/nonconformity.h"
-#include "sources/sampled_surfaces.h"
-#include "spaces/catalogue.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

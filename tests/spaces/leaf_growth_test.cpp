@@ -7,10 +7,10 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "error.h"
-#include "sources/sampled_surfaces.h"
-#include "spaces/catalogue.h"
-#include "spaces/state.h"
+#include "controlspace/error.h"
+#include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/catalogue.h"
+#include "space/state.h"
 
 using namespace controlspace;
 

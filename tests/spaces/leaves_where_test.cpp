@@ -1,11 +1,11 @@
-#include "spaces/leaves_where.h"
+#include "trees/topology/leaves_where.h"
 
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
 
-#include "spaces/face_pairs.h"
-#include "spaces/touching_pairs.h"
+#include "trees/topology/face_pairs.h"
+#include "trees/topology/touching_pairs.h"
 
 using namespace controlspace;
 

@@ -1,13 +1,13 @@
-#include "spaces/parts_across.h"
+#include "trees/topology/parts_across.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 #include <vector>
 
+#include "controlspace/space/split_rule.h"
 #include "geometry/random_fractions.h"
-#include "spaces/adjacency.h"
-#include "spaces/split_rule.h"
+#include "trees/topology/adjacency.h"
 
 using namespace controlspace;
 

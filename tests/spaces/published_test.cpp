@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "gradation/grade.h"
-#include "measure/accuracy.h"
-#include "sources/sampled_surfaces.h"
-#include "spaces/catalogue.h"
+#include "controlspace/gradation/grade.h"
+#include "controlspace/measure/accuracy.h"
+#include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/catalogue.h"
 
 using namespace controlspace;
 

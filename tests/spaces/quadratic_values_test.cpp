@@ -1,12 +1,12 @@
-#include "spaces/quadratic_values.h"
+#include "trees/values/quadratic_values.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "controlspace/measure/accuracy.h"
+#include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/catalogue.h"
 #include "measure/access_time.h"
-#include "measure/accuracy.h"
-#include "sources/sampled_surfaces.h"
-#include "spaces/catalogue.h"
 
 using namespace controlspace;
 

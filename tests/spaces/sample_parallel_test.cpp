@@ -1,13 +1,13 @@
-#include "spaces/sample_parallel.h"
+#include "controlspace/space/sample_parallel.h"
 
 #include <tbb/global_control.h>
 
 #include <catch2/catch.hpp>
 #include <vector>
 
-#include "baselines/catalogue.h"
+#include "controlspace/baselines/catalogue.h"
+#include "controlspace/sources/sampled_surfaces.h"
 #include "measure/access_time.h"
-#include "sources/sampled_surfaces.h"
 
 using namespace controlspace;
 

@@ -1,4 +1,4 @@
-#include "spaces/split_rule.h"
+#include "controlspace/space/split_rule.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,4 @@
-#include "spaces/topology.h"
+#include "trees/topology/topology.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -7,9 +7,9 @@
 #include <random>
 #include <set>
 
-#include "spaces/adjacency.h"
-#include "spaces/face_pairs.h"
-#include "spaces/split_rule.h"
+#include "controlspace/space/split_rule.h"
+#include "trees/topology/adjacency.h"
+#include "trees/topology/face_pairs.h"
 
 using namespace controlspace;
 

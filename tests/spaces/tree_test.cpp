@@ -1,13 +1,13 @@
-#include "spaces/tree.h"
+#include "trees/tree.h"
 
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
 
-#include "metric/nonconformity.h"
-#include "spaces/face_pairs.h"
-#include "spaces/quadratic_values.h"
-#include "spaces/vertex_values.h"
+#include "controlspace/metric/nonconformity.h"
+#include "trees/topology/face_pairs.h"
+#include "trees/values/quadratic_values.h"
+#include "trees/values/vertex_values.h"
 
 using namespace controlspace;
 

@@ -1,10 +1,10 @@
-#include "spaces/triquadratic.h"
+#include "trees/values/triquadratic.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "controlspace/metric/intersection.h"
 #include "metric/draw.h"
-#include "metric/intersection.h"
 
 using namespace controlspace;
 

@@ -1,4 +1,4 @@
-#include "spaces/work_through.h"
+#include "trees/topology/work_through.h"
 
 #include <algorithm>
 #include <atomic>

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "baselines/catalogue.h"
+#include "controlspace/baselines/catalogue.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

@@ -6,8 +6,8 @@
 #include <set>
 #include <sstream>
 
+#include "controlspace/error.h"
 #include "data_folder.h"
-#include "error.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

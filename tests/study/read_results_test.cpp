@@ -6,7 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "scratch_directory.h"
 #include "study/results.h"
 #include "study/row_json.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "scratch_directory.h"
 #include "study/row_json.h"
 #include "study/sample_rows.h"

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "error.h"
+#include "controlspace/error.h"
 #include "study/sample_rows.h"
 
 using namespace controlspace;

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "error.h"
+#include "controlspace/error.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <utility>
 
+#include "controlspace/error.h"
+#include "controlspace/gradation/law.h"
 #include "data_folder.h"
-#include "error.h"
-#include "gradation/law.h"
 #include "study/settings.h"
 
 using namespace controlspace;

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "controlspace/error.h"
 #include "data_folder.h"
-#include "error.h"
 #include "study/study_file.h"
 
 using namespace controlspace;

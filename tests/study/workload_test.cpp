@@ -2,11 +2,11 @@
 
 #include <catch2/catch.hpp>
 
-#include "error.h"
+#include "controlspace/error.h"
+#include "controlspace/measure/reference.h"
+#include "controlspace/metric/intersection.h"
 #include "fields/values.h"
-#include "measure/reference.h"
 #include "metric/draw.h"
-#include "metric/intersection.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

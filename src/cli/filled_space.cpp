@@ -1,0 +1,44 @@
+#include "cli/filled_space.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "cli/input_study.h"
+#include "cli/readers.h"
+#include "cli/threads.h"
+#include "controlspace/baselines/catalogue.h"
+#include "controlspace/error.h"
+#include "controlspace/space/control_space_file.h"
+#include "study/run.h"
+
+namespace controlspace {
+
+bool is_control_space(const std::filesystem::path& input) { return input.extension() == ".ctrl"; }
+
+void require_no_settings(const std::filesystem::path& space, const GivenSettings& given) {
+    if (given.empty()) return;
+    throw InputError(fmt::format("{}: {} was made with its own: leave it out",
+                                 option_name(given.front().first), space.string()));
+}
+
+FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings& given,
+                         const StudyObserver& observer) {
+    FilledSpace filled;
+    if (observer.phase_started) observer.phase_started("reading");
+    if (is_control_space(input)) {
+        require_no_settings(input, given);
+        filled.space = load_control_space(input, structures());
+        return filled;
+    }
+    Study study = study_of_input(input, given);
+    filled.threads = limit_threads(study.threads);
+    const Case c = only_case(study);
+    Workload workload = make_workload(study, c.sources, file_readers());
+    Measures unused;
+    filled.space = make_and_fill(study, c, entry_of(c, structures()), workload, unused, observer);
+    filled.origin = Origin{std::move(study), c, std::move(workload)};
+    return filled;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,35 @@
+#include "cli/given_settings.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace controlspace {
+
+SettingValues values_of(ValueType type, const std::vector<std::string>& words) {
+    SettingValues values;
+    for (const std::string& word : words) {
+        double x = 0;
+        const char* end = word.data() + word.size();
+        const auto read = std::from_chars(word.data(), end, x);
+        if (type != ValueType::text && read.ec == std::errc() && read.ptr == end) {
+            values.emplace_back(x);
+        } else {
+            values.emplace_back(word);
+        }
+    }
+    return values;
+}
+
+std::string option_name(std::string_view key) {
+    std::string name = "--";
+    name += key;
+    std::replace(name.begin(), name.end(), '_', '-');
+    return name;
+}
+
+void apply(const GivenSettings& given, Study& study) {
+    apply(given, study_settings(), study);
+    for (Run& run : study.runs) apply(given, run_settings(), run);
+}
+
+}  // namespace controlspace

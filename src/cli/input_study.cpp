@@ -1,0 +1,58 @@
+#include "cli/input_study.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "cli/readers.h"
+#include "controlspace/baselines/catalogue.h"
+#include "controlspace/error.h"
+#include "study/study_file.h"
+#include "study/workload.h"
+
+namespace controlspace {
+
+Study study_of_input(const std::filesystem::path& input, const GivenSettings& given) {
+    Study study;
+    if (input.extension() == ".toml") {
+        study = read_study(input);
+    } else {
+        study.runs.front().structures = {"K_oL"};
+        study.runs.front().splits = {SplitRule::middle};
+        if (!input.empty()) {
+            study.sources.kind = SourcesKind::file;
+            study.sources.file = input;
+        }
+    }
+    apply(given, study);
+    return study;
+}
+
+Case only_case(const Study& study) {
+    const std::vector<Case> cases = expand(study, structures());
+    if (cases.size() > 1) {
+        throw InputError(fmt::format(
+            "{} cases, the first two {} ({}) and {} ({}): only one can be taken, choose by "
+            "--structures, --splits, --tau and so on",
+            cases.size(), structure_label(cases[0]), setting_label(cases[0]),
+            structure_label(cases[1]), setting_label(cases[1])));
+    }
+    require_set_voxels(cases.front());
+    return cases.front();
+}
+
+void require_set_voxels(const Case& c) {
+    if (!c.equal_delta && !c.equal_memory) return;
+    throw InputError("equal_delta and equal_memory are for compare: give voxel as it found it");
+}
+
+std::vector<PointSource> sources_of_input(const std::filesystem::path& file,
+                                          const GivenSettings& given) {
+    Study study;
+    apply(given, study_settings(), study);
+    study.sources.kind = SourcesKind::file;
+    study.sources.file = file;
+    return read_source_file(study.sources, file_readers());
+}
+
+}  // namespace controlspace

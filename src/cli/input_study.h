@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "cli/given_settings.h"
+#include "controlspace/sources/point_source.h"
+#include "study/case.h"
+#include "study/study.h"
+
+namespace controlspace {
+
+/// The study that `input`, a study file (.toml) or a file of sources, and the settings given ask
+/// for. Without a study file: the structure K_oL, and the cut s_L for kd-trees; without a file at
+/// all: on the paper's sphere. Throws InputError.
+Study study_of_input(const std::filesystem::path& input, const GivenSettings& given);
+
+/// The one case of a study that makes one structure. Throws InputError where it has more.
+Case only_case(const Study& study);
+
+/// The sources of a file of any format that the program reads; `given` are settings of a study,
+/// which say how. Throws InputError.
+std::vector<PointSource> sources_of_input(const std::filesystem::path& file,
+                                          const GivenSettings& given);
+
+/// Throws InputError where voxels are to be found by trial, which `compare` alone does.
+void require_set_voxels(const Case& c);
+
+}  // namespace controlspace

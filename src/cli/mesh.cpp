@@ -1,0 +1,187 @@
+#include "cli/mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "cli/filled_space.h"
+#include "cli/input_study.h"
+#include "cli/mesh_field.h"
+#include "cli/mesh_folder.h"
+#include "cli/readers.h"
+#include "cli/standard_output.h"
+#include "cli/threads.h"
+#include "controlspace/baselines/catalogue.h"
+#include "controlspace/measure/accuracy.h"
+#include "controlspace/space/control_space_file.h"
+#include "controlspace/space/space_field.h"
+#include "study/run.h"
+
+namespace controlspace {
+namespace {
+
+/// What cases with the same exact field share.
+struct Reference {
+    Case first;  ///< of these cases
+    Workload workload;
+    std::shared_ptr<const MetricField> field;
+    Probes probes;
+    Mesher mesher = Mesher::delaunay;  ///< the choice of `auto` taken
+};
+
+Reference make_shared_reference(const Study& study, const Case& c, Mesher asked) {
+    Reference reference{c, make_workload(study, c.sources, file_readers()), nullptr, {}};
+    reference.field = make_reference(study, c, reference.workload);
+    reference.probes =
+        make_probes(*reference.field, cell_centres(reference.workload.domain, study.probe_grid));
+    reference.mesher = chosen_mesher(asked, reference.probes.reference);
+    return reference;
+}
+
+/// Meshes the cases of a study, and their exact fields.
+class StudyMeshes {
+public:
+    StudyMeshes(const Study& study, MeshFolder& folder, Interruption& interruption)
+        : study_(study),
+          folder_(folder),
+          interruption_(interruption),
+          cases_(expand(study, structures())) {}
+
+    void run() {
+        require_runnable();
+        folder_.begin();
+        const Case* last = nullptr;
+        for (const Case& c : cases_) {
+            const Reference& reference = reference_of(c);
+            const bool new_field = last == nullptr || !share_probes(*last, c);
+            if (folder_.settings().exact && new_field) mesh_exact(c, reference);
+            mesh_case(c, reference);
+            last = &c;
+        }
+        folder_.end();
+    }
+
+private:
+    const Reference& reference_of(const Case& c) {
+        if (!reference_ || !share_probes(reference_->first, c)) {
+            reference_.reset();  // its memory first
+            reference_ = make_shared_reference(study_, c, folder_.settings().mesher);
+        }
+        return *reference_;
+    }
+
+    // What is wrong from the start leaves no folder; what is wrong with a later case makes a row.
+    void require_runnable() {
+        for (const Case& c : cases_) require_set_voxels(c);
+        const Reference& reference = reference_of(cases_.front());
+        for (const Case& c : cases_) {
+            if (c.sources == reference.first.sources) space_options(study_, c, reference.workload);
+        }
+        if (reference.mesher == Mesher::mmg) {
+            require_mmg(mmg_options(folder_.settings(), folder_.path()));
+        }
+    }
+
+    void mesh_exact(const Case& c, const Reference& reference) {
+        MeshRow row;
+        row.setting = c;
+        row.exact = true;
+        row.mesher = reference.mesher;
+        folder_.add(
+            std::move(row), reference.workload.domain, *reference.field,
+            [&](MeshRow&) -> const MetricField& { return *reference.field; }, interruption_);
+    }
+
+    void mesh_case(const Case& c, const Reference& reference) {
+        MeshRow row;
+        row.setting = c;
+        row.mesher = reference.mesher;
+        std::unique_ptr<ControlSpace> space;
+        std::optional<SpaceAsField> field;
+        const auto make = [&](MeshRow& made) -> const MetricField& {
+            Measures measures;
+            space = make_and_fill(study_, c, entry_of(c, structures()), reference.workload,
+                                  measures, {});
+            made.creation_s = measures.insert_s + measures.gradation_s;
+            const Accuracy delta_r = accuracy(*space, reference.probes);
+            made.delta_r_max = delta_r.max;
+            made.delta_r_mean = delta_r.mean;
+            return field.emplace(*space);
+        };
+        folder_.add(std::move(row), reference.workload.domain, *reference.field, make,
+                    interruption_);
+    }
+
+    const Study& study_;
+    MeshFolder& folder_;
+    Interruption& interruption_;
+    const std::vector<Case> cases_;
+    std::optional<Reference> reference_;
+};
+
+/// Meshes a control space that was saved; it is the reference too.
+void mesh_saved(const std::filesystem::path& file, const ControlSpace& space, int probe_grid,
+                MeshFolder& folder, Interruption& interruption) {
+    const SpaceAsField field(space);
+    MeshRow row;
+    row.saved = file;
+    row.setting.structure = space.making()->structure;
+    const auto probes = make_probes(field, cell_centres(space.domain(), probe_grid));
+    row.mesher = chosen_mesher(folder.settings().mesher, probes.reference);
+    if (row.mesher == Mesher::mmg) require_mmg(mmg_options(folder.settings(), folder.path()));
+    folder.begin();
+    folder.add(
+        std::move(row), space.domain(), field,
+        [&](MeshRow&) -> const MetricField& { return field; }, interruption);
+    folder.end();
+}
+
+/// What is said of the making of a control space that was made already.
+GivenSettings without_settings_of_meshing(const GivenSettings& given) {
+    constexpr std::string_view others[] = {"name", "output", "threads", "probe_grid"};
+    GivenSettings left = given;
+    std::erase_if(left, [&](const auto& setting) {
+        const auto meshing = mesh_settings();
+        return std::find(std::begin(others), std::end(others), setting.first) != std::end(others) ||
+               std::any_of(meshing.begin(), meshing.end(),
+                           [&](const auto& known) { return known.key == setting.first; });
+    });
+    return left;
+}
+
+}  // namespace
+
+bool mesh(const MeshOptions& options) {
+    const bool is_saved = is_control_space(options.input);
+    if (is_saved) {
+        require_no_settings(options.input, without_settings_of_meshing(options.settings));
+    }
+    Study study = study_of_input(is_saved ? "" : options.input, options.settings);
+    if (study.name == Study{}.name) study.name = "mesh";
+    MeshSettings settings;
+    apply(options.settings, mesh_settings(), settings);
+    const auto threads = limit_threads(study.threads);
+    Interruption interruption;
+    const auto saved = is_saved ? load_control_space(options.input, structures()) : nullptr;
+    MeshFolder folder(study, std::move(settings), options.command_line, options.quiet);
+    {
+        const Interruption::Watch watch(interruption, nullptr, [&] {
+            print_error(fmt::format("controlspace: interrupted: {} meshes are in {}\n",
+                                    folder.rows().size(), folder.path().string()));
+        });
+        if (saved) {
+            mesh_saved(options.input, *saved, study.probe_grid, folder, interruption);
+        } else {
+            StudyMeshes(study, folder, interruption).run();
+        }
+    }
+    print(mesh_tables(folder.rows(), TableStyle::terminal));
+    print(fmt::format("\nMeshes: {}\n", folder.path().string()));
+    return std::all_of(folder.rows().begin(), folder.rows().end(),
+                       [](const MeshRow& row) { return row.error.empty(); });
+}
+
+}  // namespace controlspace

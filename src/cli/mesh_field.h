@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "controlspace/geometry/box.h"
+#include "controlspace/mesh/tet_mesh.h"
+#include "controlspace/metric/metric_field.h"
+#include "mesh/mesh_rows.h"
+#include "mesh/mesh_settings.h"
+#include "mesh/mmg_mesher.h"
+
+namespace controlspace {
+
+/// The mesher asked for; of `auto`, the one for a field that holds `metrics`.
+Mesher chosen_mesher(Mesher asked, std::span<const Metric> metrics);
+
+/// How MMG is run; its own files go into `folder`.
+MmgOptions mmg_options(const MeshSettings& settings, const std::filesystem::path& folder);
+
+/// Meshes the box by the row's mesher, and enters into the row what that took. What the mesher
+/// throws passes through.
+TetMesh make_mesh(const Box& domain, const MetricField& field, const MeshSettings& settings,
+                  const std::filesystem::path& folder, MeshRow& row);
+
+/// Writes a mesh in the settings' formats, to `stem` with their endings. Throws InputError.
+void write_mesh(const std::filesystem::path& stem, const TetMesh& mesh, const MetricField& field,
+                const MeshSettings& settings);
+
+}  // namespace controlspace

@@ -1,0 +1,79 @@
+#include "cli/mesh_folder.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+#include "cli/mesh_field.h"
+#include "cli/peak_memory.h"
+#include "cli/standard_output.h"
+#include "study/results.h"
+
+namespace controlspace {
+namespace {
+
+constexpr const char* results_file = "meshes.json";
+
+}  // namespace
+
+MeshFolder::MeshFolder(const Study& study, MeshSettings settings, const std::string& command_line,
+                       bool quiet)
+    : name_(study.name),
+      settings_(std::move(settings)),
+      quiet_(quiet),
+      provenance_(current_provenance()) {
+    provenance_.command_line = command_line;
+    path_ = results_path(study, provenance_);
+}
+
+void MeshFolder::begin() {
+    make_results_folder(path_, results_file);
+    record(false);
+}
+
+void MeshFolder::add(MeshRow row, const Box& domain, const MetricField& reference,
+                     const std::function<const MetricField&(MeshRow&)>& field,
+                     Interruption& interruption) {
+    restart_peak_memory();
+    try {
+        const MetricField& meshed = field(row);
+        const TetMesh mesh = make_mesh(domain, meshed, settings_, path_, row);
+        row.peak_bytes = std::max(row.peak_bytes, peak_memory());
+        row.conformity = conformity(mesh, reference);
+        std::string name = fmt::format("{:02}-{}", rows_.size(), mesh_label(row));
+        const auto unfit = [](char c) { return c == ' ' || c == '/' || c == ',' || c == '<'; };
+        std::replace_if(name.begin(), name.end(), unfit, '-');
+        const auto whole = interruption.postpone();
+        write_mesh(path_ / name, mesh, meshed, settings_);
+    } catch (const std::bad_alloc&) {
+        row.error = "out of memory: ask for larger lengths";
+    } catch (const std::exception& error) {
+        row.error = error.what();
+    }
+    const auto whole = interruption.postpone();
+    rows_.push_back(row);
+    record(false);
+    if (!row.error.empty()) {
+        spdlog::warn("{}: {}", mesh_label(row), row.error);
+    } else if (!quiet_) {
+        print_error(fmt::format("mesh {}: {}, {}: {} tets, L_R {:.4f}, {:.1f} s\n", rows_.size(),
+                                mesh_label(row), mesh_setting(row), row.conformity.tets,
+                                row.conformity.l_r, row.seconds));
+    }
+}
+
+void MeshFolder::end() {
+    record(true);
+    const std::string head =
+        fmt::format("# {}\n\n{}\n\n", name_, origin_text(provenance_, /*complete=*/true));
+    replace_file(path_ / "summary.md", head + mesh_tables(rows_, TableStyle::markdown));
+}
+
+void MeshFolder::record(bool complete) const {
+    replace_file(path_ / results_file, mesh_json(provenance_, settings_, rows_, complete));
+}
+
+}  // namespace controlspace

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cli/signals.h"
+#include "controlspace/geometry/box.h"
+#include "controlspace/metric/metric_field.h"
+#include "mesh/mesh_rows.h"
+#include "mesh/mesh_settings.h"
+#include "study/provenance.h"
+#include "study/study.h"
+
+namespace controlspace {
+
+/// Makes meshes one after the other into a folder of results, whose tables are kept up to date.
+class MeshFolder {
+public:
+    /// The folder is that of the study; it is not made yet. Progress goes to standard error unless
+    /// `quiet`.
+    MeshFolder(const Study& study, MeshSettings settings, const std::string& command_line,
+               bool quiet);
+
+    /// Makes the folder. Throws InputError.
+    void begin();
+    /// Meshes the box by the row's mesher, measures how the mesh conforms to `reference`, and
+    /// writes both. `field` gives what is meshed, which must live as long as it does, and may enter
+    /// into the row what it took. What goes wrong goes into the row.
+    void add(MeshRow row, const Box& domain, const MetricField& reference,
+             const std::function<const MetricField&(MeshRow&)>& field, Interruption& interruption);
+    /// Writes the summary.
+    void end();
+
+    const MeshSettings& settings() const { return settings_; }
+    const std::filesystem::path& path() const { return path_; }
+    const std::vector<MeshRow>& rows() const { return rows_; }
+
+private:
+    void record(bool complete) const;
+
+    std::string name_;
+    MeshSettings settings_;
+    bool quiet_;
+    Provenance provenance_;
+    std::filesystem::path path_;
+    std::vector<MeshRow> rows_;
+};
+
+}  // namespace controlspace

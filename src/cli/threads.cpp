@@ -1,0 +1,11 @@
+#include "cli/threads.h"
+
+namespace controlspace {
+
+std::unique_ptr<tbb::global_control> limit_threads(int threads) {
+    if (threads == 0) return nullptr;
+    return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                 static_cast<std::size_t>(threads));
+}
+
+}  // namespace controlspace

@@ -1,0 +1,158 @@
+#include "controlspace/gmsh/gmsh_mesher.h"
+
+#include <fmt/format.h>
+#include <gmsh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "controlspace/error.h"
+#include "gmsh/estimate.h"
+#include "gmsh/gmsh_session.h"
+#include "mesh/size_query.h"
+#include "mesh/stopwatch.h"
+
+namespace controlspace {
+namespace {
+
+void set_size_callback(SizeQuery& query) {
+#if GMSH_API_VERSION_MAJOR > 4 || (GMSH_API_VERSION_MAJOR == 4 && GMSH_API_VERSION_MINOR >= 9)
+    // From 4.9 on, what is returned takes the place of the other sizes.
+    gmsh::model::mesh::setSizeCallback(
+        [&query](int, int, double x, double y, double z, double other) {
+            return std::min(other, query(x, y, z));
+        });
+#else
+    gmsh::model::mesh::setSizeCallback(
+        [&query](int, int, double x, double y, double z) { return query(x, y, z); });
+#endif
+}
+
+void add_box(const UnitFrame& frame) {
+    const Vector edges = frame.edges();
+    gmsh::model::occ::addBox(0, 0, 0, edges.x(), edges.y(), edges.z());
+    gmsh::model::occ::synchronize();
+}
+
+void set_options(const GmshOptions& options) {
+    const auto set = [](const char* name, double value) { gmsh::option::setNumber(name, value); };
+    // Sizes come from the callback alone.
+    set("Mesh.MeshSizeFromPoints", 0);
+    set("Mesh.MeshSizeFromCurvature", 0);
+    set("Mesh.MeshSizeExtendFromBoundary", 0);
+    constexpr double delaunay = 1, hxt = 10;
+    set("Mesh.Algorithm3D", options.algorithm == GmshAlgorithm::hxt ? hxt : delaunay);
+}
+
+void generate(GmshAlgorithm algorithm, double optimize) {
+    constexpr const char* threshold = "Mesh.OptimizeThreshold";
+    constexpr int volumes = 3;
+    if (algorithm == GmshAlgorithm::delaunay) {
+        gmsh::option::setNumber(threshold, optimize);
+        gmsh::model::mesh::generate(volumes);
+        return;
+    }
+    // HXT's own improvement does not end at high thresholds: it keeps its default, and Gmsh's
+    // common one goes on from there.
+    gmsh::model::mesh::generate(volumes);
+    double reached = 0;
+    gmsh::option::getNumber(threshold, reached);
+    if (optimize <= reached) return;
+    gmsh::option::setNumber(threshold, optimize);
+    gmsh::model::mesh::optimize("");
+}
+
+template <std::size_t n>
+std::vector<std::array<VertexIndex, n>> elements(int type,
+                                                 const std::vector<VertexIndex>& index_of_tag) {
+    std::vector<std::size_t> tags, nodes;
+    gmsh::model::mesh::getElementsByType(type, tags, nodes);
+    std::vector<std::array<VertexIndex, n>> result(nodes.size() / n);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        result[i / n][i % n] = index_of_tag[nodes[i]];
+    }
+    return result;
+}
+
+TetMesh take_mesh(const UnitFrame& frame) {
+    std::vector<std::size_t> tags;
+    std::vector<double> coordinates, unused;
+    gmsh::model::mesh::getNodes(tags, coordinates, unused);
+    TetMesh mesh;
+    std::vector<VertexIndex> index_of_tag;
+    for (std::size_t i = 0; i < tags.size(); ++i) {
+        if (tags[i] >= index_of_tag.size()) index_of_tag.resize(tags[i] + 1);
+        index_of_tag[tags[i]] = static_cast<VertexIndex>(i);
+        const double* x = &coordinates[3 * i];
+        mesh.vertices.push_back(frame.to_domain(x[0], x[1], x[2]));
+    }
+    mesh.triangles = elements<3>(gmsh_triangle, index_of_tag);
+    mesh.tets = elements<4>(gmsh_tetrahedron, index_of_tag);
+    turn_upright(mesh);
+    return mesh;
+}
+
+void require_valid(const Box& domain, const MetricField& field, const GmshOptions& options) {
+    require_volume(domain);
+    const double factor = options.factor.value_or(1);
+    if (!std::isfinite(factor) || factor <= 0) {
+        throw InputError(fmt::format("factor {} of sizes: give a positive one", factor));
+    }
+    const double optimize = options.optimize.value_or(0);
+    if (!(optimize >= 0 && optimize < 1)) {
+        throw InputError(
+            fmt::format("optimize {}: give a quality from 0 to below 1; 0.7 is good, "
+                        "from 0.8 on it takes long",
+                        optimize));
+    }
+    require_few_tets(domain, field, options.max_tets);
+}
+
+}  // namespace
+
+double standard_factor(GmshAlgorithm algorithm) {
+    return algorithm == GmshAlgorithm::hxt ? 0.70 : 0.77;
+}
+
+double standard_optimize(GmshAlgorithm algorithm) {
+    return algorithm == GmshAlgorithm::hxt ? 0.6 : 0.75;
+}
+
+GmshRun mesh_with_gmsh(const Box& domain, const MetricField& field, const GmshOptions& options) {
+    require_valid(domain, field, options);
+    const UnitFrame frame(domain);
+    SizeQuery query(field, frame, options.factor.value_or(standard_factor(options.algorithm)));
+    return in_gmsh_session(options.threads, [&] {
+        add_box(frame);
+        set_options(options);
+        set_size_callback(query);
+        GmshRun run;
+        const Stopwatch watch;
+        try {
+            generate(options.algorithm,
+                     options.optimize.value_or(standard_optimize(options.algorithm)));
+        } catch (...) {
+            query.rethrow_failure();  // the cause, if it is ours
+            throw;
+        }
+        run.seconds = watch.seconds();
+        run.processor_seconds = watch.processor_seconds();
+        query.rethrow_failure();
+        run.queries = query.count();
+        run.query_seconds = query.seconds();
+        run.anisotropic = query.anisotropic();
+        run.mesh = take_mesh(frame);
+        if (run.mesh.tets.empty()) {
+            std::string why;
+            gmsh::logger::getLastError(why);
+            throw InputError(fmt::format("Gmsh made no tetrahedra{}{}: try the other algorithm",
+                                         why.empty() ? "" : ": ", why));
+        }
+        return run;
+    });
+}
+
+}  // namespace controlspace

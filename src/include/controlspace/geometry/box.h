@@ -1,0 +1,43 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "controlspace/geometry/point.h"
+
+namespace controlspace {
+
+/// Axis-aligned box, closed: `low` and `high` belong to it.
+struct Box {
+    Point low = Point::Zero();
+    Point high = Point::Zero();
+
+    Vector edges() const { return high - low; }
+    Point centre() const { return 0.5 * (low + high); }
+    double half_diagonal() const { return 0.5 * edges().norm(); }
+    bool contains(const Point& x) const {
+        return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
+    }
+    bool operator==(const Box&) const = default;
+};
+
+/// Corner `i` of `box`: bit 0 of `i` picks the high side in x, bit 1 in y, bit 2 in z.
+inline Point corner(const Box& box, int i) {
+    return {(i & 1) != 0 ? box.high.x() : box.low.x(), (i & 2) != 0 ? box.high.y() : box.low.y(),
+            (i & 4) != 0 ? box.high.z() : box.low.z()};
+}
+
+/// Smallest box around `points`, each side moved outwards by `margin` times the longest edge.
+/// A set without extent along an axis (a plane, a line, one point) gets the extent of its longest
+/// edge there, or 1 where it has none, so that the box always has a volume.
+Box bounding_box(std::span<const Point> points, double margin);
+
+/// `box` itself; throws InputError, naming the axis, where numbers cannot work in it: an edge that
+/// is zero, negative, not finite or shorter than 1 / largest_magnitude, coordinates beyond
+/// largest_magnitude, or an edge shorter than 2e-10 of its distance from the origin.
+const Box& require_volume(const Box& box);
+
+/// "[x0, x1] x [y0, y1] x [z0, z1]", for messages.
+std::string to_string(const Box& box);
+
+}  // namespace controlspace

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+
+#include "controlspace/geometry/box.h"
+
+namespace controlspace {
+
+/// A box and the planes that cut it: one for a kd-tree, three for an octree. A tree of either kind
+/// is a box subdivided again and again.
+///
+/// Children are numbered by one bit per cut axis, x lowest: 1 is the high side. A place on a plane
+/// belongs to the low side. Children's faces are copies of the parent's and of `at`, never
+/// computed, so faces that coincide are equal to the bit.
+struct Subdivision {
+    Box box;
+    Point at = Point::Zero();    ///< where the planes stand; only cut axes count
+    std::array<bool, 3> cuts{};  ///< which axes are cut
+
+    int children() const { return 1 << (cuts[0] + cuts[1] + cuts[2]); }
+
+    /// Which side of axis `a` child `c` lies on: 0 low, 1 high; 0 for an axis that is not cut.
+    int side(int c, Axis a) const {
+        int bit = 0;
+        for (int b = 0; b < a; ++b) bit += cuts[static_cast<std::size_t>(b)];
+        return cuts[static_cast<std::size_t>(a)] ? (c >> bit) & 1 : 0;
+    }
+
+    Box child(int c) const {
+        Box part = box;
+        for (Axis a = 0; a < 3; ++a) {
+            if (!cuts[static_cast<std::size_t>(a)]) continue;
+            (side(c, a) == 0 ? part.high : part.low)[a] = at[a];
+        }
+        return part;
+    }
+
+    /// Whether every plane stands strictly inside the box: floating point ends somewhere.
+    bool is_proper() const {
+        for (Axis a = 0; a < 3; ++a) {
+            if (cuts[static_cast<std::size_t>(a)] && !(box.low[a] < at[a] && at[a] < box.high[a])) {
+                return false;
+            }
+        }
+        return true;
+    }
+};
+
+/// The three planes through the middle of `box`.
+inline Subdivision octants(const Box& box) { return {box, box.centre(), {true, true, true}}; }
+
+/// One plane across axis `a` of `box`, at coordinate `cut`.
+inline Subdivision halves(const Box& box, Axis a, double cut) {
+    Subdivision s{box, Point::Constant(cut), {}};
+    s.cuts[static_cast<std::size_t>(a)] = true;
+    return s;
+}
+
+/// Across the middle of the longest edge, z before y before x where edges are equally long.
+inline Subdivision longest_edge_halves(const Box& box) {
+    const Vector e = box.edges();
+    const Axis axis = e.x() > e.y() && e.x() > e.z() ? 0 : e.y() > e.z() ? 1 : 2;
+    return halves(box, axis, 0.5 * (box.low[axis] + box.high[axis]));
+}
+
+/// Across the middle of the axis with the largest of `along`, as long as no edge gets shorter than
+/// an eighth of the longest; the longest edge where `along` says nothing.
+inline Subdivision halves_across(const Box& box, const std::array<double, 3>& along) {
+    const Vector e = box.edges();
+    const double shortest = e.maxCoeff() / 4;
+    Axis axis = -1;
+    double most = 0;
+    for (Axis a = 0; a < 3; ++a) {
+        const double variation = along[static_cast<std::size_t>(a)];
+        if (e[a] < shortest || !(variation > most)) continue;
+        most = variation;
+        axis = a;
+    }
+    if (axis < 0) return longest_edge_halves(box);
+    return halves(box, axis, 0.5 * (box.low[axis] + box.high[axis]));
+}
+
+}  // namespace controlspace

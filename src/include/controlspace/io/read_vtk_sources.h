@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "controlspace/sources/point_source.h"
+
+namespace controlspace {
+
+/// Sources at the points of a VTK file (.vtu or .vtp) that carry the array `array`; without a name,
+/// the only one whose name contains ":metric". It holds sizes h (1 component) or Riemannian
+/// metrics M^-2: 6 components in VTK's order XX YY ZZ XY YZ XZ, or 9 by rows.
+///
+/// Throws InputError that names the file for what VTK cannot read; for more points or cells than
+/// the file has room for; for an array that is missing, or of another number of components; and for
+/// points and metrics that cannot be sources, by their number.
+///
+/// VTK trusts what a file says: a damaged one may crash it, or take all memory. Read files of
+/// unknown origin in a process of their own first, as the program does.
+std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
+                                          const std::string& array = {});
+
+}  // namespace controlspace

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "controlspace/geometry/box.h"
+#include "controlspace/metric/metric_field.h"
+#include "controlspace/sources/point_source.h"
+#include "controlspace/space/control_space.h"
+
+namespace controlspace {
+
+enum class VdbCompression { blosc, zip, none };
+
+/// Kept with each grid: a name and a number or a text.
+using VdbNote = std::pair<std::string, std::variant<double, std::string>>;
+
+struct VdbOptions {
+    double voxel = 0;  ///< edge [length]; 0: 1/128 of the domain's longest edge
+    double tolerance =
+        0.02;           ///< δ within which voxels share a metric; 0: only where they are equal
+    bool half = false;  ///< numbers of 16 bits in the file
+    VdbCompression compression = VdbCompression::blosc;
+    std::vector<std::string> grids = {};  ///< names of metric_grids(); none: all of them
+    std::vector<VdbNote> notes = {};
+    /// Written as a grid of points `sources`, with the attributes pscale (the smallest length,
+    /// which Houdini draws), metric_diag and metric_off; none: no such grid. Blender 3.4 lists it,
+    /// but draws no points.
+    std::span<const PointSource> sources = {};
+    std::size_t max_bytes = std::size_t{4} << 30;  ///< cap on the memory of the grids
+    /// Told how many of all voxels have been sampled, now and then; none: nobody.
+    std::function<void(std::size_t done, std::size_t all)> progress = {};
+};
+
+/// What was written.
+struct VdbReport {
+    double voxel = 0;                      ///< edge [length]
+    std::array<std::int32_t, 3> counts{};  ///< voxels along x, y, z
+    double finest = 0, coarsest = 0;       ///< of the smallest length
+    double kept = 0;                       ///< share of voxels that no tile of 8^3 stands for
+    std::size_t memory = 0;                ///< bytes of all grids
+    std::uintmax_t file = 0;               ///< bytes
+};
+
+/// Samples `field` over `domain` at the centres of cubic voxels and writes the grids of
+/// export/metric_grids.h to the .vdb file `path`, in the units of the domain. Every active voxel is
+/// within `tolerance` of the field at its centre; 8^3 voxels that share a metric become a tile.
+/// Runs on all of TBB's threads, with the same grids whatever their number.
+///
+/// Throws InputError for options out of range, names of grids that are not known, a field that is
+/// no metric somewhere, lengths that the file's numbers cannot hold, grids beyond the cap, and a
+/// file that cannot be written, of which nothing is left.
+VdbReport write_vdb(const std::filesystem::path& path, const MetricField& field, const Box& domain,
+                    const VdbOptions& options);
+
+/// The same for what `space` answers in its domain.
+VdbReport write_vdb(const std::filesystem::path& path, const ControlSpace& space,
+                    const VdbOptions& options);
+
+}  // namespace controlspace

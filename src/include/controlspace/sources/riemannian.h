@@ -1,0 +1,15 @@
+#pragma once
+
+#include <optional>
+
+#include "controlspace/metric/metric.h"
+
+namespace controlspace {
+
+/// The Riemannian metric 𝓜 = M^-2, which other programs exchange: its eigenvalues are h^-2.
+Metric to_riemannian(const Metric& m);
+
+/// M = 𝓜^-1/2, or nothing where 𝓜 is not positive definite or M no metric of a source.
+std::optional<Metric> from_riemannian(const Metric& riemannian);
+
+}  // namespace controlspace

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+
+#include "controlspace/geometry/box.h"
+#include "controlspace/metric/metric.h"
+#include "controlspace/space/split_rule.h"
+
+namespace controlspace {
+
+/// What a structure is made with.
+struct SpaceOptions {
+    Box domain;
+    SplitRule split = SplitRule::middle;  ///< kd-trees only
+    double l_min = 1;          ///< longest edge of a source's leaf, in the source's metric (τ)
+    double tolerance = 0.2;    ///< ε_δ of insertion
+    int kd_depth = 42;         ///< deepest level of a kd-tree, the root being 0
+    int octree_depth = 14;     ///< deepest level of an octree, the root being 0
+    double finest_length = 0;  ///< smallest length any source asks for; grids size voxels by it
+    double voxel = 0;          ///< longest edge of a grid's finest voxels; 0: l_min * finest_length
+    double voxel_factor = 1;   ///< grids in levels: longest edge of a voxel, in the metric it holds
+    double prune_delta = 0;    ///< δ up to which voxels of a field that is set join; 0: none do
+    double ratio = 1.25;       ///< g_r of the gradation to come, for structures that keep sources
+    /// Sources may come after gradation. What they ask for is then kept beside the graded field:
+    /// insertion goes by it, and grading again gives the field of all sources at once, to the bit.
+    /// Of isotropic sources, under the cone law and by the queue, that costs in proportion to what
+    /// they change, as long as that is little; otherwise all is graded anew. Between the two, the
+    /// field is the old one, lowered at the new sources. Costs a second set of metrics and room to
+    /// grow.
+    ///
+    /// Without it, later sources are held against the graded field, and gradation starts from that.
+    /// Structures that keep sources do so in any case: trees hand on sources from all leaves again,
+    /// which gives a field close to that of all at once; `direct` builds its search anew.
+    bool takes_later_sources = false;
+    /// Cap on memory, gradation included: grids get coarser, trees that outgrow it throw
+    /// InputError.
+    std::size_t max_bytes = std::size_t{4} << 30;
+};
+
+/// M_max, which a new control space holds everywhere: H I, H half of the domain's diagonal.
+inline Metric largest_metric(const Box& domain) {
+    return Metric::isotropic(domain.half_diagonal());
+}
+
+/// Depths and lengths within what the structures can hold; throws InputError that names the option.
+void require_valid(const SpaceOptions& options);
+
+}  // namespace controlspace

@@ -1,0 +1,226 @@
+#include "controlspace/io/read_vdb_field.h"
+
+#include <fmt/format.h>
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "controlspace/error.h"
+#include "controlspace/io/metric_grids.h"
+#include "controlspace/metric/blend.h"
+#include "controlspace/metric/evaluate.h"
+#include "controlspace/sources/point_source.h"
+#include "io/openvdb/vdb_file.h"
+
+namespace controlspace {
+namespace {
+
+using openvdb::Coord;
+
+/// The voxels around a point, in index space.
+class Corners {
+public:
+    Corners(const openvdb::math::Transform& transform, const openvdb::CoordBBox& voxels,
+            const Point& x) {
+        const openvdb::Vec3d at = transform.worldToIndex({x.x(), x.y(), x.z()});
+        for (int a = 0; a < 3; ++a) {
+            const auto i = static_cast<std::size_t>(a);
+            // Comparisons that send not-a-number to the low side.
+            const double above = at[a] > voxels.min()[a] ? at[a] : voxels.min()[a];
+            const double t = above < voxels.max()[a] ? above : voxels.max()[a];
+            low_[a] = static_cast<openvdb::Int32>(std::floor(t));
+            high_weight_[i] = t - low_[a];
+        }
+    }
+    Coord voxel(int corner) const {
+        return low_.offsetBy(corner & 1, corner >> 1 & 1, corner >> 2);
+    }
+    double weight(int corner) const {
+        double w = 1;
+        for (std::size_t a = 0; a < 3; ++a) {
+            w *= (corner >> a & 1) != 0 ? high_weight_[a] : 1 - high_weight_[a];
+        }
+        return w;
+    }
+
+private:
+    Coord low_;
+    std::array<double, 3> high_weight_;
+};
+
+/// `Grids` says what the voxels hold:
+///   base()                                        a grid, for the transform and what is active
+///   reader() -> r with r(voxel, metric) -> bool   whether the voxel is active, and its metric
+template <class Grids>
+class VoxelField final : public MetricField {
+public:
+    VoxelField(Grids grids, double elsewhere)
+        : grids_(std::move(grids)),
+          voxels_(grids_.base().evalActiveVoxelBoundingBox()),
+          elsewhere_(Metric::isotropic(elsewhere)) {}
+
+    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
+        evaluate_blocks(x, out, [this](auto points, auto metrics) {
+            auto read = grids_.reader();
+            for (std::size_t i = 0; i < points.size(); ++i) metrics[i] = at(points[i], read);
+        });
+    }
+
+private:
+    template <class Reader>
+    Metric at(const Point& x, Reader& read) const {
+        const Corners corners(grids_.base().transform(), voxels_, x);
+        std::array<double, 8> weights;
+        std::array<Metric, 8> metrics;
+        std::size_t found = 0;
+        double sum = 0;
+        for (int c = 0; c < 8; ++c) {
+            const double w = corners.weight(c);
+            if (!(w > 0) || !read(corners.voxel(c), metrics[found])) continue;
+            weights[found++] = w;
+            sum += w;
+        }
+        if (found == 0) return elsewhere_;
+        if (found == 1) return metrics[0];
+        for (std::size_t i = 0; i < found; ++i) weights[i] /= sum;
+        return blend(std::span(weights).first(found), std::span(metrics).first(found));
+    }
+
+    Grids grids_;
+    openvdb::CoordBBox voxels_;
+    Metric elsewhere_;
+};
+
+Metric metric_from(const openvdb::Vec3s& diagonal, const openvdb::Vec3s& off_diagonal) {
+    return {diagonal[0],     diagonal[1],     diagonal[2],
+            off_diagonal[0], off_diagonal[1], off_diagonal[2]};
+}
+
+struct TensorGrids {
+    openvdb::Vec3SGrid::ConstPtr diagonal;
+    openvdb::Vec3SGrid::ConstPtr off_diagonal;
+
+    const openvdb::GridBase& base() const { return *diagonal; }
+    auto reader() const {
+        return [a = diagonal->getConstUnsafeAccessor(), b = off_diagonal->getConstUnsafeAccessor()](
+                   const Coord& voxel, Metric& metric) {
+            openvdb::Vec3s d;
+            if (!a.probeValue(voxel, d)) return false;
+            metric = metric_from(d, b.getValue(voxel));
+            return true;
+        };
+    }
+};
+
+struct LengthGrid {
+    openvdb::FloatGrid::ConstPtr lengths;
+
+    const openvdb::GridBase& base() const { return *lengths; }
+    auto reader() const {
+        return [nodes = lengths->getConstUnsafeAccessor()](const Coord& voxel, Metric& metric) {
+            float h = 0;
+            if (!nodes.probeValue(voxel, h)) return false;
+            metric = Metric::isotropic(h);
+            return true;
+        };
+    }
+};
+
+std::string name_of(const Coord& voxel) {
+    return fmt::format("({}, {}, {})", voxel.x(), voxel.y(), voxel.z());
+}
+
+template <class Grids>
+AnalyticField field_of(Grids grids, double elsewhere, double finest) {
+    const Box domain = active_box(grids.base());
+    return {std::make_shared<VoxelField<Grids>>(std::move(grids), elsewhere), domain, finest};
+}
+
+AnalyticField tensor_field(const VdbFile& file) {
+    for (const std::string_view name : {diagonal_grid, off_diagonal_grid}) {
+        if (file.has(name)) continue;
+        file.fail(fmt::format("has no grid '{}'; it holds {}: name a grid of lengths or densities",
+                              name, file.listing()));
+    }
+    const auto diagonal = file.read_as<openvdb::Vec3SGrid>(diagonal_grid);
+    const auto off_diagonal = file.read_as<openvdb::Vec3SGrid>(off_diagonal_grid);
+    if (diagonal->transform() != off_diagonal->transform()) {
+        file.fail(fmt::format("grids '{}' and '{}' have different transforms: write both alike",
+                              diagonal_grid, off_diagonal_grid));
+    }
+    double finest = largest_magnitude;
+    double coarsest = 0;
+    std::uint64_t bad = 0;
+    std::uint64_t all = 0;
+    Coord first_bad;
+    const auto check = [&](const openvdb::Vec3s& d, const openvdb::Vec3s& o, const Coord& voxel) {
+        const Metric m = metric_from(d, o);
+        ++all;
+        if (!is_source_metric(m)) {
+            if (bad++ == 0) first_bad = voxel;
+            return;
+        }
+        const auto lengths = eigen_frame(m).lengths;
+        finest = std::min(finest, lengths[0]);
+        coarsest = std::max(coarsest, lengths[2]);
+    };
+    // Both grids, as a tile of one may lie over voxels of the other.
+    const auto other = off_diagonal->getConstAccessor();
+    for (auto value = diagonal->cbeginValueOn(); value; ++value) {
+        check(*value, other.getValue(value.getCoord()), value.getCoord());
+    }
+    const auto base = diagonal->getConstAccessor();
+    for (auto value = off_diagonal->cbeginValueOn(); value; ++value) {
+        openvdb::Vec3s d;
+        if (base.probeValue(value.getCoord(), d)) check(d, *value, value.getCoord());
+    }
+    if (bad > 0) {
+        file.fail(
+            fmt::format("{} of {} tensors are not positive definite, first at voxel {}: are "
+                        "they of lengths, xx yy zz and xy xz yz?",
+                        bad, all, name_of(first_bad)));
+    }
+    return field_of(TensorGrids{diagonal, off_diagonal}, coarsest, finest);
+}
+
+AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
+    const auto grid = file.read_as<openvdb::FloatGrid>(what.grid);
+    double finest = largest_magnitude;
+    double coarsest = 0;
+    for (auto value = grid->beginValueOn(); value; ++value) {
+        const double given = *value;
+        if (!std::isfinite(given)) {
+            file.fail(fmt::format("grid '{}' holds {} at voxel {}: give finite numbers", what.grid,
+                                  given, name_of(value.getCoord())));
+        }
+        const double h =
+            what.density ? length_of_density(given, what.density->finest, what.density->coarsest)
+                         : given;
+        if (!is_length(h)) {
+            file.fail(fmt::format("grid '{}' holds {} at voxel {}: lengths must be positive",
+                                  what.grid, given, name_of(value.getCoord())));
+        }
+        if (what.density) value.setValue(static_cast<float>(h));
+        finest = std::min(finest, h);
+        coarsest = std::max(coarsest, h);
+    }
+    return field_of(LengthGrid{grid}, what.density ? what.density->coarsest : coarsest, finest);
+}
+
+}  // namespace
+
+AnalyticField read_vdb_field(const std::filesystem::path& path, const VdbLengths& what) {
+    if (what.density && !(is_length(what.density->finest) && is_length(what.density->coarsest))) {
+        throw InputError(fmt::format("lengths {} and {} for densities 1 and 0: give positive ones",
+                                     what.density->finest, what.density->coarsest));
+    }
+    const VdbFile file(path);
+    if (!what.grid.empty()) return length_field(file, what);
+    if (what.density) file.fail("name the grid of densities: it holds " + file.listing());
+    return tensor_field(file);
+}
+
+}  // namespace controlspace

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <fmt/format.h>
+#include <openvdb/Grid.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "controlspace/geometry/box.h"
+#include "controlspace/io/write_vdb.h"
+
+namespace controlspace {
+
+/// Writes `grids` whole or not at all; returns the file's bytes. Throws InputError, the disk being
+/// full among the reasons.
+std::uintmax_t write_vdb_file(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
+                              VdbCompression compression);
+
+/// A .vdb file of anybody's. All errors are InputError and name the file.
+class VdbFile {
+public:
+    /// Throws for what cannot be read as .vdb, or holds no grid.
+    explicit VdbFile(const std::filesystem::path& path);
+
+    bool has(std::string_view grid) const;
+    /// The grid of that name. Throws, listing what is there, if there is none; for a grid of a type
+    /// that OpenVDB does not know; and as `require_usable` does.
+    openvdb::GridBase::Ptr read(std::string_view grid) const;
+    /// The same as a grid of a type; throws for another one.
+    template <class Grid>
+    typename Grid::Ptr read_as(std::string_view name) const {
+        const auto grid = openvdb::gridPtrCast<Grid>(read(name));
+        if (!grid) {
+            fail(fmt::format("grid '{}' is not of type {}: it holds {}", name,
+                             openvdb::typeNameAsString<typename Grid::ValueType>(), listing()));
+        }
+        return grid;
+    }
+    /// "density (float), sizes (vec3s)".
+    std::string listing() const;
+    const std::vector<std::string>& grids() const { return names_; }
+
+    [[noreturn]] void fail(const std::string& what) const;
+
+private:
+    /// A grid must have active voxels, and a transform that is linear.
+    void require_usable(const openvdb::GridBase& grid) const;
+
+    std::filesystem::path path_;
+    std::vector<std::string> names_;
+    std::vector<std::string> types_;  ///< of values; "unknown type" where OpenVDB knows none
+};
+
+/// Box of the active voxels, with their extent, in the world.
+Box active_box(const openvdb::GridBase& grid);
+
+}  // namespace controlspace

@@ -1,0 +1,50 @@
+#include "io/openvdb/vdb_points.h"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/points/PointConversion.h>
+
+#include <string>
+#include <vector>
+
+#include "controlspace/io/metric_grids.h"
+
+namespace controlspace {
+namespace {
+
+namespace points = openvdb::points;
+
+template <class Value>
+void add_attribute(points::PointDataGrid& grid, const openvdb::tools::PointIndexGrid& index,
+                   const std::string& name, const std::vector<Value>& values) {
+    points::appendAttribute<Value>(grid.tree(), name);
+    points::populateAttribute(grid.tree(), index.tree(), name,
+                              points::PointAttributeVector<Value>(values));
+}
+
+}  // namespace
+
+openvdb::GridBase::Ptr make_points_grid(std::span<const PointSource> sources,
+                                        const openvdb::math::Transform& transform) {
+    std::vector<openvdb::Vec3d> positions;
+    std::vector<float> smallest;
+    std::vector<openvdb::Vec3s> diagonals;
+    std::vector<openvdb::Vec3s> off_diagonals;
+    for (const auto& [p, m] : sources) {
+        positions.emplace_back(p.x(), p.y(), p.z());
+        smallest.push_back(static_cast<float>(eigen_frame(m).lengths[0]));
+        diagonals.emplace_back(m.xx, m.yy, m.zz);
+        off_diagonals.emplace_back(m.xy, m.xz, m.yz);
+    }
+    const points::PointAttributeVector<openvdb::Vec3d> list(positions);
+    const auto index =
+        openvdb::tools::createPointIndexGrid<openvdb::tools::PointIndexGrid>(list, transform);
+    const auto grid = points::createPointDataGrid<points::NullCodec, points::PointDataGrid>(
+        *index, list, transform);
+    add_attribute(*grid, *index, "pscale", smallest);
+    add_attribute(*grid, *index, std::string(diagonal_grid), diagonals);
+    add_attribute(*grid, *index, std::string(off_diagonal_grid), off_diagonals);
+    grid->setName(std::string(sources_grid));
+    return grid;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "controlspace/sources/point_source.h"
+
+namespace controlspace {
+
+/// Sources out of a list view of Gmsh (`.pos`): View "name" { SP(x,y,z){h}; ... }; with a value at
+/// each corner of points, lines, triangles, quadrangles, tetrahedra, hexahedra, prisms and pyramids
+/// (second letter P L T Q S H I Y). Scalars (S) are sizes h; tensors (T), nine numbers by rows, are
+/// Riemannian metrics M^-2. Corners that elements share, with the same value, make one source.
+///
+/// `view` names the view; empty: the only one. Throws InputError "name:line: what is wrong", or
+/// naming the tensor that is not positive definite.
+std::vector<PointSource> read_pos_sources(const std::filesystem::path& path,
+                                          const std::string& view = {});
+
+/// The same for a text at hand; `path` is for messages.
+std::vector<PointSource> parse_pos_sources(std::string_view text, const std::filesystem::path& path,
+                                           const std::string& view = {});
+
+/// Writes `sources` as such a view: points with sizes where all are isotropic, with tensors
+/// otherwise. Throws InputError if that fails; no part of a file is left.
+void write_pos_sources(const std::filesystem::path& path, std::span<const PointSource> sources);
+
+}  // namespace controlspace

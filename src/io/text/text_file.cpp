@@ -1,0 +1,89 @@
+#include "io/text/text_file.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "controlspace/error.h"
+
+namespace controlspace {
+
+namespace {
+
+[[noreturn]] void fail_with_zero_byte(const std::filesystem::path& path) {
+    throw InputError(fmt::format("{} holds a zero byte: give a text file", path.string()));
+}
+
+/// Stops early where a text holds a zero byte: a device may send nothing else, without an end.
+std::string read_file(const std::filesystem::path& path, std::size_t largest, bool is_text) {
+    const std::string name = path.string();
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) {
+        throw InputError(fmt::format("{} is a directory: name a file", name));
+    }
+    const auto close = [](std::FILE* f) { std::fclose(f); };
+    const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(name.c_str(), "rb"), close);
+    if (!file) throw InputError(fmt::format("cannot read {}: {}", name, std::strerror(errno)));
+
+    std::string bytes;
+    constexpr std::size_t block = std::size_t{1} << 16;
+    std::error_code no_size;  // of a pipe
+    const std::uintmax_t known_size = std::filesystem::file_size(path, no_size);
+    const std::uintmax_t size_on_disk = no_size ? 0 : known_size;
+    bytes.reserve(size_on_disk + block);
+    std::size_t got = block;
+    while (got == block) {
+        const std::size_t size = bytes.size();
+        bytes.resize(size + block);
+        got = std::fread(bytes.data() + size, 1, block, file.get());
+        bytes.resize(size + got);
+        if (is_text && bytes.find('\0', size) != std::string::npos) fail_with_zero_byte(path);
+        if (bytes.size() > size_on_disk + largest) {
+            throw InputError(fmt::format("{} does not end after {} bytes: give a file", name,
+                                         size_on_disk + largest));
+        }
+    }
+    if (std::ferror(file.get()) != 0) {
+        throw InputError(fmt::format("cannot read {}: {}", name, std::strerror(errno)));
+    }
+    if (bytes.empty()) throw InputError(fmt::format("{} is empty: name another file", name));
+    return bytes;
+}
+
+}  // namespace
+
+std::string read_text_file(const std::filesystem::path& path, std::size_t largest) {
+    std::string text = read_file(path, largest, true);
+    text.erase(0, text.size() - text_in(text, path).size());
+    return text;
+}
+
+std::string read_binary_file(const std::filesystem::path& path, std::size_t largest) {
+    return read_file(path, largest, false);
+}
+
+std::string_view text_in(std::string_view bytes, const std::filesystem::path& path) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (bytes.find('\0') != std::string_view::npos) fail_with_zero_byte(path);
+    if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
+    if (bytes.empty()) {
+        throw InputError(fmt::format("{} is empty: name another file", path.string()));
+    }
+    return bytes;
+}
+
+std::string place(const std::filesystem::path& path, std::size_t line) {
+    return fmt::format("{}:{}", path.string(), line);
+}
+
+std::string quote(std::string_view text) {
+    constexpr std::size_t most = 40;
+    std::string shown = "'";
+    for (const char c : text.substr(0, most)) shown += c >= ' ' && c <= '~' ? c : '?';
+    return shown + (text.size() > most ? "...'" : "'");
+}
+
+}  // namespace controlspace

@@ -1,0 +1,57 @@
+#include "io/vtk/elements.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace controlspace {
+namespace {
+
+std::array<double, 6> key(const Box& b) {
+    return {b.low.x(), b.low.y(), b.low.z(), b.high.x(), b.high.y(), b.high.z()};
+}
+
+/// Cuts `region` by the plane through a face of `element` that is nearest to its middle, in units
+/// of its edges: in trees, where the tree cut it too. False where no such plane passes through.
+bool cut_by_face(const Box& region, const Box& element, Box& low, Box& high) {
+    double nearest = 1;
+    for (Axis a = 0; a < 3; ++a) {
+        for (const double plane : {element.low[a], element.high[a]}) {
+            if (plane <= region.low[a] || plane >= region.high[a]) continue;
+            const double off =
+                std::abs(plane - region.centre()[a]) / (region.high[a] - region.low[a]);
+            if (off >= nearest) continue;
+            nearest = off;
+            low = high = region;
+            low.high[a] = high.low[a] = plane;
+        }
+    }
+    return nearest < 1;
+}
+
+}  // namespace
+
+std::vector<Box> elements_of(const ControlSpace& space) {
+    std::vector<Box> elements;
+    std::vector<Box> regions{space.domain()};
+    while (!regions.empty()) {
+        const Box region = regions.back();
+        regions.pop_back();
+        const Box element = space.element_at(region.centre());
+        Box low, high;
+        if (cut_by_face(region, element, low, high)) {
+            regions.push_back(high);
+            regions.push_back(low);
+        } else {
+            elements.push_back(element);
+        }
+    }
+    // A plane may have cut an element that lies elsewhere.
+    std::sort(elements.begin(), elements.end(),
+              [](const Box& a, const Box& b) { return key(a) < key(b); });
+    elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
+    return elements;
+}
+
+}  // namespace controlspace

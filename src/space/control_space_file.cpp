@@ -1,0 +1,189 @@
+#include "controlspace/space/control_space_file.h"
+
+#define XXH_INLINE_ALL  // nothing to link with
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "controlspace/error.h"
+#include "controlspace/version.h"
+#include "io/text/output_file.h"
+#include "io/text/text_file.h"
+#include "space/state.h"
+#include "trees/packing/frozen_state.h"
+
+namespace controlspace {
+
+namespace {
+
+// As that of PNG: a transfer as text, or by 7 bits, shows.
+constexpr std::string_view signature =
+    "\x89"
+    "CTRL\r\n\x1a";
+constexpr std::uint32_t order_mark = 0x01020304;
+
+struct Header {
+    std::uint32_t version = control_space_file_version;
+    std::uint32_t order = order_mark;
+    std::uint64_t size = 0;
+};
+constexpr std::size_t header_size = signature.size() + sizeof(Header);
+constexpr std::size_t checksum_size = sizeof(std::uint64_t);
+
+std::string_view bytes_of(const auto& value) {
+    return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+class Checksum {
+public:
+    Checksum() { XXH3_64bits_reset(&state_); }
+    void add(std::string_view bytes) { XXH3_64bits_update(&state_, bytes.data(), bytes.size()); }
+    std::uint64_t value() const { return XXH3_64bits_digest(&state_); }
+
+private:
+    XXH3_state_t state_;
+};
+
+void require_little_endian() {
+    if constexpr (std::endian::native != std::endian::little) {
+        throw InputError("control spaces are saved and loaded on little-endian machines only");
+    }
+}
+
+template <class Self, class State>
+void exchange(Self& options, State& state) {
+    state("options.domain", options.domain);
+    state("options.split", options.split, SplitRule::exact_golden);
+    state("options.l_min", options.l_min);
+    state("options.tolerance", options.tolerance);
+    state("options.kd_depth", options.kd_depth);
+    state("options.octree_depth", options.octree_depth);
+    state("options.finest_length", options.finest_length);
+    state("options.voxel", options.voxel);
+    state("options.voxel_factor", options.voxel_factor);
+    state("options.prune_delta", options.prune_delta);
+    state("options.ratio", options.ratio);
+    state("options.takes_later_sources", options.takes_later_sources);
+    state("options.max_bytes", options.max_bytes);
+}
+
+// A grid takes its memory when it is made: no more than a file of so many bytes can fill, at 256
+// equal bytes for one and at most 8 bytes of memory for one of its field.
+std::unique_ptr<ControlSpace> make_new(const CatalogueEntry& entry, SpaceOptions options,
+                                       std::size_t file_bytes) {
+    if (!entry.has_voxels || entry.has_levels) return entry.make(options);
+    const SpaceOptions given = options;
+    options.max_bytes = std::min(options.max_bytes, 8 * 256 * file_bytes);
+    auto space = entry.make(options);
+    space->set_making({entry.id, given});
+    return space;
+}
+
+std::unique_ptr<ControlSpace> load_space(const CatalogueEntry& entry, const SpaceOptions& options,
+                                         const StateReader& state, std::size_t file_bytes) {
+    auto space = make_new(entry, options, file_bytes);
+    if (!state.has("frozen.precision")) {
+        space->load(state);
+        return space;
+    }
+    Precision precision{};
+    state("frozen.precision", precision, Precision::floats);
+    space = load_frozen(options.domain, precision, state);
+    space->set_making({entry.id, options, precision});
+    return space;
+}
+
+// What lies between the header and the checksum.
+std::string_view checked_body(std::string_view bytes, const std::string& name) {
+    const auto fail = [&](const std::string& what) { throw InputError(name + " " + what); };
+    if (!bytes.starts_with(signature.substr(0, bytes.size()))) {
+        fail("is no control space: give a .ctrl file that was saved by this program");
+    }
+    if (bytes.size() < header_size + checksum_size) {
+        fail("is truncated: copy it again, or save the control space again");
+    }
+    Header header;
+    std::memcpy(&header, bytes.data() + signature.size(), sizeof header);
+    if (header.order != order_mark) {
+        fail("is altered (its order of bytes): copy it again, or save the control space again");
+    }
+    if (header.version > control_space_file_version) {
+        fail(fmt::format("has format version {}, this program reads up to {}: take a newer one",
+                         header.version, control_space_file_version));
+    }
+    if (header.version < control_space_file_version) {
+        fail(fmt::format("has format version {}, of before the first release: build it again",
+                         header.version));
+    }
+    if (bytes.size() < header.size) {
+        fail(
+            fmt::format("is truncated, {} of {} bytes: copy it again, or save the control space "
+                        "again",
+                        bytes.size(), header.size));
+    }
+    Checksum checksum;
+    checksum.add(bytes.substr(0, bytes.size() - checksum_size));
+    if (bytes.size() != header.size || !bytes.ends_with(bytes_of(checksum.value()))) {
+        fail("is altered (its checksum differs): copy it again, or save the control space again");
+    }
+    return bytes.substr(header_size, bytes.size() - header_size - checksum_size);
+}
+
+}  // namespace
+
+void save_control_space(const std::filesystem::path& file, const ControlSpace& space) {
+    require_little_endian();
+    if (!space.making()) {
+        throw InputError("a control space can be saved if an entry of the catalogue has made it");
+    }
+    StateWriter state;
+    state("written_by", "controlspace " + std::string(version()));
+    state("structure", space.making()->structure);
+    exchange(space.making()->options, state);
+    if (space.making()->frozen) {
+        state("frozen.precision", *space.making()->frozen, Precision::floats);
+    }
+    space.save(state);
+
+    const Header header{.size = header_size + state.bytes().size() + checksum_size};
+    Checksum checksum;
+    OutputFile out(file);
+    for (const std::string_view part :
+         {signature, bytes_of(header), std::string_view(state.bytes())}) {
+        checksum.add(part);
+        out.write(part);
+    }
+    out.write(bytes_of(checksum.value()));
+    out.commit();
+}
+
+std::unique_ptr<ControlSpace> load_control_space(const std::filesystem::path& file,
+                                                 std::span<const CatalogueEntry> structures) {
+    require_little_endian();
+    const std::string name = file.string();
+    const std::string bytes = read_binary_file(file);
+    const StateReader state(checked_body(bytes, name), name);
+    std::string structure;
+    SpaceOptions options;
+    state("structure", structure);
+    exchange(options, state);
+    const CatalogueEntry* entry = find_entry(structures, structure);
+    if (entry == nullptr) {
+        throw InputError(fmt::format(
+            "{} holds the structure {}, which is not known here: take a build that has it", name,
+            quote(structure)));
+    }
+    auto space = load_space(*entry, options, state, bytes.size());
+    Making making = *space->making();
+    state("written_by", making.saved_by);
+    making.saved_by += fmt::format(", format {}", control_space_file_version);
+    space->set_making(std::move(making));
+    return space;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,45 @@
+#include "controlspace/space/space_options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "controlspace/error.h"
+
+namespace controlspace {
+
+namespace {
+
+void require_positive(const char* name, double value) {
+    if (!std::isfinite(value) || !(value > 0)) {
+        throw InputError(fmt::format("{} is {}: give a finite value above 0", name, value));
+    }
+}
+
+void require_not_negative(const char* name, double value) {
+    if (!std::isfinite(value) || value < 0) {
+        throw InputError(fmt::format("{} is {}: give 0 or a finite value above", name, value));
+    }
+}
+
+void require_depth(const char* name, int depth, int deepest) {
+    if (depth < 0 || depth > deepest) {
+        throw InputError(fmt::format("{} is {}: give a value from 0 to {}", name, depth, deepest));
+    }
+}
+
+}  // namespace
+
+void require_valid(const SpaceOptions& options) {
+    require_volume(options.domain);
+    require_positive("l_min (tau)", options.l_min);
+    require_positive("the insertion tolerance (epsilon)", options.tolerance);
+    require_not_negative("voxel", options.voxel);
+    require_positive("voxel_factor", options.voxel_factor);
+    require_not_negative("prune_delta", options.prune_delta);
+    // Past these depths a double has no number left between the faces of any box.
+    require_depth("the depth of kd-trees", options.kd_depth, 200);
+    require_depth("the depth of octrees", options.octree_depth, 60);
+}
+
+}  // namespace controlspace

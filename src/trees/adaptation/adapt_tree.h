@@ -1,0 +1,240 @@
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
+#include "trees/adaptation/goal_field.h"
+#include "trees/adaptation/leaf_judge.h"
+#include "trees/adaptation/nearby_field.h"
+#include "trees/topology/topology.h"
+
+namespace controlspace {
+
+/// Calls visit(i) for i from 0 to n - 1, on all of TBB's threads; each works with copies of
+/// `visit`.
+template <class Visit>
+void in_parallel(std::size_t n, const Visit& visit) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 16), [&](const auto& part) {
+        Visit own = visit;
+        for (std::size_t i = part.begin(); i < part.end(); ++i) own(i);
+    });
+}
+
+/// Splits leaves of a tree, which should consist of its root, until each is within the target of
+/// the field wherever it is looked at.
+template <class Node, class Storage>
+class TreeAdaptation {
+public:
+    TreeAdaptation(const Topology<Node>& tree, Storage& storage, const GoalField& field,
+                   const AdaptationGoal& goal)
+        : tree_(tree), storage_(storage), field_(field) {
+        if (field.has_ranges()) {
+            for (const std::uint32_t i : field.cones().kept()) {
+                sources_.push_back(goal.sources[i].position);
+                at_sources_.push_back(intersection(goal.sources[i].metric, field.largest()));
+            }
+        } else {
+            for (const PointSource& source : goal.sources) sources_.push_back(source.position);
+            at_sources_.resize(sources_.size());
+            field.evaluate(sources_, at_sources_);
+        }
+        leaf_of_source_.resize(sources_.size(), 0);
+    }
+
+    /// `split(box, along, cut)` cuts the leaf with that box, across an axis for which `along`
+    /// speaks most, and appends to `cut` the numbers of all leaves that it had to cut; it returns
+    /// false where the leaf must stay as it is.
+    ///
+    /// Leaves are looked at in their LeafPlaces; if `proved`, those that pass also at other places.
+    /// What is found wanting is put right and looked at again, at places of its own. Returns the
+    /// largest departure that is left.
+    template <class Split>
+    double run(bool proved, Split&& split) {
+        states_.assign(tree_.leaves(), LeafState::fresh);
+        departures_.resize(tree_.leaves());
+        while (round(proved, split)) {
+        }
+        if constexpr (Storage::follows_neighbours) {
+            // Neighbours may have been cut after a leaf was looked at.
+            constexpr int looks_at_all = 2;
+            for (int look = 0; proved && look < looks_at_all; ++look) {
+                states_.assign(tree_.leaves(), LeafState::changed);
+                while (round(proved, split)) {
+                }
+            }
+        }
+        double left = 0;
+        for (const Departure& d : departures_) left = std::max(left, d.worst);
+        return left;
+    }
+
+private:
+    enum class LeafState : std::uint8_t { settled, changed, fresh };
+
+    // Looks at the leaves that are not settled, and settles them or puts them right. Returns
+    // whether some have to be looked at again.
+    template <class Split>
+    bool round(bool proved, Split&& split) {
+        const std::vector<AdaptedLeaf> young = leaves_to_look_at(LeafState::changed);
+        if (proved && covers()) {
+            cover(young);
+        } else {
+            storage_.fit(tree_, leaves_to_look_at(LeafState::fresh), field_, proved);
+            look(young, proved);
+        }
+        for (const AdaptedLeaf& l : young) states_[l.leaf] = LeafState::settled;
+        bool changes = false;
+        std::vector<LeafIndex> cut;
+        for (const AdaptedLeaf& l : young) {
+            // It may have been cut to make way for a neighbour.
+            if (states_[l.leaf] != LeafState::settled) continue;
+            Departure& departure = departures_[l.leaf];
+            if (!(departure.worst > field_.target())) continue;
+            if (departure.is_elsewhere && storage_.learn(l.leaf, departure.where, field_)) {
+                states_[l.leaf] = LeafState::changed;
+                changes = true;
+                continue;
+            }
+            cut.clear();
+            const bool is_cut = split(l.box, departure.along, cut);
+            changes = is_cut || changes;
+            if (!is_cut && std::isinf(departure.worst)) departure = at_some_places(l);
+            departures_.resize(tree_.leaves());
+            states_.resize(tree_.leaves(), LeafState::fresh);
+            for (const LeafIndex leaf : cut) states_[leaf] = LeafState::fresh;
+        }
+        return changes;
+    }
+
+    // Whether the storage can be brought to keep the target everywhere in a leaf.
+    bool covers() const {
+        if constexpr (requires { &Storage::cover; }) return field_.has_ranges();
+        return false;
+    }
+
+    // Leaves that cannot be brought to that depart without bound, as far as is known.
+    void cover(std::span<const AdaptedLeaf> leaves) {
+        if constexpr (requires { &Storage::cover; }) {
+            std::vector<std::uint8_t> is_kept(leaves.size(), 0);
+            storage_.cover(leaves, field_, is_kept);
+            constexpr double infinity = std::numeric_limits<double>::infinity();
+            const double most_kept = sources_.empty() ? 0 : field_.target();
+            for (std::size_t i = 0; i < leaves.size(); ++i) {
+                departures_[leaves[i].leaf] = {};
+                departures_[leaves[i].leaf].worst = is_kept[i] != 0 ? most_kept : infinity;
+            }
+        }
+    }
+
+    Departure at_some_places(const AdaptedLeaf& leaf) const {
+        constexpr std::uint64_t places = 64;
+        NearbyField nearby(field_);
+        nearby.enter(leaf.box, true);
+        return LeafJudge<Node, Storage>(tree_, storage_, field_.target())
+            .at_sequence(leaf, nearby, 0, places);
+    }
+
+    // Those in this state, or in a later one.
+    std::vector<AdaptedLeaf> leaves_to_look_at(LeafState least) const {
+        std::vector<AdaptedLeaf> leaves;
+        tree_.for_each_leaf([&](LeafIndex leaf, const Box& box) {
+            if (states_[leaf] >= least) leaves.push_back({leaf, box});
+        });
+        return leaves;
+    }
+
+    // At their own places, if fresh, and, if `proved`, at places that no leaf has been fitted to:
+    // some in each leaf, more in a large one, and the more the closer the target.
+    void look(std::span<const AdaptedLeaf> leaves, bool proved) {
+        const double places_in_domain = 5e3 / field_.target();
+        constexpr std::uint64_t places_at_least = 16;
+        const double volume = tree_.domain().edges().prod();
+        std::vector<std::uint64_t> first(leaves.size() + 1, places_used_);
+        for (std::size_t i = 0; i < leaves.size(); ++i) {
+            const double share = leaves[i].box.edges().prod() / volume;
+            first[i + 1] =
+                first[i] + places_at_least + static_cast<std::uint64_t>(share * places_in_domain);
+        }
+        places_used_ = first.back();
+        for (const AdaptedLeaf& l : leaves) departures_[l.leaf] = {};
+        const LeafJudge judge(tree_, storage_, field_.target());
+        if constexpr (Storage::cut_by == CutBy::corners) {
+            if (field_.has_ranges()) {
+                fit_to_ranges(leaves, judge);
+                return;
+            }
+        }
+        look_at_sources();
+        in_parallel(leaves.size(), [&, nearby = NearbyField(field_)](std::size_t i) mutable {
+            const AdaptedLeaf& l = leaves[i];
+            nearby.enter(l.box, true);
+            Departure& departure = departures_[l.leaf];
+            const auto is_bad = [&] { return departure.worst > field_.target(); };
+            const bool needs_axis = Node::arity == 2;
+            if (states_[l.leaf] == LeafState::fresh && !storage_.is_fitted(l.leaf) &&
+                (needs_axis || !is_bad())) {
+                const Departure own = judge.at_places_of(l, nearby);
+                departure.take(own.worst, own.where);
+                departure.along = own.along;
+            }
+            if (!proved || is_bad()) return;
+            const Departure elsewhere = judge.at_sequence(l, nearby, first[i], first[i + 1]);
+            departure.take(elsewhere.worst, elsewhere.where);
+            departure.is_elsewhere = is_bad();
+        });
+    }
+
+    // Sets leaves of a constant value to what is between the bounds of the field in them. Bounds
+    // hold everywhere in the leaf: no place needs to be looked at.
+    void fit_to_ranges(std::span<const AdaptedLeaf> leaves, const LeafJudge<Node, Storage>& judge) {
+        in_parallel(leaves.size(), [&, nearby = NearbyField(field_)](std::size_t i) mutable {
+            const AdaptedLeaf& l = leaves[i];
+            nearby.enter(l.box, false);
+            const auto [least, most] = nearby.range();
+            const Metric middle = Metric::isotropic(std::sqrt(least * most));
+            storage_.set(l.leaf, middle);
+            Departure& departure = departures_[l.leaf];
+            departure.take(nonconformity(middle, Metric::isotropic(most)), l.box.centre());
+            if (Node::arity == 2 && departure.worst > field_.target()) {
+                departure.along = judge.along(l, nearby);
+            }
+        });
+    }
+
+    // Raises the departures of leaves that are not settled by the sources in them.
+    void look_at_sources() {
+        std::vector<double> of_source(sources_.size(), 0);
+        in_parallel(sources_.size(), [&](std::size_t i) {
+            // A leaf that is cut stays as one of its parts, which is fresh.
+            LeafIndex& leaf = leaf_of_source_[i];
+            if (states_[leaf] == LeafState::settled) return;
+            leaf = tree_.find(sources_[i]);
+            of_source[i] = nonconformity(storage_.value(tree_, sources_[i]), at_sources_[i]);
+        });
+        for (std::size_t i = 0; i < sources_.size(); ++i) {
+            departures_[leaf_of_source_[i]].take(of_source[i], sources_[i]);
+        }
+    }
+
+    const Topology<Node>& tree_;
+    Storage& storage_;
+    const GoalField& field_;
+    std::vector<Point> sources_;
+    std::vector<Metric> at_sources_;
+    std::vector<LeafIndex> leaf_of_source_;
+    std::vector<LeafState> states_;      // of the leaves
+    std::vector<Departure> departures_;  // likewise
+    std::uint64_t places_used_ = 0;
+};
+
+}  // namespace controlspace

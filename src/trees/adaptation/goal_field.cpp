@@ -1,0 +1,145 @@
+#include "trees/adaptation/goal_field.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "controlspace/error.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/space/control_space.h"
+#include "controlspace/space/space_options.h"
+#include "trees/adaptation/leaf_judge.h"
+
+namespace controlspace {
+
+namespace {
+
+const AdaptationGoal& require_valid(const AdaptationGoal& goal, const Box& domain) {
+    require_valid(GradationOptions{.ratio = goal.ratio});
+    if (!(goal.target > 0) || !std::isfinite(goal.target)) {
+        throw InputError(
+            fmt::format("target_delta is {}: give a positive non-conformity", goal.target));
+    }
+    for (std::size_t i = 0; i < goal.sources.size(); ++i) {
+        controlspace::require_valid(goal.sources[i], i, domain);
+    }
+    return goal;
+}
+
+// Shortening of lengths that may be passed over: some hundredth of the target, as δ.
+double negligible(double target) { return 0.1 * std::sqrt(target); }
+
+}  // namespace
+
+GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
+    : target_(require_valid(goal, domain).target),
+      sources_(goal.sources),
+      continuous_(goal.continuous),
+      largest_(largest_metric(domain)),
+      cones_(goal.sources, goal.ratio, largest_, negligible(goal.target)) {}
+
+void GoalField::evaluate(std::span<const Point> x, std::span<Metric> out) const {
+    constexpr std::size_t places_per_task = 64;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, x.size(), places_per_task),
+                      [&](const tbb::blocked_range<std::size_t>& part) {
+                          cones_.evaluate(x.subspan(part.begin(), part.size()),
+                                          out.subspan(part.begin(), part.size()));
+                      });
+    add_continuous(x, out);
+}
+
+void GoalField::evaluate_here(std::span<const Point> x, std::span<Metric> out,
+                              ConeField::Memory& memory) const {
+    cones_.evaluate(x, out, memory);
+    add_continuous(x, out);
+}
+
+void GoalField::evaluate_here(std::span<const Point> x, std::span<Metric> out,
+                              const NearbyCones& nearby) const {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        out[i] = Metric::isotropic(nearby.smallest_length(x[i]));
+    }
+    add_continuous(x, out);
+}
+
+double GoalField::evaluate_roughly(std::span<const Point> x, std::span<Metric> out,
+                                   ConeField::Memory& memory) const {
+    if (!has_ranges()) {
+        evaluate_here(x, out, memory);
+        return 1;
+    }
+    cones_.evaluate_roughly(x, negligible(target_), out, memory);
+    return 1 + negligible(target_);
+}
+
+void GoalField::add_continuous(std::span<const Point> x, std::span<Metric> out) const {
+    if (!continuous_) return;
+    std::vector<Metric> own(x.size());
+    continuous_->evaluate(x, own);
+    for (std::size_t i = 0; i < x.size(); ++i) out[i] = intersection(out[i], own[i]);
+}
+
+double GoalField::largest_departure(const ControlSpace& space) const {
+    constexpr std::uint64_t everywhere = 100000, near_sources = 100000;
+    const Box& domain = space.domain();
+    std::vector<Point> x;
+    x.reserve(everywhere + near_sources);
+    for (std::uint64_t k = 0; k < everywhere; ++k) x.push_back(place_in(domain, k));
+    for (std::uint64_t k = 0; k < near_sources && !sources_.empty(); ++k) {
+        const PointSource& source = sources_[k * sources_.size() / near_sources];
+        const Vector reach = Vector::Constant(mean_length(source.metric));
+        const Box around{source.position - reach, source.position + reach};
+        x.push_back(place_in(around, k).cwiseMax(domain.low).cwiseMin(domain.high));
+    }
+    std::vector<Metric> own(x.size());
+    std::vector<Metric> exact(x.size());
+    space.sample(x, own);
+    evaluate(x, exact);
+    double largest = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        largest = std::max(largest, nonconformity(own[i], exact[i]));
+    }
+    return largest;
+}
+
+LeafPlaces::LeafPlaces() {
+    std::size_t next = 0;
+    // By how many coordinates stand at the middle: corners 0, centre 3, faces 2, edges 1.
+    for (const int middles : {0, 3, 2, 1}) {
+        for (int i = 0; i < 27; ++i) {
+            const std::array<int, 3> step{i % 3, i / 3 % 3, i / 9};
+            if (std::count(step.begin(), step.end(), 1) != middles) continue;
+            // A little inside: a place on a face might belong to the neighbour.
+            constexpr double inset = 1e-6;
+            for (Axis a = 0; a < 3; ++a) {
+                const int s = step[static_cast<std::size_t>(a)];
+                at[next][a] = s == 0 ? inset : s == 1 ? 0.5 : 1 - inset;
+            }
+            ++next;
+        }
+    }
+}
+
+const LeafPlaces& leaf_places() {
+    static const LeafPlaces places;
+    return places;
+}
+
+Point place_in(const Box& box, std::uint64_t k) {
+    constexpr double root = 1.2207440846057596;
+    Vector t;
+    double step = 1;
+    for (Axis a = 0; a < 3; ++a) {
+        step /= root;
+        const double turns = 0.5 + step * static_cast<double>(k);
+        t[a] = turns - std::floor(turns);
+    }
+    return box.low + t.cwiseProduct(box.edges());
+}
+
+}  // namespace controlspace

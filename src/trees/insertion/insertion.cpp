@@ -1,0 +1,25 @@
+#include "controlspace/space/insertion.h"
+
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
+
+namespace controlspace {
+
+bool calls_for_change(const Metric& asked, const Metric& held, double tolerance) {
+    // At once where an intersection would leave `held` as it is.
+    if (is_axis_aligned(asked) && is_axis_aligned(held) && held.xx <= asked.xx &&
+        held.yy <= asked.yy && held.zz <= asked.zz) {
+        return false;
+    }
+    if (nonconformity(asked, held) < tolerance) return false;
+    const Metric limited = intersection(held, asked);
+    return limited != held && nonconformity(held, limited) >= tolerance;
+}
+
+// The intersection divides each principal length by k at most, so δ is √3 (k + 1/k - 2) at most.
+double length_let_pass(double tolerance) {
+    const double half = 1 + tolerance / (2 * std::sqrt(3.0));
+    return (half + std::sqrt(half * half - 1)) * (1 - 1e-6);
+}
+
+}  // namespace controlspace

@@ -1,0 +1,190 @@
+#include "trees/packing/frozen_tree.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "controlspace/error.h"
+#include "controlspace/metric/nonconformity.h"
+#include "trees/packing/frozen_values.h"
+#include "trees/topology/sample_leaves.h"
+#include "trees/topology/topology_state.h"
+
+namespace controlspace {
+
+namespace {
+
+[[noreturn]] void refuse_to_change() {
+    throw InputError("a frozen structure is only read: insert, grade and adapt before freezing it");
+}
+
+template <class Node, class Values>
+class FrozenTree final : public ControlSpace {
+public:
+    FrozenTree(Topology<Node> topology, Values values)
+        : topology_(std::move(topology)), values_(std::move(values)) {}
+
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+        sample_leaves(topology_, values_, x, out);
+    }
+    ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
+        return values_.control_nodes(topology_, neighbourhood);
+    }
+    const Box& domain() const override { return topology_.domain(); }
+    Box element_at(const Point& x) const override { return topology_.locate(x).box; }
+    Footprint footprint() const override {
+        Footprint footprint;
+        topology_.describe(footprint);
+        values_.describe(footprint);
+        return footprint;
+    }
+
+    void save(StateWriter& state) const override {
+        state("frozen.is_octree", Node::is_octant);
+        state("frozen.kind", Values::kind, FrozenKind::vertices);
+        controlspace::save(topology_, state);
+        values_.save(state);
+    }
+
+    Insertion insert(const PointSource&) override { refuse_to_change(); }
+    InsertionReport insert(std::span<const PointSource>) override { refuse_to_change(); }
+    void assign(std::span<const Metric>) override { refuse_to_change(); }
+    GradationReport grade(const GradationOptions&) override { refuse_to_change(); }
+    AdaptationReport adapt(const AdaptationGoal&) override { refuse_to_change(); }
+
+private:
+    Topology<Node> topology_;
+    Values values_;
+};
+
+// Throws InputError if `rounded` is too far from `m`.
+void require_close(const StoredMetric<float>& rounded, const Metric& m) {
+    constexpr double most = 1e-6;  // a length is off by 0.1 %
+    const bool in_range =
+        std::min({rounded.xx, rounded.yy, rounded.zz}) > std::numeric_limits<float>::min() &&
+        is_positive_definite(rounded);
+    if (in_range && nonconformity(rounded, m) < most) return;
+    throw InputError(
+        fmt::format("floats cannot hold the metric {} (xx yy zz xy xz yz) to 0.1 % of each "
+                    "length: freeze with doubles",
+                    to_string(m)));
+}
+
+// The metrics with these numbers, in their order.
+template <class Number, class Index>
+std::vector<StoredMetric<Number>> stored(std::span<const Metric> metrics,
+                                         const std::vector<Index>& numbers) {
+    std::vector<StoredMetric<Number>> result;
+    result.reserve(numbers.size());
+    for (const Index i : numbers) result.emplace_back(metrics[i]);
+    if constexpr (std::is_same_v<Number, float>) {
+        // In a loop of its own: GCC 12 takes what is rounded and widened at once for unrounded.
+        for (std::size_t k = 0; k < result.size(); ++k) {
+            require_close(result[k], metrics[numbers[k]]);
+        }
+    }
+    return result;
+}
+
+template <class Number>
+using NumberType = std::type_identity<Number>;
+
+// make(NumberType<Number>()) for the numbers that metrics are to be kept in.
+template <class Make>
+auto with_number(Precision precision, Make&& make) {
+    return precision == Precision::floats ? make(NumberType<float>()) : make(NumberType<double>());
+}
+
+// The same for the numbers of planes.
+template <class Make>
+auto with_plane(const CutPlanes& planes, Make&& make) {
+    return planes.most() <= std::size_t{1} << 16 ? make(NumberType<std::uint16_t>())
+                                                 : make(NumberType<std::uint32_t>());
+}
+
+template <class Node, class Values>
+std::unique_ptr<ControlSpace> frozen(Topology<Node> tree, Values values) {
+    return std::make_unique<FrozenTree<Node, Values>>(std::move(tree), std::move(values));
+}
+
+}  // namespace
+
+template <class Node>
+std::unique_ptr<ControlSpace> freeze_leaves(const Topology<Node>& tree,
+                                            std::span<const Metric> metrics, Precision precision) {
+    std::vector<LeafIndex> order;
+    Topology<Node> ordered = tree.depth_first(order);
+    return with_number(precision, [&]<class Number>(NumberType<Number>) {
+        return frozen(std::move(ordered), FrozenLeaves<Number>(stored<Number>(metrics, order)));
+    });
+}
+
+template <class Node>
+std::unique_ptr<ControlSpace> freeze_quadratic(const Topology<Node>& tree,
+                                               std::span<const Metric> metrics, double slope,
+                                               Precision precision) {
+    std::vector<LeafIndex> order;
+    Topology<Node> ordered = tree.depth_first(order);
+    CutPlanes planes(ordered);
+    return with_number(precision, [&]<class Number>(NumberType<Number>) {
+        return with_plane(planes, [&]<class Plane>(NumberType<Plane>) {
+            FrozenQuadratic<Number, Plane> values(ordered, std::move(planes),
+                                                  stored<Number>(metrics, order), slope);
+            return frozen(std::move(ordered), std::move(values));
+        });
+    });
+}
+
+template <class Node>
+std::unique_ptr<ControlSpace> freeze_vertices(const Topology<Node>& tree,
+                                              std::span<const Corners> corners,
+                                              std::span<const Metric> metrics,
+                                              Precision precision) {
+    std::vector<LeafIndex> leaves;
+    Topology<Node> ordered = tree.depth_first(leaves);
+    // Vertices in the order in which the leaves come to them.
+    constexpr NodeIndex unknown = ~NodeIndex{0};
+    std::vector<NodeIndex> new_number(metrics.size(), unknown);
+    std::vector<NodeIndex> vertices;
+    std::vector<Corners> ordered_corners;
+    vertices.reserve(metrics.size());
+    ordered_corners.reserve(leaves.size());
+    for (const LeafIndex leaf : leaves) {
+        Corners renumbered = corners[leaf];
+        for (NodeIndex& vertex : renumbered) {
+            NodeIndex& number = new_number[vertex];
+            if (number == unknown) {
+                number = static_cast<NodeIndex>(vertices.size());
+                vertices.push_back(vertex);
+            }
+            vertex = number;
+        }
+        ordered_corners.push_back(renumbered);
+    }
+    CutPlanes planes(ordered);
+    return with_number(precision, [&]<class Number>(NumberType<Number>) {
+        return with_plane(planes, [&]<class Plane>(NumberType<Plane>) {
+            FrozenVertices<Number, Plane> values(ordered, std::move(planes), ordered_corners,
+                                                 stored<Number>(metrics, vertices));
+            return frozen(std::move(ordered), std::move(values));
+        });
+    });
+}
+
+#define CONTROLSPACE_FREEZE(Node)                                                             \
+    template std::unique_ptr<ControlSpace> freeze_leaves(const Topology<Node>&,               \
+                                                         std::span<const Metric>, Precision); \
+    template std::unique_ptr<ControlSpace> freeze_quadratic(                                  \
+        const Topology<Node>&, std::span<const Metric>, double, Precision);                   \
+    template std::unique_ptr<ControlSpace> freeze_vertices(                                   \
+        const Topology<Node>&, std::span<const Corners>, std::span<const Metric>, Precision);
+CONTROLSPACE_FREEZE(KdNode)
+CONTROLSPACE_FREEZE(OctreeNode)
+#undef CONTROLSPACE_FREEZE
+
+}  // namespace controlspace

@@ -1,0 +1,184 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "controlspace/metric/stored_metric.h"
+#include "controlspace/space/control_space.h"
+#include "trees/packing/frozen_state.h"
+#include "trees/topology/corners.h"
+#include "trees/topology/leaf_faces.h"
+#include "trees/topology/leaf_graph.h"
+#include "trees/topology/parts_across.h"
+#include "trees/values/quadratic_in_leaves.h"
+#include "trees/values/trilinear_in_leaves.h"
+
+namespace controlspace {
+
+// What the leaves of a tree hold once it is only read, its leaves numbered depth first. What
+// FrozenTree asks of each:
+//   prefetch(leaf), if it is worth it; value_in(tree, leaf, x), or values_in(tree, leaves, x, out)
+//   control_nodes(tree, neighbourhood), describe(footprint)
+//   kind, save(state)                    see frozen_state.h
+// `Number` is what metrics are kept in, `Plane` what planes are numbered in.
+
+/// One metric a leaf, constant over it.
+template <class Number>
+class FrozenLeaves {
+public:
+    static constexpr FrozenKind kind = FrozenKind::leaves;
+
+    explicit FrozenLeaves(std::vector<StoredMetric<Number>> metrics)
+        : metrics_(std::move(metrics)) {}
+
+    template <class Node>
+    Metric value_in(const Topology<Node>&, LeafIndex leaf, const Point&) const {
+        return metrics_[leaf];
+    }
+
+    template <class Node>
+    ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
+        return {leaf_graph(tree, neighbourhood).graph, {metrics_.begin(), metrics_.end()}};
+    }
+    void describe(Footprint& footprint) const {
+        footprint.control_nodes = metrics_.size();
+        footprint.bytes_payload = metrics_.capacity() * sizeof(StoredMetric<Number>);
+    }
+    void save(StateWriter& state) const {
+        state("frozen.metrics", std::vector<Metric>(metrics_.begin(), metrics_.end()));
+    }
+
+protected:
+    std::vector<StoredMetric<Number>> metrics_;
+};
+
+/// One metric a leaf, interpolated with those of the neighbours.
+template <class Number, class Plane>
+class FrozenQuadratic : public FrozenLeaves<Number> {
+public:
+    static constexpr FrozenKind kind = FrozenKind::quadratic;
+
+    template <class Node>
+    FrozenQuadratic(const Topology<Node>& tree, CutPlanes planes,
+                    std::vector<StoredMetric<Number>> metrics, double slope)
+        : FrozenLeaves<Number>(std::move(metrics)), planes_(std::move(planes)), slope_(slope) {
+        leaves_.reserve(tree.leaves());
+        for_each_faces<Plane>(tree, planes_, [&](LeafIndex, const Faces<Plane>& faces) {
+            leaves_.push_back({faces, {}});
+        });
+        for_each_parts_across(tree, [&](LeafIndex leaf, const Box&, const PartsAcross& across) {
+            leaves_[leaf].across = across;
+        });
+        isotropic_ = std::ranges::all_of(
+            this->metrics_, [](const StoredMetric<Number>& m) { return is_isotropic(m); });
+    }
+
+    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&leaves_[leaf]); }
+    template <class Node>
+    void values_in(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
+                   std::span<const Point> x, std::span<Metric> out) const {
+        QuadraticInLeaves(tree, *this).interpolate(leaves, x, out);
+    }
+
+    Box box(LeafIndex leaf) const { return leaves_[leaf].faces.box(planes_); }
+    const PartsAcross& parts_across(LeafIndex leaf, const Point&) const {
+        return leaves_[leaf].across;
+    }
+    Metric metric(LeafIndex leaf) const { return this->metrics_[leaf]; }
+    void prefetch_metric(LeafIndex leaf) const { __builtin_prefetch(&this->metrics_[leaf]); }
+    double length(LeafIndex leaf) const { return this->metrics_[leaf].xx; }
+    bool all_isotropic() const { return isotropic_; }
+    double slope() const { return slope_; }
+
+    void describe(Footprint& footprint) const {
+        FrozenLeaves<Number>::describe(footprint);
+        footprint.bytes_topology += leaves_.capacity() * sizeof(Leaf) + planes_.bytes();
+    }
+    void save(StateWriter& state) const {
+        FrozenLeaves<Number>::save(state);
+        state("frozen.slope", slope_);
+    }
+
+private:
+    struct Leaf {
+        Faces<Plane> faces;
+        PartsAcross across;
+    };
+
+    CutPlanes planes_;
+    std::vector<Leaf> leaves_;
+    double slope_;
+    bool isotropic_;
+};
+
+/// A metric at each vertex, trilinear between the eight of a leaf; vertices numbered as the leaves
+/// come to them.
+template <class Number, class Plane>
+class FrozenVertices {
+public:
+    static constexpr FrozenKind kind = FrozenKind::vertices;
+
+    /// `corners` are those of the tree's leaves, whose numbers point into `metrics`.
+    template <class Node>
+    FrozenVertices(const Topology<Node>& tree, CutPlanes planes,
+                   const std::vector<Corners>& corners, std::vector<StoredMetric<Number>> metrics)
+        : planes_(std::move(planes)), metrics_(std::move(metrics)) {
+        leaves_.reserve(tree.leaves());
+        for_each_faces<Plane>(tree, planes_, [&](LeafIndex leaf, const Faces<Plane>& faces) {
+            leaves_.push_back({corners[leaf], faces});
+        });
+    }
+
+    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&leaves_[leaf]); }
+    template <class Node>
+    void values_in(const Topology<Node>&, std::span<const LeafIndex> leaves,
+                   std::span<const Point> x, std::span<Metric> out) const {
+        trilinear_in_leaves(*this, leaves, x, out);
+    }
+    const Corners& corners(LeafIndex leaf) const { return leaves_[leaf].corners; }
+    Box box(LeafIndex leaf) const { return leaves_[leaf].faces.box(planes_); }
+    std::span<const StoredMetric<Number>> metrics() const { return metrics_; }
+
+    template <class Node>
+    ControlNodes control_nodes(const Topology<Node>&, Neighbourhood neighbourhood) const {
+        std::vector<Point> positions(metrics_.size());
+        for (const Leaf& leaf : leaves_) {
+            const Box box = leaf.faces.box(planes_);
+            for (int i = 0; i < 8; ++i) {
+                positions[leaf.corners[static_cast<std::size_t>(i)]] = corner(box, i);
+            }
+        }
+        return {vertex_graph(all_corners(), std::move(positions), neighbourhood),
+                {metrics_.begin(), metrics_.end()}};
+    }
+    void describe(Footprint& footprint) const {
+        footprint.control_nodes = metrics_.size();
+        footprint.bytes_payload = metrics_.capacity() * sizeof(StoredMetric<Number>);
+        footprint.bytes_topology += leaves_.capacity() * sizeof(Leaf) + planes_.bytes();
+    }
+    void save(StateWriter& state) const {
+        state("frozen.metrics", std::vector<Metric>(metrics_.begin(), metrics_.end()));
+        state("frozen.corners", all_corners());
+    }
+
+private:
+    struct Leaf {
+        Corners corners;
+        Faces<Plane> faces;
+    };
+
+    std::vector<Corners> all_corners() const {
+        std::vector<Corners> corners;
+        corners.reserve(leaves_.size());
+        for (const Leaf& leaf : leaves_) corners.push_back(leaf.corners);
+        return corners;
+    }
+
+    CutPlanes planes_;
+    std::vector<Leaf> leaves_;
+    std::vector<StoredMetric<Number>> metrics_;
+};
+
+}  // namespace controlspace

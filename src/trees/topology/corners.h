@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+
+#include "controlspace/gradation/node_graph.h"
+
+namespace controlspace {
+
+/// Control nodes at the eight vertices of a leaf, in the order of controlspace::corner.
+using Corners = std::array<NodeIndex, 8>;
+
+/// Whether two different corners of a leaf are neighbours: ends of an edge, or with `all` any two.
+inline bool are_neighbours(std::size_t i, std::size_t j, Neighbourhood neighbourhood) {
+    return neighbourhood == Neighbourhood::all || std::has_single_bit(i ^ j);
+}
+
+/// visit(a, b) for the vertices of a leaf that are neighbours, each pair once.
+template <class Visit>
+void for_each_pair(const Corners& corners, Neighbourhood neighbourhood, Visit&& visit) {
+    for (std::size_t i = 0; i < 8; ++i) {
+        for (std::size_t j = i + 1; j < 8; ++j) {
+            if (are_neighbours(i, j, neighbourhood)) visit(corners[i], corners[j]);
+        }
+    }
+}
+
+}  // namespace controlspace

@@ -1,0 +1,66 @@
+#include "trees/topology/place_index.h"
+
+#include <bit>
+
+#include "geometry/large_pages.h"
+
+namespace controlspace {
+
+namespace {
+
+constexpr NodeIndex nobody = ~NodeIndex{0};
+constexpr std::size_t smallest_table = 64;
+
+std::uint64_t hash(const Point& x) {
+    std::uint64_t h = 0;
+    for (Axis a = 0; a < 3; ++a) {
+        // 0.0 + x turns -0 into 0: the same place. The rest is a multiply-xorshift mixer.
+        h = (h ^ std::bit_cast<std::uint64_t>(0.0 + x[a])) * 0x9e3779b97f4a7c15u;
+        h ^= h >> 32;
+    }
+    return h;
+}
+
+}  // namespace
+
+std::size_t PlaceIndex::slot_of(const Point& x, std::span<const Point> positions) const {
+    const std::size_t mask = table_.size() - 1;
+    std::size_t slot = hash(x) & mask;
+    while (table_[slot] != nobody && positions[table_[slot]] != x) slot = (slot + 1) & mask;
+    return slot;
+}
+
+void PlaceIndex::prefetch(const Point& x) const {
+    if (!table_.empty()) __builtin_prefetch(&table_[hash(x) & (table_.size() - 1)]);
+}
+
+NodeIndex PlaceIndex::likely_at(const Point& x) const {
+    return table_.empty() ? nobody : table_[hash(x) & (table_.size() - 1)];
+}
+
+PlaceIndex::PlaceIndex(std::span<const Point> positions) : used_(positions.size()) {
+    enter_all(std::max(smallest_table, std::bit_ceil(2 * positions.size())), positions);
+}
+
+NodeIndex PlaceIndex::find_or_enter(const Point& x, NodeIndex next,
+                                    std::span<const Point> positions) {
+    if (2 * used_ >= table_.size()) grow(positions);
+    NodeIndex& entry = table_[slot_of(x, positions)];
+    if (entry == nobody) {
+        entry = next;
+        ++used_;
+    }
+    return entry;
+}
+
+void PlaceIndex::grow(std::span<const Point> positions) {
+    enter_all(std::max(smallest_table, 2 * table_.size()), positions);
+}
+
+void PlaceIndex::enter_all(std::size_t slots, std::span<const Point> positions) {
+    table_ = {};  // so that both are never there together
+    table_ = large_array<NodeIndex>(slots, nobody);
+    for (NodeIndex i = 0; i < positions.size(); ++i) table_[slot_of(positions[i], positions)] = i;
+}
+
+}  // namespace controlspace

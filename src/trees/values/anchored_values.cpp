@@ -1,0 +1,177 @@
+#include "trees/values/anchored_values.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "controlspace/error.h"
+#include "controlspace/metric/nonconformity.h"
+
+namespace controlspace {
+
+namespace {
+
+// The factor of lengths k that makes δ = √3 (k + 1/k - 2).
+double factor_of(double delta) {
+    const double excess = delta / std::sqrt(3.0);
+    return 1 + 0.5 * excess + std::sqrt(excess + 0.25 * excess * excess);
+}
+
+// Shortening all lengths by a small fraction t gives δ = √3 t^2: a cone may be left out where it
+// shortens some by this, and most of the target remains for places in between.
+double negligible_shortening(double target) { return 0.5 * std::sqrt(target); }
+
+}  // namespace
+
+AnchoredValues::AnchoredValues(const SpaceOptions& options)
+    : largest_(largest_metric(options.domain)), ratio_(options.ratio) {}
+
+Metric AnchoredValues::cones_at(const Point& x, std::span<const SourceIndex> anchors) const {
+    if (sources_.all_isotropic()) {
+        double h = largest_.xx;
+        for (const SourceIndex s : anchors) {
+            h = std::min(h,
+                         sources_.metric(s).xx + (ratio_ - 1) * (x - sources_.position(s)).norm());
+        }
+        return Metric::isotropic(h);
+    }
+    // Cones of tensors by their smallest lengths at the place, as in the exact field.
+    struct Cone {
+        double smallest, factor;
+        SourceIndex source;
+    };
+    std::array<Cone, most> cones;
+    std::size_t n = 0;
+    for (const SourceIndex s : anchors.first(std::min(anchors.size(), most))) {
+        const double factor = sources_.factor(s, ratio_, x);
+        const Cone cone{factor * sources_.smallest_length(s), factor, s};
+        std::size_t i = n++;
+        for (; i > 0 && cone.smallest < cones[i - 1].smallest; --i) cones[i] = cones[i - 1];
+        cones[i] = cone;
+    }
+    Metric m = largest_;
+    for (std::size_t i = 0; i < n; ++i) {
+        m = intersection(m, cones[i].factor * sources_.metric(cones[i].source));
+    }
+    for (const SourceIndex s : anchors.subspan(n)) {
+        m = intersection(m, sources_.factor(s, ratio_, x) * sources_.metric(s));
+    }
+    return m;
+}
+
+void AnchoredValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex) {
+    anchors_.repeat(leaf, static_cast<std::size_t>(subdivision.children() - 1));
+}
+
+void AnchoredValues::lower(const LeafPlace& place, const PointSource& source) {
+    anchors_.add(place.leaf, sources_.add(source));
+}
+
+void AnchoredValues::take_over(const AdaptationGoal& goal) {
+    ratio_ = goal.ratio;
+    continuous_ = goal.continuous;
+    sources_ = {};
+    for (const PointSource& source : goal.sources) sources_.add(source);
+}
+
+void AnchoredValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& field,
+                         std::size_t places) {
+    const double well_within = 0.25 * field.target();
+    const double negligible = negligible_shortening(field.target());
+    const double factor = factor_of(well_within);
+    std::vector<SourceIndex> chosen(leaves.size() * most);
+    std::vector<std::size_t> count(leaves.size(), 0);
+    in_parallel(leaves.size(), [&, governing = std::vector<SourceIndex>(),
+                                memory = ConeField::Memory()](std::size_t i) mutable {
+        const std::span<SourceIndex> list(chosen.data() + i * most, most);
+        std::size_t& n = count[i];
+        memory.hint = 0;  // of several sources that are equally near the same is found always
+        for (std::size_t k = 0; k < places; ++k) {
+            const std::size_t p = (LeafPlaces::centre + k) % LeafPlaces::all;  // the centre first
+            const Point x = leaf_places().in(leaves[i].box, p);
+            const Metric own = cones_at(x, list.first(n));
+            if (field.cones().is_isotropic()) {
+                const auto below = field.cones().source_below(x, own.xx / factor, memory);
+                if (below && n < most) list[n++] = *below;
+                continue;
+            }
+            Metric m;
+            field.cones().governing(x, negligible, governing, m, memory);
+            if (nonconformity(own, m) <= well_within) continue;
+            for (const SourceIndex s : governing) {
+                const auto end = list.begin() + static_cast<std::ptrdiff_t>(n);
+                if (n < most && std::find(list.begin(), end, s) == end) list[n++] = s;
+            }
+        }
+    });
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        anchors_.set(leaves[i].leaf, std::span(chosen).subspan(i * most, count[i]));
+    }
+}
+
+void AnchoredValues::cover(std::span<const AdaptedLeaf> leaves, const GoalField& field,
+                           std::span<std::uint8_t> is_kept) {
+    const double tolerance = factor_of(field.target()) - 1;
+    std::vector<SourceIndex> chosen(leaves.size() * most);
+    std::vector<std::size_t> count(leaves.size());
+    in_parallel(leaves.size(), [&, memory = ConeField::Memory(),
+                                cover = ConeCover()](std::size_t i) mutable {
+        memory.hint = 0;  // of several sources that are equally near the same is found always
+        is_kept[i] = field.cones().cover(leaves[i].box, tolerance, cover, memory) ? 1 : 0;
+        const auto sources = cover.sources();
+        std::ranges::copy(sources, chosen.begin() + static_cast<std::ptrdiff_t>(i * most));
+        count[i] = sources.size();
+    });
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        anchors_.set(leaves[i].leaf, std::span(chosen).subspan(i * most, count[i]));
+    }
+}
+
+bool AnchoredValues::learn(LeafIndex leaf, const Point& x, const GoalField& field) {
+    std::vector<SourceIndex> governing;
+    Metric m;
+    field.cones().governing(x, negligible_shortening(field.target()), governing, m);
+    const auto old = anchors_.of(leaf);
+    std::vector<SourceIndex> list(old.begin(), old.end());
+    for (const SourceIndex s : governing) {
+        if (std::find(list.begin(), list.end(), s) == list.end()) list.push_back(s);
+    }
+    if (list.size() == old.size() || list.size() > most) return false;
+    anchors_.set(leaf, list);
+    return true;
+}
+
+void AnchoredValues::drop_idle_sources() {
+    anchors_.shrink_to_fit();
+    anchors_.rename(sources_.keep(anchors_.used(sources_.size())));
+}
+
+void AnchoredValues::save(StateWriter& state) const {
+    if (continuous_) {
+        throw InputError(
+            "a tree that keeps a continuous field cannot be saved: save one that holds metrics");
+    }
+    sources_.save(state);
+    anchors_.save(state);
+    state("anchors.ratio", ratio_);
+    state("anchors.fits_tensors_loosely", fits_tensors_loosely_);
+}
+
+void AnchoredValues::load(std::size_t leaves, const StateReader& state) {
+    sources_.load(state);
+    anchors_.load(state, leaves, sources_.size());
+    state("anchors.ratio", ratio_);
+    state("anchors.fits_tensors_loosely", fits_tensors_loosely_);
+}
+
+void AnchoredValues::describe(Footprint& footprint) const {
+    footprint.control_nodes = anchors_.leaves();
+    footprint.bytes_payload = anchors_.bytes() + sources_.bytes();
+}
+
+void AnchoredValues::shrink_to_fit() {
+    anchors_.shrink_to_fit();
+    sources_.shrink_to_fit();
+}
+
+}  // namespace controlspace

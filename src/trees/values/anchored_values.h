@@ -1,0 +1,120 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/metric_field.h"
+#include "controlspace/space/control_space.h"
+#include "controlspace/space/space_options.h"
+#include "space/state.h"
+#include "trees/adaptation/adapt_tree.h"
+#include "trees/topology/leaf_graph.h"
+#include "trees/topology/topology.h"
+#include "trees/values/anchors.h"
+#include "trees/values/source_table.h"
+
+namespace controlspace {
+
+/// The sources that govern a leaf in place of a metric (K_LA, K_oLA): a query evaluates their cones
+/// at the very place. So the field varies inside a leaf, and distances are straight lines, where
+/// values handed from leaf to leaf add up along a path.
+///
+/// Gradation looks up which sources govern each leaf, at its centre and its corners; the law is the
+/// cone law whatever is asked, since that is what a cone is. A continuous source is kept as it is
+/// and evaluated with the cones.
+class AnchoredValues {
+public:
+    static constexpr bool exact_at_nodes = true;
+    static constexpr int order = 0;
+    static constexpr CutBy cut_by = CutBy::longest_edge;
+    static constexpr bool follows_neighbours = false;
+    static constexpr bool grows_by_leaf = false;
+
+    explicit AnchoredValues(const SpaceOptions& options);
+
+    template <class Node>
+    Metric value(const Topology<Node>& tree, const Point& place) const {
+        return value_in(tree, tree.find(place), place);
+    }
+    template <class Node>
+    Metric value_in(const Topology<Node>& tree, LeafIndex leaf, const Point& place) const {
+        const Point x = place.cwiseMax(tree.domain().low).cwiseMin(tree.domain().high);
+        const Metric m = cones_at(x, anchors_.of(leaf));
+        return continuous_ ? intersection(m, metric_at(*continuous_, x)) : m;
+    }
+    void prefetch(LeafIndex leaf) const { anchors_.prefetch(leaf); }
+    template <class Node>
+    Metric asked(const Topology<Node>& tree, const Point& place) const {
+        return value(tree, place);
+    }
+
+    void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex);
+    /// The source becomes an anchor of its leaf.
+    void lower(const LeafPlace& place, const PointSource& source);
+
+    /// Leaf centres with the field there.
+    template <class Node>
+    ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
+        LeafGraph leaves = leaf_graph(tree, neighbourhood);
+        std::vector<Metric> metrics;
+        metrics.reserve(leaves.order.size());
+        for (const Point& x : leaves.graph.positions) metrics.push_back(value(tree, x));
+        return {std::move(leaves.graph), std::move(metrics)};
+    }
+
+    const SourceTable& sources() const { return sources_; }
+    const std::shared_ptr<const MetricField>& continuous() const { return continuous_; }
+    /// Anchors are from now on taken from the sources of `goal`, with its ratio.
+    void take_over(const AdaptationGoal& goal);
+    /// Anchors for these leaves, out of the sources of `field`'s goal.
+    template <class Node>
+    void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field,
+             bool proved) {
+        // Of tensors hundreds may each cut a little: what governs the centre has to do.
+        fits_tensors_loosely_ = !proved;
+        fit(leaves, field, sources_.all_isotropic() || proved ? LeafPlaces::all : 1);
+    }
+    /// Anchors for these leaves that keep within the target everywhere in them, of an isotropic
+    /// field; `is_kept` tells where so many are not enough.
+    void cover(std::span<const AdaptedLeaf> leaves, const GoalField& field,
+               std::span<std::uint8_t> is_kept);
+    bool is_fitted(LeafIndex leaf) const {
+        return (fits_tensors_loosely_ && !sources_.all_isotropic()) ||
+               anchors_.of(leaf).size() < most;
+    }
+    /// Enters the sources that govern the field at `x`, unless the leaf has enough anchors.
+    bool learn(LeafIndex leaf, const Point& x, const GoalField& field);
+    /// Forgets sources that are no leaf's anchor.
+    void drop_idle_sources();
+
+    /// Throws InputError where a continuous source is kept: it is a program's own.
+    void save(StateWriter& state) const;
+    template <class Node>
+    void load(const Topology<Node>& tree, const StateReader& state) {
+        load(tree.leaves(), state);
+    }
+
+    void describe(Footprint& footprint) const;
+    void shrink_to_fit();
+
+private:
+    // Anchors of a leaf. Longer lists would make queries slow where one more cut makes them short.
+    static constexpr std::size_t most = ConeCover::room;
+
+    // At so many places, the centre first.
+    void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field, std::size_t places);
+    void load(std::size_t leaves, const StateReader& state);
+    Metric cones_at(const Point& x, std::span<const SourceIndex> anchors) const;
+
+    AnchorLists anchors_;
+    SourceTable sources_;
+    std::shared_ptr<const MetricField> continuous_;
+    Metric largest_;
+    double ratio_;
+    bool fits_tensors_loosely_ = false;
+};
+
+}  // namespace controlspace

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "controlspace/geometry/box.h"
+#include "controlspace/metric/blend.h"
+#include "trees/topology/corners.h"
+#include "trees/topology/topology.h"
+
+namespace controlspace {
+
+/// Place of `x` in `box`, each coordinate from 0 to 1, as the weights of its eight corners.
+inline std::array<double, 8> corner_weights(const Box& box, const Point& x) {
+    const Vector t = (x - box.low).cwiseQuotient(box.edges());
+    const std::array<double, 2> wx{1 - t.x(), t.x()}, wy{1 - t.y(), t.y()}, wz{1 - t.z(), t.z()};
+    std::array<double, 8> weights{};
+    for (std::size_t i = 0; i < 8; ++i) weights[i] = wx[i & 1] * wy[i >> 1 & 1] * wz[i >> 2];
+    return weights;
+}
+
+/// The weights of the corners of some boxes, for a place in each: `corner_weights` side by side, in
+/// vectors.
+template <std::size_t most>
+class WeightsInBoxes {
+public:
+    /// The nearest place of the box to `x` is taken.
+    void put(std::size_t i, const Box& box, const Point& x) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            const auto axis = static_cast<Axis>(a);
+            low_[a][i] = box.low[axis];
+            high_[a][i] = box.high[axis];
+            place_[a][i] = x[axis];
+        }
+    }
+    /// Of the first `count` boxes.
+    void weigh(std::size_t count) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            for (std::size_t i = 0; i < count; ++i) {
+                const double low = low_[a][i];
+                const double high = high_[a][i];
+                double x = place_[a][i];
+                x = x > low ? x : low;
+                x = x < high ? x : high;
+                place_[a][i] = (x - low) / (high - low);
+            }
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            const double x = place_[0][i], y = place_[1][i], z = place_[2][i];
+            const double low_x = 1 - x, low_y = 1 - y, low_z = 1 - z;
+            weights_[0][i] = low_x * low_y * low_z;
+            weights_[1][i] = x * low_y * low_z;
+            weights_[2][i] = low_x * y * low_z;
+            weights_[3][i] = x * y * low_z;
+            weights_[4][i] = low_x * low_y * z;
+            weights_[5][i] = x * low_y * z;
+            weights_[6][i] = low_x * y * z;
+            weights_[7][i] = x * y * z;
+        }
+    }
+    double operator()(std::size_t i, std::size_t corner) const { return weights_[corner][i]; }
+
+private:
+    using Numbers = std::array<double, most>;
+
+    std::array<Numbers, 3> low_, high_, place_;
+    std::array<Numbers, 8> weights_;
+};
+
+/// Metrics at `x`, trilinear between the corners of the leaves that hold them, for some places at a
+/// time, so that metrics are on their way while weights are worked out. Of `values` it asks
+/// box(leaf), prefetch_box(leaf), if it is worth it, corners(leaf), and metrics(), which these
+/// number.
+template <class Values>
+void trilinear_in_leaves(const Values& values, std::span<const LeafIndex> leaves,
+                         std::span<const Point> x, std::span<Metric> out) {
+    constexpr std::size_t at_a_time = 32;  // what they read fits into the nearest cache
+    WeightsInBoxes<at_a_time> weights;
+    const auto metrics = values.metrics();
+    for (std::size_t first = 0; first < x.size(); first += at_a_time) {
+        const std::size_t count = std::min(at_a_time, x.size() - first);
+        if constexpr (requires { values.prefetch_box(leaves[0]); }) {
+            for (std::size_t i = 0; i < count; ++i) values.prefetch_box(leaves[first + i]);
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            const LeafIndex leaf = leaves[first + i];
+            for (const NodeIndex node : values.corners(leaf)) __builtin_prefetch(&metrics[node]);
+            weights.put(i, values.box(leaf), x[first + i]);
+        }
+        weights.weigh(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Corners& corners = values.corners(leaves[first + i]);
+            out[first + i] = blend_lengths(
+                8, [&](std::size_t c) { return weights(i, c); },
+                [&](std::size_t c) -> auto& { return metrics[corners[c]]; });
+        }
+    }
+}
+
+}  // namespace controlspace
