@@ -1,4 +1,4 @@
-#include "baselines/direct.h"
+#include "baselines/direct/direct.h"
 
 #include <tbb/parallel_for.h>
 

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "baselines/fixtures.h"
-#include "baselines/uniform_grid.h"
+#include "baselines/uniform/uniform_grid.h"
 #include "controlspace/error.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/metric/intersection.h"

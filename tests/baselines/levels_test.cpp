@@ -5,9 +5,9 @@
 #include <map>
 
 #include "baselines/fixtures.h"
-#include "baselines/openvdb_levels.h"
-#include "baselines/openvdb_value.h"
-#include "baselines/vdb_prune.h"
+#include "baselines/openvdb/openvdb_levels.h"
+#include "baselines/openvdb/openvdb_value.h"
+#include "baselines/openvdb/vdb_prune.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"

@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 
 #include "baselines/fixtures.h"
-#include "baselines/openvdb_grid.h"
-#include "baselines/openvdb_value.h"
-#include "baselines/openvdb_vec3s.h"
-#include "baselines/uniform_grid.h"
+#include "baselines/openvdb/openvdb_grid.h"
+#include "baselines/openvdb/openvdb_value.h"
+#include "baselines/openvdb/openvdb_vec3s.h"
+#include "baselines/uniform/uniform_grid.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
 #include "counting_allocator.h"

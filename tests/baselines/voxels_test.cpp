@@ -1,4 +1,4 @@
-#include "baselines/voxels.h"
+#include "baselines/lattice/voxels.h"
 
 #include <catch2/catch.hpp>
 #include <limits>

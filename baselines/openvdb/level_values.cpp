@@ -1,4 +1,4 @@
-#include "baselines/level_values.h"
+#include "baselines/openvdb/level_values.h"
 
 #include <optional>
 

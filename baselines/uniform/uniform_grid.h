@@ -1,8 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
-#include "baselines/voxels.h"
+#include "baselines/lattice/voxels.h"
 #include "controlspace/space/catalogue.h"
 #include "controlspace/space/control_space.h"
 
@@ -12,5 +13,8 @@ namespace controlspace {
 /// writes who wants no tree. Voxels as `choose_voxels` has them; throws InputError as it does.
 std::unique_ptr<ControlSpace> make_uniform_grid(const SpaceOptions& options,
                                                 Interpolation interpolation);
+
+/// It with either interpolation.
+std::vector<CatalogueEntry> uniform_rows();
 
 }  // namespace controlspace

@@ -1,4 +1,4 @@
-#include "baselines/voxels.h"
+#include "baselines/lattice/voxels.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "baselines/direct.h"
+#include "baselines/direct/direct.h"
 
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
@@ -192,6 +192,14 @@ private:
 
 std::unique_ptr<ControlSpace> make_direct(const SpaceOptions& options) {
     return std::make_unique<Direct>(options);
+}
+
+std::vector<CatalogueEntry> direct_rows() {
+    return {{.id = "direct",
+             .description = "no structure: the sources, searched; exact everywhere",
+             .exact_at_nodes = false,
+             .construct = make_direct,
+             .graded_from_start = true}};
 }
 
 }  // namespace controlspace

@@ -1,11 +1,11 @@
-#include "baselines/openvdb_vec3s.h"
+#include "baselines/openvdb/openvdb_vec3s.h"
 
 #include <openvdb/Types.h>
 #include <openvdb/tree/Tree.h>
 #include <openvdb/tree/ValueAccessor.h>
 
-#include "baselines/dense_tree.h"
-#include "baselines/lattice_space.h"
+#include "baselines/openvdb/dense_tree.h"
+#include "baselines/lattice/lattice_space.h"
 #include "controlspace/error.h"
 
 namespace controlspace {

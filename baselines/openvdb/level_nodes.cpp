@@ -1,4 +1,4 @@
-#include "baselines/level_nodes.h"
+#include "baselines/openvdb/level_nodes.h"
 
 #include <openvdb/tree/LeafManager.h>
 #include <tbb/blocked_range.h>

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "baselines/level_cells.h"
-#include "baselines/openvdb_value.h"
+#include "baselines/openvdb/level_cells.h"
+#include "baselines/openvdb/openvdb_value.h"
 #include "controlspace/metric/blend.h"
 #include "controlspace/metric/intersection.h"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "baselines/voxels.h"
+#include "baselines/lattice/voxels.h"
 #include "controlspace/geometry/box.h"
 #include "controlspace/gradation/node_graph.h"
 #include "controlspace/metric/blend.h"

@@ -1,8 +1,9 @@
-#include "baselines/uniform_grid.h"
+#include "baselines/uniform/uniform_grid.h"
 
 #include <vector>
 
-#include "baselines/lattice_space.h"
+#include "baselines/lattice/grid_row.h"
+#include "baselines/lattice/lattice_space.h"
 
 namespace controlspace {
 
@@ -55,6 +56,13 @@ private:
 std::unique_ptr<ControlSpace> make_uniform_grid(const SpaceOptions& options,
                                                 Interpolation interpolation) {
     return make_lattice_space<FlatArray>(options, interpolation);
+}
+
+std::vector<CatalogueEntry> uniform_rows() {
+    return {grid_row<make_uniform_grid, Interpolation::nearest>(
+                "uniform-nearest", "uniform grid, a metric per cell, constant"),
+            grid_row<make_uniform_grid, Interpolation::trilinear>(
+                "uniform-trilinear", "uniform grid, a metric per vertex, trilinear")};
 }
 
 }  // namespace controlspace

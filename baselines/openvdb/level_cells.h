@@ -5,8 +5,8 @@
 #include <array>
 #include <string>
 
-#include "baselines/stencil.h"
-#include "baselines/voxels.h"
+#include "baselines/lattice/stencil.h"
+#include "baselines/lattice/voxels.h"
 #include "controlspace/space/space_options.h"
 
 namespace controlspace {

@@ -1,4 +1,4 @@
-#include "baselines/openvdb_levels.h"
+#include "baselines/openvdb/openvdb_levels.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "baselines/dense_tree.h"
-#include "baselines/level_nodes.h"
-#include "baselines/level_state.h"
-#include "baselines/vdb_prune.h"
+#include "baselines/openvdb/dense_tree.h"
+#include "baselines/openvdb/level_nodes.h"
+#include "baselines/openvdb/level_state.h"
+#include "baselines/openvdb/vdb_prune.h"
 #include "controlspace/error.h"
 #include "gradation/regrade.h"
 #include "trees/regradation/past_state.h"

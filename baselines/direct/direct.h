@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "controlspace/space/catalogue.h"
 #include "controlspace/space/control_space.h"
@@ -20,5 +21,8 @@ namespace controlspace {
 /// reading, on all of TBB's threads. That takes time in proportion to the number of all sources.
 /// Throws InputError for an invalid domain or ratio, and where there are 2^31 sources.
 std::unique_ptr<ControlSpace> make_direct(const SpaceOptions& options);
+
+/// Its row of the catalogue.
+std::vector<CatalogueEntry> direct_rows();
 
 }  // namespace controlspace

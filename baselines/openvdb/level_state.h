@@ -3,8 +3,8 @@
 #include <span>
 #include <string>
 
-#include "baselines/level_cells.h"
-#include "baselines/level_values.h"
+#include "baselines/openvdb/level_cells.h"
+#include "baselines/openvdb/level_values.h"
 #include "space/state.h"
 
 namespace controlspace {

@@ -1,4 +1,4 @@
-#include "baselines/level_cells.h"
+#include "baselines/openvdb/level_cells.h"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "baselines/level_cells.h"
-#include "baselines/level_values.h"
+#include "baselines/openvdb/level_cells.h"
+#include "baselines/openvdb/level_values.h"
 #include "controlspace/gradation/node_graph.h"
 
 namespace controlspace {

@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "baselines/lattice_nodes.h"
-#include "baselines/stencil.h"
-#include "baselines/voxels.h"
+#include "baselines/lattice/lattice_nodes.h"
+#include "baselines/lattice/stencil.h"
+#include "baselines/lattice/voxels.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/space/catalogue.h"
@@ -35,7 +35,7 @@ namespace controlspace {
 ///                                                 never makes a metric larger; and with it
 ///   save_tiles(state), load_tiles(lattice, state) which nodes are joined
 ///
-/// For `Stencil` see baselines/stencil.h.
+/// For `Stencil` see baselines/lattice/stencil.h.
 template <class Storage, class Stencil>
 class LatticeSpace final : public ControlSpace {
 public:

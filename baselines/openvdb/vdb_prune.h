@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "baselines/openvdb_value.h"
+#include "baselines/openvdb/openvdb_value.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "baselines/voxels.h"
+#include "baselines/lattice/voxels.h"
 #include "controlspace/space/catalogue.h"
 #include "controlspace/space/control_space.h"
 

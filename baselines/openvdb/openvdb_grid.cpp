@@ -1,11 +1,11 @@
-#include "baselines/openvdb_grid.h"
+#include "baselines/openvdb/openvdb_grid.h"
 
 #include <openvdb/tree/ValueAccessor.h>
 
-#include "baselines/dense_tree.h"
-#include "baselines/lattice_space.h"
-#include "baselines/openvdb_value.h"
-#include "baselines/vdb_prune.h"
+#include "baselines/openvdb/dense_tree.h"
+#include "baselines/lattice/lattice_space.h"
+#include "baselines/openvdb/openvdb_value.h"
+#include "baselines/openvdb/vdb_prune.h"
 
 namespace controlspace {
 

@@ -1,4 +1,4 @@
-#include "baselines/level_state.h"
+#include "baselines/openvdb/level_state.h"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,36 @@
+#include "baselines/openvdb/catalogue.h"
+
+#include "baselines/lattice/grid_row.h"
+#include "baselines/openvdb/openvdb_grid.h"
+#include "baselines/openvdb/openvdb_levels.h"
+#include "baselines/openvdb/openvdb_vec3s.h"
+
+namespace controlspace {
+
+std::vector<CatalogueEntry> openvdb_rows() {
+    std::vector<CatalogueEntry> rows{
+        grid_row<make_openvdb_grid, Interpolation::nearest>(
+            "openvdb-uniform-nearest", "OpenVDB 5-4-3 tree, dense, a metric per voxel, constant"),
+        grid_row<make_openvdb_grid, Interpolation::trilinear>(
+            "openvdb-uniform-trilinear",
+            "OpenVDB 5-4-3 tree, dense, a metric per voxel, trilinear"),
+        grid_row<make_openvdb_levels, Interpolation::nearest>(
+            "openvdb-levels-nearest",
+            "OpenVDB 3-3-2 trees, a stack of grids, a metric per voxel, constant"),
+        grid_row<make_openvdb_levels, Interpolation::trilinear>(
+            "openvdb-levels-trilinear",
+            "OpenVDB 3-3-2 trees, a stack of grids, a metric per voxel, trilinear")};
+    rows[0].former_id = "openvdb-nearest";
+    rows[1].former_id = "openvdb-trilinear";
+    rows[2].has_levels = rows[3].has_levels = true;
+    for (CatalogueEntry& row : rows) row.can_prune = true;
+    rows.push_back({.id = "openvdb-vec3s-trilinear",
+                    .description = "two of OpenVDB's Vec3S trees, dense, in floats, trilinear",
+                    .order = 1,
+                    .construct = make_openvdb_vec3s,
+                    .has_voxels = true,
+                    .rounding = 1e-6});
+    return rows;
+}
+
+}  // namespace controlspace
