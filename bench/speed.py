@@ -6,6 +6,11 @@ import pathlib
 import statistics
 import sys
 
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
 ORDERS = ["random", "grid", "elements", "morton", "walk"]
 WORKS = ["rho:1/tau:1", "rho:1/tau:0.2", "rho:0.2/tau:1", "rho:0.2/tau:0.2", "layered/tau:1"]
 # Of the paper's own implementation at random places, on an idle core where uniform-nearest-fine
@@ -222,7 +227,7 @@ def growth(report, output):
                      ("sources", "leaves", "s", "ns_random", "ns_elements")]
             series.setdefault((kind, structure), []).append(point)
     report.title("Cost as work grows")
-    rows, blocks, plots = [], [], [[], []]
+    rows = []
     for (kind, structure), points in series.items():
         large = [p for p in points if p[0] > 5e3]
         created = exponent([(p[0], p[2]) for p in large])
@@ -235,14 +240,6 @@ def growth(report, output):
             ratio = last[column] / first[column]
             rows[-1] += [f"{exponent([(p[0], p[column]) for p in points]):.2f}",
                          f"{ratio:.2g}", f"{logs:.2g}", verdict(ratio, logs)]
-        block = f"${kind}_{structure}"
-        blocks.append(block + " << EOD\n" +
-                      "\n".join(" ".join(map(str, p)) for p in points) + "\nEOD\n")
-        structures = sorted({s for _, s in series})
-        style = (f"linetype {structures.index(structure) + 1} "
-                 f"dashtype {1 if kind == 'finer' else 2} title '{structure}, {kind}'")
-        plots[0].append(f"{block} using 1:3 with linespoints {style}")
-        plots[1].append(f"{block} using 1:4 with linespoints {style}")
     report.table(["structure", "sources", "most leaves", "longest creation, s",
                   "exponent of creation", "target", ""] +
                  [f"{order}: {what}" for order in ("random", "elements")
@@ -250,19 +247,22 @@ def growth(report, output):
                  rows)
     report.lines += ["", "Exponents: of a power of the number of sources; of creation from 5000 "
                      "sources on. Access is to grow no faster than log n.", "", "![](growth.svg)"]
-    script = "set encoding utf8\n" + "".join(blocks)
-    for terminal, ending in (("svg size 980,520 font 'sans-serif,12' background '#ffffff'", "svg"),
-                             ("pngcairo size 1470,780 fontscale 1.5", "png")):
-        script += (f"set terminal {terminal} noenhanced\nset output 'growth.{ending}'\n"
-                   "set multiplot layout 1,2\nset logscale xy\nset grid\nset key below maxcols 3 samplen 2\n"
-                   "set format '%.0e'\nset xlabel 'sources'\nset ylabel 'creation [s]'\n"
-                   f"plot {', '.join(plots[0])}, 1e-6*x with lines dashtype 3 linecolor 0 "
-                   "title 'n'\n"
-                   "set ylabel 'access, random places [ns]'\n"
-                   f"plot {', '.join(plots[1])}, 4*log10(x) with lines dashtype 3 linecolor 0 "
-                   "title 'log n'\n"
-                   "unset multiplot\nunset output\nreset\n")
-    (output / "growth.gp").write_text(script)
+    figure, axes = plt.subplots(1, 2, figsize=(9.8, 5.2), layout="constrained")
+    structures = sorted({structure for _, structure in series})
+    for ax, column, label, least, law in (
+            (axes[0], 2, "creation [s]", lambda n: 1e-6 * n, "n"),
+            (axes[1], 3, "access, random places [ns]", lambda n: 4 * math.log10(n), "log n")):
+        for (kind, structure), points in series.items():
+            ax.plot([p[0] for p in points], [p[column] for p in points],
+                    ("o-" if kind == "finer" else "s--"), markersize=4,
+                    color=f"C{structures.index(structure)}", label=f"{structure}, {kind}")
+        sources = sorted({p[0] for points in series.values() for p in points})
+        ax.plot(sources, [least(n) for n in sources], "k:", label=law)
+        ax.set(xscale="log", yscale="log", xlabel="sources", ylabel=label)
+        ax.grid(color="#dddddd")
+        ax.legend(frameon=False, fontsize=7, ncols=2)
+    for ending in ("svg", "png"):
+        figure.savefig(output / f"growth.{ending}", dpi=150)
 
 
 def main():

@@ -16,7 +16,7 @@ namespace {
 const std::map<std::string, int> layers{
     {"geometry", 0}, {"metric", 1}, {"sources", 2}, {"gradation", 2}, {"cones", 3},   {"space", 4},
     {"fields", 4},   {"io", 5},     {"trees", 5},   {"baselines", 6}, {"measure", 6}, {"mesh", 7},
-    {"gmsh", 8},     {"study", 9},  {"c", 9},       {"report", 10},   {"cli", 11}};
+    {"gmsh", 8},     {"study", 9},  {"c", 9},       {"cli", 10}};
 
 bool is_source(const fs::path& path) {
     return path.extension() == ".h" || path.extension() == ".cpp";

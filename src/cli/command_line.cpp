@@ -111,40 +111,6 @@ Command parse_command_line(int argc, const char* const* argv) {
     compare->add_flag("--quiet", options.quiet, "No progress on standard error");
     compare->footer(statuses);
 
-    PaperOptions paper_options;
-    CLI::App* paper = app.add_subcommand(
-        "paper", "Set our values beside the paper's, cell by cell, with the reasons");
-    paper
-        ->add_option("INPUT", paper_options.inputs,
-                     "Folders of results to read, or a study file (.toml) to run; left out: the "
-                     "paper's tables at rho = 1, and the experiments")
-        ->option_text("FOLDER ... | FILE.toml");
-    paper->add_flag("--full", paper_options.full, "Without INPUT: the paper's rho = 0.2 too");
-    paper->add_flag("--experiments", paper_options.experiments,
-                    "With INPUT: run the experiments on why cells differ, at the settings of its "
-                    "cells, unless they lie in its folder");
-    paper
-        ->add_option("--output", paper_options.output,
-                     "New folder for the results; left out: results/NAME-DATE-TIME")
-        ->option_text("TEXT");
-    paper->add_flag("--quiet", paper_options.quiet, "No progress on standard error");
-    paper->footer(statuses);
-
-    ReportOptions report_options;
-    CLI::App* report = app.add_subcommand(
-        "report", "Write a page with pictures of results (drawn by gnuplot): report.html");
-    report
-        ->add_option("RESULTS", report_options.inputs,
-                     "Folders of results; those after the first are compared with it")
-        ->option_text("FOLDER ...")
-        ->required();
-    report
-        ->add_option("--output", report_options.output,
-                     "Folder for the page and its pictures; left out: the first one with results")
-        ->option_text("TEXT");
-    report->add_flag("--without-fields", report_options.without_fields,
-                     "No slices, histograms or cross-validation: no structure is made again");
-
     ExportOptions export_options;
     WordsByKey given_to_export;
     const CLI::App* export_command = add_export(app, export_options, given_to_export);
@@ -182,7 +148,6 @@ Command parse_command_line(int argc, const char* const* argv) {
         throw InputError(fmt::format("{} (see controlspace --help)", error.what()));
     }
     if (list->parsed()) return ListCommand{};
-    if (report->parsed()) return report_options;
     const auto with_settings = [](auto& command_options, const WordsByKey& words) {
         command_options.settings = given_settings(words);
         return command_options;
@@ -191,10 +156,6 @@ Command parse_command_line(int argc, const char* const* argv) {
     if (convert_command->parsed()) return with_settings(convert_options, given_to_convert);
     if (build_command->parsed()) return with_settings(build_options, given_to_build);
     if (query_command->parsed()) return with_settings(query_options, given_to_query);
-    if (paper->parsed()) {
-        paper_options.command_line = command_line_text(argc, argv);
-        return paper_options;
-    }
     if (export_command->parsed()) {
         export_options.settings = given_settings(given_to_export);
         export_options.command_line = command_line_text(argc, argv);

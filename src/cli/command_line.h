@@ -9,9 +9,7 @@
 #include "cli/export.h"
 #include "cli/info.h"
 #include "cli/mesh.h"
-#include "cli/paper.h"
 #include "cli/query.h"
-#include "cli/report.h"
 
 namespace controlspace {
 
@@ -21,9 +19,8 @@ struct TextCommand {
 };
 struct ListCommand {};
 
-using Command =
-    std::variant<TextCommand, ListCommand, CompareOptions, ExportOptions, MeshOptions, PaperOptions,
-                 ReportOptions, InfoOptions, ConvertOptions, BuildOptions, QueryOptions>;
+using Command = std::variant<TextCommand, ListCommand, CompareOptions, ExportOptions, MeshOptions,
+                             InfoOptions, ConvertOptions, BuildOptions, QueryOptions>;
 
 /// Throws InputError for what is no valid command line.
 Command parse_command_line(int argc, const char* const* argv);

@@ -58,7 +58,7 @@ bool compare(const CompareOptions& options) {
     Interruption interruption;
     const FinishedStudy finished = run_study(
         study_of(options), {options.command_line, options.quiet, options.resume}, interruption);
-    print(render_tables(finished.study, finished.rows, TableStyle::terminal));
+    print(render_tables(finished.rows, TableStyle::terminal));
     print(fmt::format("\nResults: {}\n", finished.folder.string()));
     return std::all_of(finished.rows.begin(), finished.rows.end(),
                        [](const Row& row) { return row.error.empty(); });

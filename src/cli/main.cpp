@@ -39,10 +39,6 @@ int main(int argc, char** argv) {
             print(text->text);
         } else if (std::holds_alternative<ListCommand>(command)) {
             print(list_text());
-        } else if (const auto* paper_options = std::get_if<PaperOptions>(&command)) {
-            return paper(*paper_options) ? 0 : 3;
-        } else if (const auto* report_options = std::get_if<ReportOptions>(&command)) {
-            report(*report_options);
         } else if (const auto* info_options = std::get_if<InfoOptions>(&command)) {
             info(*info_options);
         } else if (const auto* convert_options = std::get_if<ConvertOptions>(&command)) {

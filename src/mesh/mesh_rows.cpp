@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "study/names.h"
-#include "study/paper.h"
 #include "study/rank_correlation.h"
 
 namespace controlspace {
@@ -158,47 +157,6 @@ TextTable histogram_table(const Group& group) {
     return table;
 }
 
-/// Ours beside the paper's, structures down and settings across; nothing if there is none of its.
-std::optional<TextTable> paper_table(std::span<const MeshRow> rows) {
-    TextTable table{"Table 5: L_R, ours / paper",
-                    "The paper's meshes are of its own mesher, with up to 350,000 tetrahedra.",
-                    {{"structure", Align::left}, {"split", Align::left}, {"run", Align::left}},
-                    {}};
-    using Place = std::pair<std::size_t, std::size_t>;
-    std::map<Place, std::string> cells;
-    std::vector<std::vector<std::string>> heads;
-    std::vector<std::string> columns;
-    const auto position = [](auto& list, const auto& value) {
-        const auto found = std::find(list.begin(), list.end(), value);
-        const auto index = static_cast<std::size_t>(found - list.begin());
-        if (found == list.end()) list.push_back(value);
-        return index;
-    };
-    for (const MeshRow& row : rows) {
-        const PaperRow* paper = paper_row(row.setting);
-        if (!has_delta_r(row) || paper == nullptr) continue;
-        const Case& c = row.setting;
-        const std::vector<std::string> head{
-            c.structure, std::string(c.split ? name_of(*c.split) : ""),
-            fmt::format("{}, {}, {}", name_of(row.mesher), name_of(c.law), name_of(c.schedule))};
-        const auto i = position(heads, head);
-        const auto j = position(columns, fmt::format("ρ {} τ {}", c.sources.rho, c.tau));
-        const std::string ours =
-            row.error.empty() ? fmt::format("{:.4f}", row.conformity.l_r) : std::string("failed");
-        cells[{i, j}] = fmt::format("{} / {:.2f}", ours, paper->l_r);
-    }
-    if (cells.empty()) return std::nullopt;
-    for (const std::string& column : columns) table.columns.push_back({column});
-    for (std::size_t i = 0; i < heads.size(); ++i) {
-        auto& line = table.rows.emplace_back(heads[i]);
-        for (std::size_t j = 0; j < columns.size(); ++j) {
-            const auto cell = cells.find({i, j});
-            line.push_back(cell == cells.end() ? std::string(absent) : cell->second);
-        }
-    }
-    return table;
-}
-
 nlohmann::ordered_json to_json(const MeshRow& row) {
     nlohmann::ordered_json json;
     const Case& c = row.setting;
@@ -244,7 +202,6 @@ std::string mesh_setting(const MeshRow& row) {
 
 std::string mesh_tables(std::span<const MeshRow> rows, TableStyle style) {
     std::vector<TextTable> tables;
-    if (auto paper = paper_table(rows)) tables.push_back(std::move(*paper));
     for (const Group& group : groups_of(rows)) {
         tables.push_back(measure_table(group, rows));
         tables.push_back(histogram_table(group));

@@ -31,8 +31,7 @@ struct MeshRow {
     double delta_r_mean = 0;
 };
 
-/// All tables: the measures and the histogram for each setting, and the paper's Table 5 for what it
-/// has; with how L_R goes with δ_R.
+/// All tables: the measures and the histogram for each setting, with how L_R goes with δ_R.
 std::string mesh_tables(std::span<const MeshRow> rows, TableStyle style);
 
 /// meshes.json: provenance, settings of the meshing, and rows.

@@ -6,12 +6,6 @@
 
 namespace controlspace {
 
-bool is_as_published(const Case& c) {
-    return c.law == GradationLaw::mean_length && c.schedule == GradationSchedule::passes &&
-           c.reference == ReferenceKind::published_sphere &&
-           c.neighbourhood == Neighbourhood::faces && c.node_values == NodeValues::graded;
-}
-
 std::string sources_name(const SourcesChoice& s) {
     switch (s.kind) {
         case SourcesKind::sphere:

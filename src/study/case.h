@@ -91,10 +91,6 @@ inline bool has_field(const SourcesChoice& s) { return s.field.kind != FieldKind
 /// As in options and study files: "sphere", "none", "folder/file.csv".
 std::string sources_name(const SourcesChoice& s);
 
-/// Whether the case was run as the paper's tables were: mean-length law, passes, and the published
-/// reference.
-bool is_as_published(const Case& c);
-
 /// The structure's id and what is its own among the settings, where that is not the default:
 /// "K_oV", "K_oV, all neighbours", "openvdb-levels-nearest, c 0.5".
 std::string variant_label(const Case& c);

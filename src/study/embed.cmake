@@ -1,19 +1,8 @@
 # Sources that are written by the build: data files as text, and which commit is built.
 # Sets CONTROLSPACE_EMBEDDED to their names.
-set(embedded_data
-    ${PROJECT_SOURCE_DIR}/data/paper/sphere_tables.csv
-    ${PROJECT_SOURCE_DIR}/data/studies/paper-sphere-quick.toml
-    ${PROJECT_SOURCE_DIR}/data/studies/paper.toml
-    ${PROJECT_SOURCE_DIR}/data/studies/paper-experiments.toml
-    ${PROJECT_SOURCE_DIR}/data/studies/paper-tie-order-x.toml
-    ${PROJECT_SOURCE_DIR}/data/studies/paper-tie-order-zx.toml)
+set(embedded_data ${PROJECT_SOURCE_DIR}/data/studies/paper-sphere-quick.toml)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${embedded_data})
-file(READ ${PROJECT_SOURCE_DIR}/data/paper/sphere_tables.csv PAPER_TABLES)
 file(READ ${PROJECT_SOURCE_DIR}/data/studies/paper-sphere-quick.toml QUICK_STUDY)
-file(READ ${PROJECT_SOURCE_DIR}/data/studies/paper.toml PAPER_STUDY)
-file(READ ${PROJECT_SOURCE_DIR}/data/studies/paper-experiments.toml EXPERIMENTS_STUDY)
-file(READ ${PROJECT_SOURCE_DIR}/data/studies/paper-tie-order-x.toml TIE_ORDER_X_STUDY)
-file(READ ${PROJECT_SOURCE_DIR}/data/studies/paper-tie-order-zx.toml TIE_ORDER_ZX_STUDY)
 configure_file(study/embedded.cpp.in ${CMAKE_CURRENT_BINARY_DIR}/embedded.cpp @ONLY)
 
 string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)

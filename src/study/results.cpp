@@ -8,7 +8,6 @@
 
 #include "controlspace/error.h"
 #include "io/text/output_file.h"
-#include "study/paper_page.h"
 #include "study/pareto.h"
 #include "study/row_json.h"
 #include "study/settings.h"
@@ -121,23 +120,12 @@ std::string results_summary(const Provenance& p, const Study& study, std::span<c
         study.name, version_text(p), p.compiler, p.cpu, p.cores, p.threads, p.date,
         sources_name(study.sources), study.seed, p.command_line);
     if (!complete) text += "Not complete: cases are missing.\n\n";
-    return text + render_tables(study, rows, TableStyle::markdown);
+    return text + render_tables(rows, TableStyle::markdown);
 }
 
 std::string origin_text(const Provenance& p, bool complete) {
     return fmt::format("controlspace {}, {}, {}{}: `{}`", version_text(p), p.cpu, p.date,
                        complete ? "" : ", not complete", p.command_line);
-}
-
-std::string results_paper_page(const Provenance& p, const Study& study, std::span<const Row> rows) {
-    PaperEvidence evidence;
-    evidence.add(study, rows);
-    if (evidence.cells().empty()) return "";
-    return paper_page(evidence, std::vector{origin_text(p, true)});
-}
-
-void write_paper_page(const std::filesystem::path& folder, const std::string& page) {
-    replace_file(folder / "paper.md", page);
 }
 
 void make_results_folder(const std::filesystem::path& folder, std::string_view file) {
@@ -175,8 +163,6 @@ void ResultsFolder::write(const Provenance& provenance, const Study& study,
     replace_file(folder_ / "results.csv", results_csv(rows));
     replace_file(folder_ / "summary.md", results_summary(provenance, study, rows, complete));
     replace_file(folder_ / "pareto.json", pareto_json(rows));
-    const std::string page = complete ? results_paper_page(provenance, study, rows) : "";
-    if (!page.empty()) write_paper_page(folder_, page);
 }
 
 std::filesystem::path results_path(const Study& study, const Provenance& provenance) {

@@ -29,13 +29,6 @@ std::string results_summary(const Provenance& provenance, const Study& study,
 /// One line: which program, machine and command line made results, and when.
 std::string origin_text(const Provenance& provenance, bool complete);
 
-/// paper.md (see paper_page), from rows that were run as the paper's tables; empty without any.
-std::string results_paper_page(const Provenance& provenance, const Study& study,
-                               std::span<const Row> rows);
-
-/// Writes paper.md into `folder`, at once; throws InputError, naming it, if that fails.
-void write_paper_page(const std::filesystem::path& folder, const std::string& page);
-
 /// Makes a folder for results with its parents. Throws InputError if that fails, or if `file`,
 /// which marks results, lies there already.
 void make_results_folder(const std::filesystem::path& folder, std::string_view file);
@@ -56,8 +49,8 @@ public:
 
     const std::filesystem::path& path() const { return folder_; }
 
-    /// Writes results.json, results.csv, summary.md, pareto.json (see pareto.h) and, once complete,
-    /// a paper.md that is not empty. Throws InputError, naming the file, if it cannot be written.
+    /// Writes results.json, results.csv, summary.md and pareto.json (see pareto.h). Throws
+    /// InputError, naming the file, if one cannot be written.
     void write(const Provenance& provenance, const Study& study, std::span<const Row> rows,
                bool complete) const;
 

@@ -23,12 +23,4 @@ Study parse_study(std::string_view text, const std::filesystem::path& place);
 /// data/studies/paper-sphere-quick.toml.
 std::string_view quick_study_text();
 
-/// The studies of `controlspace paper`: the paper's tables (data/studies/paper.toml), the
-/// experiments on why cells of them differ (paper-experiments.toml), and those in two other boxes,
-/// which give other orders among edges that are equally long (paper-tie-order-x.toml, -zx.toml).
-std::string_view paper_study_text();
-std::string_view experiments_study_text();
-std::string_view tie_order_x_study_text();
-std::string_view tie_order_zx_study_text();
-
 }  // namespace controlspace

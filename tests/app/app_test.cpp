@@ -66,17 +66,6 @@ TEST_CASE("options override the study file, and quiet is quiet") {
     CHECK_THAT(json["command_line"].get<std::string>(), Contains("--tau 1,0.5,0.25"));
 }
 
-TEST_CASE("the paper's values are shown beside rows that were run as published") {
-    const Sandbox box("published");
-    const Outcome outcome = box.run(
-        "compare --as-published --structures K_L --splits s_M --fine-probe-grid 5 "
-        "--access-points 100 --output out");
-    INFO(outcome.err);
-    REQUIRE(outcome.status == 0);
-    CHECK_THAT(outcome.out, Contains("Table 4") && Contains(" / 6.48"));
-    CHECK_THAT(file_text(box / "out" / "summary.md"), Contains("## Table 4"));
-}
-
 TEST_CASE("a field with irregular sources on top is followed by grids") {
     const Sandbox box("mixture");
     const Outcome outcome = box.run(
@@ -145,7 +134,7 @@ TEST_CASE("bad input ends with one line and status 2, and writes nothing") {
         {"compare bad.toml", "bad.toml:2: unknown key 'taus'"},
         {"compare a.toml b.toml", "b.toml"},
         {"compare s.csv", "--sources s.csv"},
-        {"comapre s.csv", "unknown command 'comapre': give one of compare, paper, "},
+        {"comapre s.csv", "unknown command 'comapre': give one of compare, "},
         {"compare --sources no.csv", "no.csv"},
         {"compare --sources nan.csv", "nan.csv:3"},
         {"compare --sources .", "."},

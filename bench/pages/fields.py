@@ -1,0 +1,213 @@
+# Sampled fields of structures: slices, and δ at the probes, from fields/*.npy beside results.json.
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LogNorm
+
+from .figures import SMALLEST_ERROR, draw, drawn, height_of, legend_above, lines_axis, log_axis
+from .results import InputError
+from .table import Table
+
+VISIBLE_ANISOTROPY = 1.01  # below it, lengths in all directions are the same to the eye
+COMPONENTS = [[0, 3, 4], [3, 1, 5], [4, 5, 2]]  # xx yy zz xy xz yz as a matrix
+
+
+@dataclass
+class Sample:
+    label: str
+    row: object           # None: the exact field
+    slice: np.ndarray     # (n, n, 6), rows of x at rising y
+    probes: np.ndarray    # (m, 6)
+    outlines: np.ndarray  # (k, 4): x_low, y_low, x_high, y_high; or None
+
+
+def loaded(folder, name, *shape):
+    """An array of finite or other numbers; `shape` has None where any length does."""
+    file = folder / name
+    try:
+        array = np.load(file, allow_pickle=False)
+    except (OSError, ValueError, EOFError) as error:
+        raise InputError(f"{file}: cannot be read: run the study again") from error
+    fits = len(shape) == array.ndim and all(n in (None, m) for n, m in zip(shape, array.shape))
+    if not fits or array.dtype.kind != "f":
+        raise InputError(f"{file}: not the array that results.json says: run the study again")
+    return array
+
+
+def sampled_fields(results):
+    """(description, exact field, structures) where rows have fields and these are kept, else None."""
+    rows = [row for row in results.measured if row.measures.get("fields")]
+    if not rows or not (results.folder / "fields").is_dir():
+        return None
+    try:
+        about = rows[0]["fields"]
+
+        def sample(label, row, slice_, probes, outlines=None):
+            return Sample(label, row, loaded(results.folder, slice_, None, None, 6),
+                          loaded(results.folder, probes, None, None, None, 6).reshape(-1, 6),
+                          None if outlines is None else loaded(results.folder, outlines, None, 4))
+
+        exact = sample("exact", None, about["exact_slice"], about["exact_probes"])
+        structures = [sample(row.label(), row, row["fields"]["slice"], row["fields"]["probes"],
+                             row["fields"]["outlines"]) for row in rows]
+        if any(s.slice.shape != exact.slice.shape or s.probes.shape != exact.probes.shape
+               for s in structures):
+            raise InputError(f"{results.folder / 'fields'}: arrays of different shapes")
+        return about, exact, structures
+    except (KeyError, TypeError) as error:
+        raise InputError(f"{results.folder / 'results.json'}: fields: {error}") from error
+
+
+def mean_length(metrics):
+    return metrics[..., :3].mean(axis=-1)
+
+
+def anisotropy(metrics):
+    lengths = np.linalg.eigvalsh(np.nan_to_num(metrics[..., COMPONENTS]))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return lengths[..., 2] / lengths[..., 0]
+
+
+def nonconformity(a, b):
+    """δ: the Frobenius norm of A^-1 B + B^-1 A - 2I; infinite where there is no metric."""
+    with np.errstate(all="ignore"):
+        if not a[..., 3:].any() and not b[..., 3:].any():
+            ratio = a[..., :3] / b[..., :3]
+            delta = np.linalg.norm((ratio - 1) ** 2 / ratio, axis=-1)
+        else:
+            p, q = a[..., COMPONENTS], b[..., COMPONENTS]
+            excess = np.linalg.solve(p, q) + np.linalg.solve(q, p) - 2 * np.eye(3)
+            delta = np.linalg.norm(excess, axis=(-2, -1))
+    return np.where(np.isnan(delta), np.inf, delta)
+
+
+def percentiles(values, which=(95, 99, 100)):
+    """The least values that at least so many per cent do not exceed (nearest rank)."""
+    ordered = np.sort(values, axis=None)
+    return [float(ordered[math.ceil(len(ordered) * p / 100) - 1]) for p in which]
+
+
+def delta_figure(fields, prefix, made_by):
+    _, exact, structures = fields
+    low, high, classes = SMALLEST_ERROR, 20, 60
+    edges = np.geomspace(low, high, classes + 1)
+
+    def plot(figure):
+        ax = figure.subplots()
+        n = len(structures)
+        for i, sample in enumerate(structures):
+            delta = nonconformity(sample.probes, exact.probes)
+            shares, _ = np.histogram(np.clip(delta, low, high), edges)
+            base = n - i
+            ax.stairs(base + 0.8 * shares / shares.max(), edges, baseline=base, fill=True,
+                      color="#56B4E9")
+            p95, p99, most = (drawn(p) for p in percentiles(delta))
+            first = i == 0
+            ax.plot([p95, p95], [base, base + 0.5], "k", linewidth=2,
+                    label="95th percentile" if first else None)
+            ax.plot(p99, base + 0.25, "o", color="#D55E00", markerfacecolor="none",
+                    label="99th percentile" if first else None)
+            ax.plot(min(most, 2 * high), base + 0.25, "x", color="#D55E00",
+                    label="maximum" if first else None)
+        lines_axis(ax, [sample.label for sample in structures])
+        ax.set_ylim(0.8, n + 1)
+        log_axis(ax.xaxis, "δ to the exact field", low, high)
+        legend_above(ax)
+    return draw(f"{prefix}delta", f"Error δ over the domain: {structures[0].row.group()}",
+                f"Share of the probes in each of {classes} classes of equal width on this axis; the "
+                "largest class of every structure has the same height. Errors below "
+                f"{SMALLEST_ERROR} are drawn at the left edge.", made_by, plot,
+                height=height_of(len(structures), 40))
+
+
+def delta_table(fields):
+    _, exact, structures = fields
+    table = Table("Error δ over the domain",
+                  "At the probes of δ_R, from the sampled fields; in brackets what the rows say.",
+                  ["<structure", "95th percentile", "99th percentile", "maximum"])
+    for sample in structures:
+        values = percentiles(nonconformity(sample.probes, exact.probes))
+        stored = [sample.row[f"delta_R_{key}"] for key in ("p95", "p99", "max")]
+        table.rows.append([sample.label, *(f"{v:.4f} ({s:.4f})" for v, s in zip(values, stored))])
+    return table
+
+
+def cross_validation(fields, prefix, made_by):
+    _, exact, structures = fields
+    samples = [exact, *structures]
+    n = len(samples)
+    pairs = np.zeros((2, n, n))
+    for i in range(n):
+        for j in range(i):
+            values = percentiles(nonconformity(samples[i].probes, samples[j].probes), (95, 100))
+            pairs[:, i, j] = pairs[:, j, i] = values
+    labels = [sample.label for sample in samples]
+
+    def plot(figure):
+        for ax, title, values in zip(figure.subplots(1, 2, sharey=True),
+                                     ("95th percentile", "maximum"), pairs):
+            image = ax.imshow(np.maximum(values, SMALLEST_ERROR), cmap="inferno_r",
+                              norm=LogNorm(SMALLEST_ERROR, 10))
+            for (i, j), value in np.ndenumerate(values):
+                ax.text(j, i, f"{value:.0e}" if 0 < value < 0.01 else f"{value:.2g}", ha="center",
+                        va="center", fontsize=6, color="white" if value > 0.05 else "black")
+            ax.set_title(f"δ, {title}", fontsize=9)
+            ax.set_xticks(range(n), labels, rotation=45, ha="right")
+            ax.set_yticks(range(n), labels)
+            ax.grid(False)
+        figure.colorbar(image, ax=figure.axes, shrink=0.8)
+    side, names = min(max(40 * n, 240), 6000), 7 * max(map(len, labels))
+    return draw(f"{prefix}cross-validation",
+                f"Structures against each other: {structures[0].row.group()}",
+                "δ between two structures at the probes of δ_R: structures that share nothing but "
+                "the sources agree where both are right.", made_by, plot,
+                width=2 * side + names + 120, height=side + names + 80)
+
+
+def slice_figures(fields, prefix, made_by):
+    about, exact, structures = fields
+    x0, x1, y0, y1 = about["domain"][:4]
+    lengths, ratios = mean_length(exact.slice), anisotropy(exact.slice)
+    anisotropic = np.nanmax(ratios) > VISIBLE_ANISOTROPY
+
+    def norm_of(values):
+        known = values[np.isfinite(values) & (values > 0)]
+        return LogNorm(known.min(), max(known.max(), 1.01 * known.min()))
+
+    def panel(ax, values, title, norm, cmap, outlines=None):
+        image = ax.imshow(values, extent=(x0, x1, y0, y1), origin="lower", cmap=cmap, norm=norm,
+                          interpolation="nearest")
+        if outlines is not None:
+            corners = outlines[:, [[0, 3], [0, 1], [2, 1]]]  # left and lower sides
+            ax.add_collection(LineCollection(corners, colors="white", linewidths=0.3, alpha=0.5))
+        ax.set(title=title, xlabel="x [length]", ylabel="y [length]", xlim=(x0, x1), ylim=(y0, y1))
+        ax.title.set_fontsize(9)
+        ax.grid(False)
+        ax.figure.colorbar(image, ax=ax, shrink=0.8, format="%.3g")
+
+    figures = []
+    for sample in structures:
+        def plot(figure):
+            axes = figure.subplots(1 + anisotropic, 3, squeeze=False)
+            panel(axes[0][0], lengths, "exact: h_mean [length]", norm_of(lengths), "viridis")
+            panel(axes[0][1], mean_length(sample.slice), f"{sample.label}: h_mean [length]",
+                  norm_of(lengths), "viridis", sample.outlines)
+            delta = np.maximum(nonconformity(sample.slice, exact.slice), SMALLEST_ERROR)
+            panel(axes[0][2], delta, "error: δ", LogNorm(SMALLEST_ERROR, 10), "inferno_r")
+            if anisotropic:
+                panel(axes[1][0], ratios, "exact: anisotropy", norm_of(ratios), "viridis")
+                panel(axes[1][1], anisotropy(sample.slice), f"{sample.label}: anisotropy",
+                      norm_of(ratios), "viridis", sample.outlines)
+                axes[1][2].set_axis_off()
+        cells = "with its cells" if sample.outlines is not None else \
+            "whose cells are too many to be drawn"
+        figures.append(draw(
+            f"{prefix}slice-{len(figures) + 1:02}",
+            f"Slice at z = {about['z']:.4g}, {sample.label}: {sample.row.group()}",
+            f"Mean length{' (anisotropy below it)' if anisotropic else ''} of the exact field, of "
+            f"{sample.label}, {cells}, and the error δ between the two; colours span the range of "
+            "the exact field." + ("" if anisotropic else " The field is isotropic."),
+            made_by, plot, width=1200, height=820 if anisotropic else 430, kind="png"))
+    return figures

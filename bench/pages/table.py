@@ -1,0 +1,35 @@
+# Tables of text, and their Markdown.
+from dataclasses import dataclass, field
+
+
+@dataclass
+class Table:
+    title: str
+    note: str
+    columns: list  # headers; those that begin with "<" are aligned left
+    rows: list = field(default_factory=list)
+
+    def heads(self):
+        return [(c.removeprefix("<"), c.startswith("<")) for c in self.columns]
+
+    def markdown(self):
+        left = [is_left for _, is_left in self.heads()]
+        lines = [[cell(text) for text, _ in self.heads()]]
+        lines += [[cell(text) for text in row] for row in self.rows]
+        widths = [max(3, *(len(line[i]) for line in lines)) for i in range(len(left))]
+        rule = ["-" * w if is_left else "-" * (w - 1) + ":" for w, is_left in zip(widths, left)]
+        lines.insert(1, rule)
+        text = f"## {self.title}\n\n" + (f"{self.note}\n\n" if self.note else "")
+        for line in lines:
+            padded = (t.ljust(w) if is_left else t.rjust(w)
+                      for t, w, is_left in zip(line, widths, left))
+            text += "| " + " | ".join(padded) + " |\n"
+        return text
+
+
+def cell(text):
+    return str(text).replace("|", "\\|").replace("\n", " ").replace("\r", " ")
+
+
+def fixed(x, digits=2):
+    return f"{x:.{digits}f}"

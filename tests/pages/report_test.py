@@ -1,0 +1,358 @@
+# report.html: the numbers of its figures and tables are those of rows; it is well-formed, needs no
+# other file, and is written whole or not at all.
+import os
+import shutil
+import tempfile
+import unittest
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+from samples import ROOT, failed_row, json_row, results_of, run, with_fields, write_results
+
+from pages import compare_runs, fields, figures, report
+from pages.results import InputError, read_results
+from pages.table import Table
+
+HOSTILE = "</td><script>alert(1)</script> & \"quoted\" ]]> \x01"
+CONE = {"law": "cone", "schedule": "queue", "reference": "exact"}
+
+
+def three_rows():
+    """Three structures, of which the second is beaten by the first."""
+    return [json_row("K_oL", **CONE),
+            json_row("K_oV", bytes_total=2_460_000, t_access_ns_random=200.5,
+                     t_access_ns_random_samples=[100.25, 300, 200.5], **CONE),
+            json_row("direct", bytes_total=3_690_000, delta_R_fine_max=0, **CONE)]
+
+
+def parsed(page):
+    """The page as XML; raises where it is not well-formed."""
+    return ElementTree.fromstring(page.replace("<!DOCTYPE html>\n", ""))
+
+
+class WithFolder(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+
+
+class Results(WithFolder):
+    def test_what_is_missing_or_damaged_is_named(self):
+        folder = write_results(self.folder, [json_row("K_oL")])
+        whole = (folder / "results.json").read_text()
+        self.assertEqual(len(read_results(folder).rows), 1)
+        for text, message in (
+                ("", "results.json: "), (whole[:-9], "results.json: "), ("[]", "not written by"),
+                (whole.replace('"schema_version": 2', '"schema_version": 9'), "version 9"),
+                (whole.replace('"depth": 9', '"depth": "deep"'), "row 1: could not convert"),
+                (whole.replace('"cells": 103, ', ""), "row 1: 'cells' is missing"),
+                (whole.replace("[50.0, 51.0, 52.0]", "[]"), "row 1: t_access_ns_random_samples"),
+                (whole.replace('"cpu": "a processor", ', ""), "'cpu' is missing")):
+            (folder / "results.json").write_text(text)
+            with self.assertRaisesRegex(InputError, message):
+                read_results(folder)
+        with self.assertRaisesRegex(InputError, "none/results.json: no such file"):
+            read_results(folder / "none")
+
+    def test_every_damaged_copy_is_read_or_refused(self):
+        folder = write_results(self.folder, [json_row("K_oL")])
+        whole = (folder / "results.json").read_bytes()
+        for place in range(0, len(whole), 37):
+            for damaged in (whole[:place], whole[:place] + b"\xff" + whole[place + 1:],
+                            whole[:place] + b"7" + whole[place + 1:]):
+                (folder / "results.json").write_bytes(damaged)
+                try:
+                    read_results(folder)
+                except InputError as error:
+                    self.assertIn("results.json", str(error))
+
+    def test_schema_1_is_read_too(self):
+        row = json_row("K_oL", depth=10)
+        old = {{"tree_nodes": "elements", "cells": "leaves"}.get(k, k): v for k, v in row.items()
+               if k not in ("fields", "frozen")}
+        write_results(self.folder, [old])
+        text = (self.folder / "results.json").read_text()
+        (self.folder / "results.json").write_text(text.replace('version": 2', 'version": 1'))
+        read, = read_results(self.folder).rows
+        self.assertEqual((read["tree_nodes"], read["cells"], read["depth"]), (205, 103, 9))
+        self.assertEqual(read.key, results_of([row]).rows[0].key)
+        # As kept in the repository.
+        for kept in ("fields", "adaptation"):
+            self.assertTrue(read_results(ROOT / "bench/results" / kept).measured)
+
+    def test_labels_name_what_differs(self):
+        def label(**changes):
+            return results_of([json_row("K_L", "s_L", **changes)]).rows[0].label()
+        self.assertEqual(label(), "K_L s_L")
+        self.assertEqual(label(neighbourhood="all"), "K_L s_L, all neighbours")
+        self.assertEqual(label(target_delta=0.1), "K_L, δ <= 0.1")
+        self.assertEqual(label(a_new_setting=7), "K_L s_L, a_new_setting 7")
+
+
+class Figures(unittest.TestCase):
+    def test_a_front_holds_the_rows_that_no_other_beats(self):
+        rows = results_of(three_rows()).rows
+        front = figures.front_of(rows, lambda r: r["bytes_total"], "delta_R_fine_max")
+        self.assertEqual([r.setting["structure"] for r in front], ["K_oL", "direct"])
+        found = figures.pareto_figures(rows, figures.Styles(rows), "p-", "a command")
+        self.assertEqual([f.name for f in found], [f"p-pareto-0{i}" for i in (1, 2, 3, 4)])
+        self.assertIn("K_oV", found[0].bytes.decode())
+        table, = report.front_tables(rows)
+        self.assertEqual([(r[0], r[4]) for r in table.rows],
+                         [("direct", "memory, access"), ("K_oL", "memory")])
+
+    def test_access_times_of_a_group_are_one_figure(self):
+        found = figures.access_figures(results_of(three_rows()).rows, "", "a command")
+        self.assertEqual(len(found), 1)
+        self.assertEqual(figures.grouped([1, 2, 3], lambda x: x % 2), {1: [1, 3], 0: [2]})
+
+    def test_creation_times_are_drawn_where_the_number_of_sources_varies(self):
+        rows = results_of(three_rows()).rows
+        styles = figures.Styles(rows)
+        self.assertFalse(figures.creation_figures(rows, styles, "", ""))
+        rows += results_of([json_row("K_oL", rho=0.5, sources=100000, **CONE)]).rows
+        self.assertEqual(len(figures.creation_figures(rows, styles, "", "")), 1)
+
+    def test_no_rows_give_no_figures(self):
+        styles = figures.Styles([])
+        self.assertFalse(figures.pareto_figures([], styles, "", ""))
+        self.assertFalse(figures.access_figures([], "", ""))
+        self.assertFalse(figures.creation_figures([], styles, "", ""))
+
+    def test_70_structures_look_different(self):
+        rows = results_of([json_row(f"K_{i}") for i in range(70)]).rows
+        styles = figures.Styles(rows)
+        looks = {tuple(styles(f"K_{i}").values()) for i in range(70)}
+        self.assertEqual(len(looks), 70)
+
+
+class Fields(WithFolder):
+    def sampled(self, **options):
+        rows = with_fields(self.folder, [json_row("K_oL"), json_row("K_V", "s_L")], **options)
+        write_results(self.folder, rows)
+        return fields.sampled_fields(read_results(self.folder))
+
+    def test_nonconformity_of_check_values(self):
+        def metric(xx, yy, zz, *off):
+            return np.array([xx, yy, zz, *(off or (0, 0, 0))])
+        for a, b, delta in ((metric(*[0.1] * 3), metric(1, 1, 1), 14.0296115),
+                            (metric(*[0.2] * 3), metric(*[0.3] * 3), 0.288675135),
+                            (metric(0.1, 0.4, 0.2), metric(0.5, 0.1, 0.3), 3.91538986)):
+            self.assertAlmostEqual(float(fields.nonconformity(a, b)), delta, places=6)
+            # The same by the general formula.
+            turned = [self.turned(m) for m in (a, b)]
+            self.assertAlmostEqual(float(fields.nonconformity(*turned)), delta, places=6)
+        self.assertEqual(float(fields.nonconformity(metric(np.nan, 1, 1), metric(1, 1, 1))), np.inf)
+
+    @staticmethod
+    def turned(metric):
+        """In axes turned by 30 degrees about z and then about x."""
+        c, s = 3 ** 0.5 / 2, 0.5
+        turn = np.array([[1, 0, 0], [0, c, -s], [0, s, c]]) @ [[c, -s, 0], [s, c, 0], [0, 0, 1]]
+        m = turn @ metric[fields.COMPONENTS] @ turn.T
+        return m[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+
+    def test_percentiles_are_by_nearest_rank(self):
+        self.assertEqual(fields.percentiles(np.arange(1, 201.0)), [190, 198, 200])
+        self.assertEqual(fields.percentiles(np.array([3.0])), [3, 3, 3])
+
+    def test_tables_and_figures_of_sampled_fields(self):
+        sampled = self.sampled()
+        # 1.1 times the exact field: δ = √3 (1.1 + 1/1.1 - 2) everywhere.
+        delta = 3 ** 0.5 * (1.1 + 1 / 1.1 - 2)
+        table = fields.delta_table(sampled)
+        self.assertEqual(table.rows[0], ["K_oL", "0.0000 (0.3000)", "0.0000 (0.4000)",
+                                         "0.0000 (1.7800)"])
+        self.assertEqual(table.rows[1][3], f"{delta:.4f} (1.7800)")
+        pairs = fields.cross_validation(sampled, "", "").bytes.decode()
+        self.assertIn(f"{delta:.2g}", pairs)
+        self.assertIn("svg", fields.delta_figure(sampled, "", "").bytes.decode())
+        slices = fields.slice_figures(sampled, "", "")
+        self.assertEqual([f.kind for f in slices], ["png", "png"])
+        self.assertTrue(slices[0].bytes.startswith(b"\x89PNG"))
+        self.assertIn("with its cells", slices[0].caption)
+        self.assertIn("too many", slices[1].caption)
+
+    def test_anisotropy_is_shown_where_there_is_any(self):
+        self.assertNotIn("anisotropy", fields.slice_figures(self.sampled(), "", "")[0].caption)
+        self.assertIn("anisotropy",
+                      fields.slice_figures(self.sampled(anisotropy=2), "", "")[0].caption)
+
+    def test_damaged_fields_are_named(self):
+        self.sampled()
+        results = read_results(self.folder)
+        slice_ = self.folder / "fields" / "001-slice.npy"
+        whole = slice_.read_bytes()
+        for content in (b"", whole[:50], whole[:-8], b"no array at all"):
+            slice_.write_bytes(content)
+            with self.assertRaisesRegex(InputError, "001-slice.npy"):
+                fields.sampled_fields(results)
+        np.save(slice_, np.zeros((3, 3, 6)))
+        with self.assertRaisesRegex(InputError, "different shapes"):
+            fields.sampled_fields(results)
+        np.save(slice_, np.zeros((3, 3)))
+        with self.assertRaisesRegex(InputError, "001-slice.npy"):
+            fields.sampled_fields(results)
+
+
+class TwoRuns(unittest.TestCase):
+    def test_rows_are_paired_by_case_and_number_of_sources_each_once(self):
+        before = [json_row("K_oL"), json_row("K_oV"), json_row("K_oL", tau=0.5)]
+        after = [before[2], before[0], before[0], {**before[1], "sources": 5}]
+        a, b = results_of(before), results_of(after)
+        self.assertEqual(compare_runs.row_pairs(a, b),
+                         [(a.rows[0], b.rows[1]), (a.rows[2], b.rows[0])])
+        self.assertFalse(compare_runs.row_pairs(a, results_of([])))
+        self.assertFalse(compare_runs.row_pairs(a, results_of(before, h=0.02)))
+        failed = results_of([failed_row("x", structure="K_oL"), before[0]])
+        self.assertEqual(compare_runs.row_pairs(a, failed), [(a.rows[0], failed.rows[1])])
+
+    def test_a_run_compared_with_itself_has_not_changed(self):
+        rows = results_of(three_rows())
+        pairs = compare_runs.row_pairs(rows, rows)
+        for row in compare_runs.counts_table(pairs).rows:
+            self.assertEqual((row[1][0], row[2], row[3][0], row[4]), ("0", "3", "0", "0"))
+
+    def test_a_ratios_band_comes_from_opposite_quartiles(self):
+        before, after = [100, 110, 120, 130, 140], [50, 55, 60, 65, 70]
+        ratio = compare_runs.sample_ratio(before, after)
+        self.assertAlmostEqual(ratio.value, 0.5)
+        self.assertAlmostEqual(ratio.low, 55 / 130)
+        self.assertAlmostEqual(ratio.high, 65 / 110)
+        back = compare_runs.sample_ratio(after, before)
+        self.assertAlmostEqual(back.low, 1 / ratio.high)
+        same = compare_runs.sample_ratio(before, [105, 115, 125])
+        self.assertTrue(same.low <= 1 <= same.high)
+
+    def test_studies_that_measure_otherwise_are_told_apart(self):
+        before = results_of([])
+        self.assertEqual(compare_runs.differing_settings(before, results_of(
+            [], name="another", output="elsewhere")), "")
+        after = results_of([], fine_probe_grid=20, domain=[0, 1, 0, 1, 0, 1])
+        self.assertEqual(compare_runs.differing_settings(before, after),
+                         "domain not set, then 0, 1, 0, 1, 0, 1; fine_probe_grid 101, then 20")
+
+    def test_what_changed_is_counted_and_stands_in_the_tables(self):
+        after = [json_row("K_oL", t_access_ns_random_samples=[26, 25, 25.5], bytes_total=2_460_000,
+                          delta_R_fine_mean=0.18), json_row("K_oV", delta_R_fine_max=0),
+                 json_row("K_oL", tau=0.5)]
+        before = [json_row("K_oL"), json_row("K_oV"), json_row("K_oL", tau=0.5)]
+        pairs = compare_runs.row_pairs(results_of(before), results_of(after))
+        counts = compare_runs.counts_table(pairs).rows
+        self.assertEqual(counts[0], ["access, random", "1 faster", "2", "0 slower", "0"])
+        self.assertEqual(counts[3][3], "1 larger")
+        self.assertEqual(counts[4][4], "1")
+        self.assertEqual(counts[5][3], "1 less accurate")
+        tables = compare_runs.change_tables(pairs)
+        self.assertEqual(len(tables), 2)
+        self.assertRegex(tables[0].rows[0][1], r"^0\.500 .* \*$")
+        self.assertEqual(tables[0].rows[0][4], "2.000")
+        self.assertEqual(tables[0].rows[1][5], "–")
+        self.assertEqual(len(compare_runs.change_figures(pairs, "2-", "a; b")), 2)
+
+
+class Page(unittest.TestCase):
+    def test_texts_of_results_stand_in_the_page_as_texts(self):
+        figure = figures.Figure(HOSTILE, HOSTILE, HOSTILE, HOSTILE, 10, 10, "svg", b"foobar")
+        table = Table(HOSTILE, HOSTILE, [f"<{HOSTILE}", "n"], [[HOSTILE, "1"]])
+        page = report.page(HOSTILE, [report.Section(HOSTILE, [
+            ("heading", HOSTILE), ("paragraph", HOSTILE), ("figures", [figure]),
+            ("table", table)])])
+        parsed(page)
+        self.assertNotIn("<script>alert", page)
+        self.assertNotIn("\x01", page)
+        self.assertIn("&lt;script&gt;alert(1)", page)
+        self.assertIn("base64,Zm9vYmFy\"", page)
+        self.assertNotIn("http", page)
+
+    def test_a_table_has_every_cell_and_heads_to_sort_by(self):
+        page = report.page("t", [report.Section("s", [
+            ("table", Table("t", "", ["<a", "b"], [["x", "1"], ["y", "2"]]))])])
+        self.assertIn('<td class="left">x</td><td>1</td>', page)
+        self.assertIn('onclick="sort_by(this)"', page)
+
+    def test_measures_of_every_row(self):
+        tables = report.measure_tables(results_of(
+            [json_row("K_oL"), json_row("K_oL", **CONE),
+             failed_row("no memory", structure="direct")]).rows)
+        self.assertEqual(len(tables), 2)
+        self.assertEqual(tables[0].rows[0], [
+            "K_oL", "", "103", "1.23", "1.750", "51.0", "11.0", "1.7800", "0.1000", "0.4000",
+            "2.7800", "7.00 %", "1.400", "1.2499", ""])
+        self.assertEqual(tables[0].rows[1][-1], "failed: no memory")
+
+
+class Command(WithFolder):
+    def test_one_page_that_needs_nothing_else(self):
+        out = self.folder / "out"
+        rows = with_fields(out, [json_row("K_L", "s_M"), json_row("K_oL")])
+        write_results(out, rows)
+        outcome = run("report", out)
+        self.assertEqual((outcome.returncode, outcome.stdout), (0, f"Report: {out}/report.html\n"),
+                         outcome.stderr)
+        self.assertEqual(outcome.stderr, "")
+        page = (out / "report.html").read_text()
+        tree = parsed(page)
+        self.assertNotIn("http", page)
+        images = [image.get("src") for image in tree.iter("img")]
+        self.assertTrue(all(image.startswith("data:image/") for image in images))
+        ids = {figure.get("id") for figure in tree.iter("figure")}
+        self.assertLessEqual({"pareto-01", "pareto-04", "paper-01", "access-01", "slice-01",
+                              "slice-02", "delta", "cross-validation"}, ids)
+        for text in ("controlspace …", "Of the conclusions that the paper", "All measures: rho 1"):
+            self.assertIn(text, page)
+        # Again, elsewhere: the same page, and its figures as files.
+        outcome = run("report", out, "--output", self.folder / "new", "--figures",
+                      self.folder / "new")
+        self.assertEqual((self.folder / "new" / "report.html").read_text(), page)
+        self.assertEqual({p.stem for p in (self.folder / "new").iterdir()}, ids | {"report"})
+
+    def test_without_sampled_fields_it_says_so(self):
+        out = write_results(self.folder / "out", [json_row("K_oL")])
+        self.assertEqual(run("report", out).returncode, 0)
+        self.assertIn("Fields are not shown", (out / "report.html").read_text())
+        self.assertEqual(run("report", out, "--without-fields").returncode, 0)
+        self.assertNotIn("Fields", (out / "report.html").read_text())
+        # Fields that are not kept beside results.json.
+        rows = with_fields(out, [json_row("K_oL")])
+        write_results(out, rows)
+        shutil.rmtree(out / "fields")
+        self.assertEqual(run("report", out).returncode, 0)
+        self.assertIn("Fields are not shown", (out / "report.html").read_text())
+
+    def test_two_runs(self):
+        for name in ("before", "after"):
+            write_results(self.folder / name, three_rows()[:2])
+        outcome = run("report", self.folder / "before", self.folder / "after", "--output",
+                      self.folder / "both")
+        self.assertEqual(outcome.returncode, 0, outcome.stderr)
+        page = (self.folder / "both" / "report.html").read_text()
+        ids = {figure.get("id") for figure in parsed(page).iter("figure")}
+        self.assertIn("2 rows of 2 have the same setting as one of 2", page)
+        self.assertIn('<td class="left">memory</td><td>0 smaller</td><td>2</td>', page)
+        self.assertLessEqual({"2-change-01", "1-access-01", "2-access-01"}, ids)
+
+    def test_what_cannot_be_written_is_refused_and_leaves_nothing_behind(self):
+        out = write_results(self.folder / "out", [json_row("K_oL")])
+        before = sorted(self.folder.rglob("*"))
+
+        def refused(message, *arguments):
+            outcome = run("report", *arguments)
+            self.assertEqual(outcome.returncode, 2, arguments)
+            self.assertRegex(outcome.stderr, message)
+            self.assertNotIn("Traceback", outcome.stderr)
+        refused("none/results.json: no such file", self.folder / "none")
+        refused("RESULTS")
+        refused("choose another folder", out, "--output", out / "results.json" / "x")
+        os.symlink("/dev/full", out / "report.html")
+        refused("report.html", out)
+        os.unlink(out / "report.html")
+        (out / "results.json").write_text("{}")
+        refused("out/results.json: not written by controlspace", out)
+        self.assertEqual(sorted(self.folder.rglob("*")), before)
+
+
+if __name__ == "__main__":
+    unittest.main()
