@@ -71,46 +71,53 @@ bool is_below(const Metric& a2, double factor, const Metric& b2) {
 
 AnisotropicCones::AnisotropicCones(std::span<const PointSource> sources, double g, double cap)
     : g_(g), cap_(cap) {
-    std::vector<Item> items(sources.size());
+    std::vector<double> lengths(sources.size());
     std::vector<double> anisotropies(sources.size());
     tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t i) {
-        const auto lengths = eigen_frame(sources[i].metric).lengths;
-        items[i] = {sources[i], lengths[0], static_cast<std::uint32_t>(i)};
-        anisotropies[i] = lengths[2] / lengths[0];
+        const auto of_source = eigen_frame(sources[i].metric).lengths;
+        lengths[i] = of_source[0];
+        anisotropies[i] = of_source[2] / of_source[0];
     });
     double anisotropy = 1;
     for (const double a : anisotropies) anisotropy = std::max(anisotropy, a);
     uncertainty_ = std::min(4096 * epsilon * anisotropy, 1.0);
-    for (const Item& item : items) least_length_ = std::min(least_length_, item.length);
+    for (const double length : lengths) least_length_ = std::min(least_length_, length);
 
-    const auto key = [](const Item& i) {
-        const auto& [q, m] = i.source;
-        return std::tie(q.x(), q.y(), q.z(), m.xx, m.yy, m.zz, m.xy, m.xz, m.yz, i.index);
-    };
-    tbb::parallel_sort(items.begin(), items.end(),
-                       [&](const Item& a, const Item& b) { return key(a) < key(b); });
-    items.erase(std::unique(items.begin(), items.end(),
-                            [](const Item& a, const Item& b) { return a.source == b.source; }),
-                items.end());
     const double weight = g_ > 1 ? 1 / (g_ - 1) : 1;
-    tree_ = TensorTree(items, weight);
-
-    std::vector<std::uint8_t> dominated(items.size());
-    tbb::parallel_for(std::size_t{0}, items.size(),
-                      [&](std::size_t i) { dominated[i] = is_dominated(items[i]) ? 1 : 0; });
-    std::vector<Item> kept;
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        if (dominated[i] == 0) kept.push_back(items[i]);
+    std::vector<ConeTreeItem> items(sources.size());
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        const Point& q = sources[i].position;
+        items[i] = {{q.x(), q.y(), q.z(), weight * lengths[i]}, static_cast<std::uint32_t>(i)};
     }
-    dropped_ = sources.size() - kept.size();
-    if (kept.size() < items.size()) tree_ = TensorTree(std::move(kept), weight);
+    const auto source_of = [&](const ConeTreeItem& item) -> const PointSource& {
+        return sources[item.index];
+    };
+    const auto key = [&](const ConeTreeItem& item) {
+        const auto& [q, m] = source_of(item);
+        return std::tie(q.x(), q.y(), q.z(), m.xx, m.yy, m.zz, m.xy, m.xz, m.yz, item.index);
+    };
+    tbb::parallel_sort(
+        items.begin(), items.end(),
+        [&](const ConeTreeItem& a, const ConeTreeItem& b) { return key(a) < key(b); });
+    const auto end = std::unique(items.begin(), items.end(),
+                                 [&](const ConeTreeItem& a, const ConeTreeItem& b) {
+                                     return source_of(a) == source_of(b);
+                                 });
+    items.erase(end, items.end());
+    const std::size_t kept = build_without_dominated(
+        items,
+        [&](std::span<ConeTreeItem> some) { tree_ = build_tensor_tree(some, sources, lengths); },
+        [&](const ConeTreeItem& item) {
+            return is_dominated(source_of(item), lengths[item.index]);
+        });
+    dropped_ = sources.size() - kept;
 }
 
-bool AnisotropicCones::is_dominated(const Item& item) const {
+bool AnisotropicCones::is_dominated(const PointSource& source, double length) const {
     const double certain = 1 - uncertainty_;
-    const double reach = std::max(0.0, cap_ / item.length - 1);
-    const Point& q = item.source.position;
-    const Metric squared = square(item.source.metric);
+    const double reach = std::max(0.0, cap_ / length - 1);
+    const Point& q = source.position;
+    const Metric squared = square(source.metric);
     const auto by = [&](const PointSource& other) {
         const double k = cone_factor(other, g_, q);
         const auto is_within = [&](double factor) {
@@ -118,37 +125,30 @@ bool AnisotropicCones::is_dominated(const Item& item) const {
             return is_below(safe * safe * square(other.metric), 1, squared);
         };
         if (!is_within(k)) return false;
-        const double r = growth(item.source.metric, other.metric);
+        const double r = growth(source.metric, other.metric);
         return is_within(std::max(k, (k + r * reach) / (1 + reach)));
     };
-    std::vector<std::uint32_t> stack{0};
-    while (!stack.empty()) {
-        const std::uint32_t n = stack.back();
-        stack.pop_back();
-        if (tree_.is_leaf(n)) {
-            const TensorTree::Leaf& leaf = tree_.leaf(n);
-            const Lanes lengths = factors(leaf, q) * leaf.length;
-            for (int lane = 0; lane < lane_count; ++lane) {
-                if (!(lengths[lane] < certain * item.length)) continue;
-                if (by({leaf.position[lane], leaf.metric[lane]})) return true;
-            }
-        } else {
-            const TensorTree::Node& node = tree_.node(n);
-            const Lanes lengths = least_factors(node, q) * node.length;
-            for (std::uint32_t c = 0; c < lane_count; ++c) {
-                if (lengths[c] < certain * item.length) stack.push_back(node.first_child + c);
-            }
+    const auto does_not_dominate = [&](std::uint32_t number) {
+        const TensorLeaf& leaf = tree_.leaf(number);
+        const Lanes lengths = factors(leaf, q) * leaf.length;
+        for (int lane = 0; lane < lane_count; ++lane) {
+            if (!(lengths[lane] < certain * length)) continue;
+            if (by({leaf.position[lane], leaf.metric[lane]})) return false;
         }
-    }
-    return false;
+        return true;
+    };
+    return !tree_.search(
+        [&] { return certain * length; },
+        [&](const TensorNode& node) -> Lanes { return least_factors(node, q) * node.length; },
+        does_not_dominate);
 }
 
-Lanes AnisotropicCones::least_factors(const TensorTree::Node& node, const Point& p) const {
+Lanes AnisotropicCones::least_factors(const TensorNode& node, const Point& p) const {
     const Lanes away = lengths_of_products(node.inverse, displacements(node.centre, p));
     return 1 + (g_ - 1) * ((1 - uncertainty_) * away - (1 + uncertainty_) * node.radius).max(0.0);
 }
 
-Lanes AnisotropicCones::factors(const TensorTree::Leaf& leaf, const Point& p) const {
+Lanes AnisotropicCones::factors(const TensorLeaf& leaf, const Point& p) const {
     return 1 + (g_ - 1) * metric_lengths(leaf.metric, displacements(leaf.position, p));
 }
 
@@ -172,17 +172,20 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double
         }
         return lanes;
     };
-    const auto open_node = [&](const TensorTree::Node& node) {
+    const auto open_node = [&](std::uint32_t n) {
+        const TensorNode& node = tree_.node(n);
+        const std::uint32_t first_child = tree_.first_child(n);
         const Lanes factor = least_factors(node, p);
         const Lanes shortest = certain * factor * node.length;
         for (unsigned lanes = may_matter(factor, node.square, shortest); lanes != 0;
              lanes &= lanes - 1) {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-            queue.push(shortest[lane], 0, node.first_child + lane);
+            queue.push(shortest[lane], 0, first_child + lane);
         }
     };
     const auto open_leaf = [&](std::uint32_t n) {
-        const TensorTree::Leaf& leaf = tree_.leaf(n);
+        const TensorLeaf& leaf = tree_.leaf(n);
+        const std::size_t first_item = std::size_t{tree_.leaf_number(n)} * lane_count;
         const Lanes factor = factors(leaf, p);
         for (unsigned lanes = may_matter(factor, square(leaf.metric), factor * leaf.length);
              lanes != 0; lanes &= lanes - 1) {
@@ -192,7 +195,7 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double
             const double exactly = is_axis_aligned(metric)
                                        ? cone_factor({leaf.position[lane], metric}, g_, p)
                                        : factor[lane];
-            queue.push(exactly * leaf.length[lane], 1 + tree_.index(n, lane),
+            queue.push(exactly * leaf.length[lane], 1 + tree_.indices()[first_item + static_cast<std::size_t>(lane)],
                        static_cast<std::uint32_t>(cones.size()));
             cones.push_back(exactly * metric);
         }
@@ -219,7 +222,7 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double
             } else if (tree_.is_leaf(next.place)) {
                 open_leaf(next.place);
             } else {
-                open_node(tree_.node(next.place));
+                open_node(next.place);
             }
         }
         std::sort(batch.begin(), batch.end());

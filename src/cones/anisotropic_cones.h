@@ -39,15 +39,13 @@ public:
     std::size_t dropped() const { return dropped_; }
 
     /// Bytes allocated: of the metrics, and of what finds them.
-    std::size_t bytes_payload() const { return tree_.bytes_payload(); }
-    std::size_t bytes_topology() const { return tree_.bytes_topology(); }
+    std::size_t bytes_payload() const { return tree_.leaves().size() * sizeof(TensorLanes); }
+    std::size_t bytes_topology() const { return tree_.bytes() - bytes_payload(); }
 
 private:
-    using Item = TensorTree::Item;
-
-    bool is_dominated(const Item& item) const;
-    Lanes least_factors(const TensorTree::Node& node, const Point& p) const;
-    Lanes factors(const TensorTree::Leaf& leaf, const Point& p) const;
+    bool is_dominated(const PointSource& source, double length) const;
+    Lanes least_factors(const TensorNode& node, const Point& p) const;
+    Lanes factors(const TensorLeaf& leaf, const Point& p) const;
 
     double g_;
     double cap_;

@@ -1,42 +1,36 @@
 #include "cones/cone_cover.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
+
+#include "controlspace/geometry/subdivision.h"
 
 namespace controlspace {
 
 // When one cone covers another in a box
 // -------------------------------------
 // Let c be the centre of the box, R half its diagonal, and f_i(p) = h_i + (g-1) |p - Q_i|. On the
-// way from c to any p of the box f_a - f_i changes at the rate (g-1) |u_a - u_i| at most, with the
-// unit vectors of p - Q_a and p - Q_i, and nearby_cones.cpp shows that this is no more than 2 (g-1)
-// and no more than 2 (g-1) |Q_a - Q_i| / (|p - Q_a| + |p - Q_i|). So
+// way from c to any p of the box, which is no longer than R, f_a - f_i changes at the rate
+// (g-1) |u_a - u_i| at most, with the unit vectors u_a of p - Q_a and u_i of p - Q_i. That is never
+// more than 2 (g-1), and never more than
+//     2 (g-1) |Q_a - Q_i| / (|p - Q_a| + |p - Q_i|),
+// where either distance is the one from c, less R, at least. (For a = |a| u and b = |b| v
+//     (|a| + |b|)^2 |u - v|^2 <= 4 |a - b|^2,
+// since the right side less the left is 2 (|a| - |b|)^2 (1 + u.v).) So
 //     f_a(p) <= f_i(p) + f_a(c) - f_i(c) + R times either,
 // which is within the fraction t of f_i(p) where all behind the first f_i is not above
-// t (h_i + (g-1) max(|c - Q_i| - R, 0)). Of many sources the same is shown at once by bounds of
+// t (h_i + (g-1) max(|c - Q_i| - R, 0)). For many sources the same is shown at once by bounds of
 // |c - Q_i|, h_i and |Q_a - Q_i|.
 //
 // In a part of the box R is less, and another source may do: what no source covers in the whole box
-// is looked at in its octants, and theirs, before more sources are chosen.
+// is tested in its octants, and theirs, before more sources are chosen.
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = 1e-9;  // and more than that
 constexpr std::size_t most_given = 512;
 
 }  // namespace
-
-void ConeCover::List::clear() {
-    cones.clear();
-    sources.clear();
-}
-
-void ConeCover::List::add(std::uint32_t source, const Point& position, double length) {
-    cones.add(position, length);
-    sources.push_back(source);
-}
 
 void ConeCover::reset(const Box& box, double slope, double cap, double tolerance) {
     box_ = box;
@@ -51,10 +45,10 @@ void ConeCover::reset(const Box& box, double slope, double cap, double tolerance
 void ConeCover::enter(const Box& box) {
     centre_ = box.centre();
     radius_ = box.half_diagonal() * (1 + rounding);
-    for (std::size_t a = 0; a < size_; ++a) look_at(anchors_[a]);
+    for (std::size_t a = 0; a < size_; ++a) measure(anchors_[a]);
 }
 
-void ConeCover::look_at(Anchor& anchor) const {
+void ConeCover::measure(Anchor& anchor) const {
     const double distance = (anchor.position - centre_).norm();
     anchor.at_centre = anchor.length + slope_ * distance;
     anchor.away = std::max(distance - radius_, 0.0);
@@ -64,7 +58,7 @@ bool ConeCover::choose(std::uint32_t source, const Point& position, double lengt
     if (size_ == room) return false;
     sources_[size_] = source;
     anchors_[size_] = {position, length, 0, 0};
-    look_at(anchors_[size_++]);
+    measure(anchors_[size_++]);
     return true;
 }
 
@@ -78,34 +72,21 @@ void ConeCover::list_uncovered(const List& from, List& to) const {
     to.clear();
     const auto& eights = from.cones.eights();
     for (std::size_t e = 0; e < eights.size(); ++e) {
-        const ConeList::Eight& eight = eights[e];
-        const auto is_covered = covered(eight.distances(centre_), eight.length,
-                                        [&](const Point& q) { return eight.distances(q); });
-        if (is_covered.all()) continue;
+        const auto is_covered = covered(eights[e]);
         for (Eigen::Index i = 0; i < lane_count; ++i) {
             if (is_covered[i]) continue;
-            to.add(from.sources[e * lane_count + static_cast<std::size_t>(i)], eight.position[i],
-                   eight.length[i]);
+            to.add(from.sources[ConeList::Place{e, i}.number()], eights[e].position[i],
+                   eights[e].length[i]);
         }
     }
 }
 
 // Near to the smallest, sources cover the most.
 bool ConeCover::choose_smallest(const List& list) {
-    double smallest = infinity;
-    std::size_t number = 0;
-    const auto& eights = list.cones.eights();
-    for (std::size_t e = 0; e < eights.size(); ++e) {
-        const ConeList::Eight& eight = eights[e];
-        Eigen::Index lane = 0;
-        const double least = (eight.length + slope_ * eight.distances(centre_)).minCoeff(&lane);
-        if (!(least < smallest)) continue;
-        smallest = least;
-        number = e * lane_count + static_cast<std::size_t>(lane);
-    }
-    const ConeList::Eight& eight = eights[number / lane_count];
-    const auto lane = static_cast<Eigen::Index>(number % lane_count);
-    return choose(list.sources[number], eight.position[lane], eight.length[lane]);
+    const ConeList::Place place = list.cones.smallest_at(centre_, slope_);
+    const ConeList::Eight& eight = list.cones.eights()[place.eight];
+    return choose(list.sources[place.number()], eight.position[place.lane],
+                  eight.length[place.lane]);
 }
 
 bool ConeCover::complete() { return complete(box_, 0); }
@@ -124,13 +105,8 @@ bool ConeCover::complete(const Box& box, std::size_t depth) {
         return true;
     }
     if (left.sources.empty()) return true;
-    const Point centre = box.centre();
     for (int part = 0; part < 8; ++part) {
-        Box octant = box;
-        for (Axis a = 0; a < 3; ++a) {
-            ((part >> a & 1) != 0 ? octant.low : octant.high)[a] = centre[a];
-        }
-        if (!complete(octant, depth + 1)) return false;
+        if (!complete(octants(box).child(part), depth + 1)) return false;
     }
     return true;
 }

@@ -13,8 +13,10 @@
 namespace controlspace {
 
 /// A choice of sources whose cones h_i + (g-1) |p - Q_i| alone make a length that is nowhere in a
-/// box longer than the smallest of all sources by more than a fraction, the tolerance. First given
-/// the sources that are not covered by those chosen already, then asked to choose.
+/// box longer than the smallest of all sources by more than a fraction, the tolerance.
+///
+/// Use: `reset`, `choose` a source that is likely to cover many, `give` all sources that `covered`
+/// does not show to be covered, then `complete`.
 class ConeCover {
 public:
     /// Most sources that are chosen.
@@ -23,8 +25,8 @@ public:
     /// Nothing chosen, nothing given. `slope` is g - 1; lengths of `cap` or more do not matter.
     void reset(const Box& box, double slope, double cap, double tolerance);
 
-    /// Of sources with these distances from the centre of the box and these lengths, both or lower:
-    /// which are covered. `apart(q)` is how far they are from the place q, or more.
+    /// Which sources at these distances from the centre of the box, with these lengths (lower
+    /// bounds of both will do), are covered. `apart(q)` is their distance from the point q, or more.
     template <class Numbers, class Apart>
     auto covered(const Numbers& distances, const Numbers& lengths, const Apart& apart) const {
         const Numbers away = (distances - radius_).max(0);
@@ -40,12 +42,17 @@ public:
         }
         return is_covered;
     }
+    template <int n>
+    auto covered(const ConeLanes<n>& cones) const {
+        return covered(cones.distances(centre_), cones.length,
+                       [&](const Point& q) { return cones.distances(q); });
+    }
 
-    /// Chooses this source, as long as there is room.
+    /// Chooses this source; false, without effect, if there is no room.
     bool choose(std::uint32_t source, const Point& position, double length);
-    /// Gives it one that is not covered; false where these are too many to go on.
+    /// Records one that is not covered; false if there are too many.
     bool give(std::uint32_t source, const Point& position, double length);
-    /// Chooses until all that was given is covered; false where there is no room for that.
+    /// Chooses among the sources given until all of them are covered; false if there is no room.
     bool complete();
 
     /// The numbers of those chosen.
@@ -62,13 +69,19 @@ private:
         ConeList cones;
         std::vector<std::uint32_t> sources;
 
-        void clear();
-        void add(std::uint32_t source, const Point& position, double length);
+        void clear() {
+            cones.clear();
+            sources.clear();
+        }
+        void add(std::uint32_t source, const Point& position, double length) {
+            cones.add(position, length);
+            sources.push_back(source);
+        }
     };
     static constexpr std::size_t halvings = 2;
 
     void enter(const Box& box);
-    void look_at(Anchor& anchor) const;
+    void measure(Anchor& anchor) const;
     void list_uncovered(const List& from, List& to) const;
     bool choose_smallest(const List& list);
     bool complete(const Box& box, std::size_t depth);

@@ -13,20 +13,11 @@ ConeTreeShape ConeTreeShape::with_leaves_of(std::uint64_t size, std::uint64_t le
     return {size, leaf_size, leaves, depth};
 }
 
-std::vector<int> levels_of_eight_children(int depth) {
-    std::vector<int> levels;
-    for (int level = depth; level > 0; level -= 3) {
-        levels.insert(levels.begin(), std::max(0, level - 3));
-    }
-    return levels;
-}
-
 namespace {
 
 std::size_t longest_extent(std::span<const ConeTreeItem> items) {
-    std::array<double, 4> low, high;
-    std::copy_n(items.front().coordinates, 4, low.begin());
-    high = low;
+    std::array<double, 4> low = items.front().coordinates;
+    std::array<double, 4> high = low;
     for (const ConeTreeItem& item : items) {
         for (std::size_t a = 0; a < 4; ++a) {
             low[a] = std::min(low[a], item.coordinates[a]);

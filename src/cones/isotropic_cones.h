@@ -1,13 +1,13 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "cones/cone_cover.h"
+#include "cones/cone_list.h"
 #include "cones/cone_tree.h"
 #include "cones/nearby_cones.h"
 #include "controlspace/geometry/box.h"
@@ -57,54 +57,40 @@ public:
 
     /// Indices of the sources that were not left out, those near to each other together. Each has
     /// the smallest length at its own place.
-    std::span<const std::uint32_t> kept() const { return indices_; }
+    std::span<const std::uint32_t> kept() const { return tree_.indices(); }
     /// Sources that are the smallest nowhere, and were left out.
     std::size_t dropped() const { return dropped_; }
 
-    /// Bytes allocated: of the lengths, and of what finds them.
-    std::size_t bytes_payload() const { return leaves_.capacity() * sizeof(Lanes); }
-    std::size_t bytes_topology() const {
-        return leaves_.capacity() * (sizeof(Leaf) - sizeof(Lanes)) +
-               nodes_.capacity() * sizeof(Node) + first_of_level_.capacity() * sizeof(std::size_t) +
-               indices_.capacity() * sizeof(std::uint32_t);
-    }
+    /// Bytes allocated: of the lengths, and of everything else.
+    std::size_t bytes_payload() const { return tree_.leaves().size() * sizeof(Leaf::length); }
+    std::size_t bytes_topology() const { return tree_.bytes() - bytes_payload(); }
 
 private:
-    static constexpr std::uint64_t leaf_size = 16;
-    static constexpr int arity = 8;
-    static constexpr std::size_t most_leaves_gathered = 32;
-    // Unaligned, so that vectors of them take memory as everything else does.
-    using Lanes = Eigen::Array<double, leaf_size, 1, Eigen::DontAlign>;
-    using Children = Eigen::Array<double, arity, 1, Eigen::DontAlign>;
+    static constexpr int leaf_size = 16;
 
     /// Bounds of the sources of each child: a flat cylinder around their positions, and their
     /// smallest length. Sources mostly lie on surfaces, whose tangential pieces a cylinder fits
     /// closely where an axis-aligned box does not. Lengths are infinite where there is no child.
     struct Node {
-        Children x, y, z;                       ///< centre
-        Children normal_x, normal_y, normal_z;  ///< the axis, of unit length
-        Children half_thickness, radius, length;
-    };
-    struct Leaf {
-        Lanes x, y, z, length;  ///< infinite lengths fill up the last lanes
+        VectorLanes centre, normal;  ///< of unit length, along the cylinder's axis
+        Lanes half_thickness = Lanes::Zero(), radius = Lanes::Zero();
+        Lanes length = Lanes::Constant(std::numeric_limits<double>::infinity());
 
-        Lanes distances(const Point& p) const {
-            return ((x - p.x()).square() + (y - p.y()).square() + (z - p.z()).square()).sqrt();
-        }
+        /// From p to the cylinders, and so to all sources in them: lower bounds.
+        Lanes distances(const Point& p) const;
     };
-    struct Cylinder;
+    using Leaf = ConeLanes<leaf_size>;
+    using Tree = ConeTree<Node, Leaf>;
 
     void build(std::span<ConeTreeItem> items, std::span<const PointSource> sources);
-    bool is_dominated(const PointSource& source) const;
-    Children distances(const Node& node, const Point& p) const;
-    Children lower_bounds(const Node& node, const Point& p) const;
+    Lanes lower_bounds(const Node& node, const Point& p) const;
     double length_at(const Leaf& leaf, Eigen::Index lane, const Point& p) const;
     Eigen::Index lane_of(const Point& p, double smallest, Hint leaf) const;
-    void visit_leaf(std::uint32_t leaf, const Point& p, double& smallest, Hint& hint) const;
-    bool give_uncovered(std::size_t leaf, const Point& centre, ConeCover& cover) const;
+    std::uint32_t source_in(Hint leaf, Eigen::Index lane) const {
+        return tree_.indices()[leaf * std::size_t{leaf_size} + static_cast<std::size_t>(lane)];
+    }
+    void visit_leaf(Hint leaf, const Point& p, double& smallest, Hint& hint) const;
     double search(const Point& p, double cap, double tolerance, Hint& hint) const;
-    template <class PassedOver, class VisitLeaf>
-    bool visit(const PassedOver& passed_over, const VisitLeaf& visit_leaf) const;
     template <class LowerBounds, class VisitLeaf>
     double search(double cap, double tolerance, Hint& hint, const LowerBounds& lower_bounds,
                   const VisitLeaf& visit_leaf) const;
@@ -114,11 +100,7 @@ private:
     double cap_;
     double safely_;  ///< just below 1: makes bounds safe against rounding
     std::size_t dropped_ = 0;
-    ConeTreeShape shape_;
-    std::vector<Node> nodes_;                  ///< level by level
-    std::vector<std::size_t> first_of_level_;  ///< places in nodes_
-    std::vector<Leaf> leaves_;
-    std::vector<std::uint32_t> indices_;  ///< of the sources in tree order
+    Tree tree_;
 };
 
 }  // namespace controlspace

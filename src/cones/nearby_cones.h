@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include "cones/cone_list.h"
 #include "controlspace/geometry/box.h"
@@ -10,25 +9,24 @@
 namespace controlspace {
 
 /// Those cones h_i + (g-1) |p - Q_i| of isotropic sources that can be the smallest somewhere in a
-/// box: for many places in it, where they are few.
+/// box: for many queries in it, where they are few.
 class NearbyCones {
 public:
-    /// None so far. `slope` is g - 1; lengths of `cap` or more do not matter.
+    /// No cones. `slope` is g - 1; lengths of `cap` or more do not matter.
     void reset(double slope, double cap);
     void add(const Point& position, double length) { cones_.add(position, length); }
-    /// Makes these out of `others`, which should be all that matter in `box`: those that can be the
+    /// Sets these to those of `others`, which should be all that matter in `box`, that can be the
     /// smallest somewhere in it.
     void narrow(const NearbyCones& others, const Box& box);
 
     std::size_t size() const { return cones_.size(); }
-    /// The smallest length at a place in the box, or the cap where none is below it. To rounding.
+    /// The smallest length at a place in the box, or the cap where none is below it; to rounding.
     double smallest_length(const Point& p) const;
 
 private:
     double slope_ = 0;
     double cap_ = 0;
     ConeList cones_;
-    std::vector<Lanes> distances_;  ///< room for `narrow`
 };
 
 }  // namespace controlspace

@@ -8,20 +8,17 @@
 
 namespace controlspace {
 
-/// The same number of eight things, to be computed with at once. Unaligned, so that vectors of
-/// lanes take memory as everything else does.
+/// One number of each of `n` things, for computing with all of them at once. Unaligned, so that
+/// vectors of lanes are allocated as everything else is.
+template <int n>
+using LanesOf = Eigen::Array<double, n, 1, Eigen::DontAlign>;
+
 inline constexpr int lane_count = 8;
-using Lanes = Eigen::Array<double, lane_count, 1, Eigen::DontAlign>;
+using Lanes = LanesOf<lane_count>;
 
 /// Eight symmetric tensors.
 struct TensorLanes {
-    Lanes xx, yy, zz, xy, xz, yz;
-
-    static TensorLanes identity() {
-        const Lanes one = Lanes::Ones();
-        const Lanes zero = Lanes::Zero();
-        return {one, one, one, zero, zero, zero};
-    }
+    Lanes xx = Lanes::Ones(), yy = xx, zz = xx, xy = Lanes::Zero(), xz = xy, yz = xy;
 
     Metric operator[](Eigen::Index lane) const {
         return {xx[lane], yy[lane], zz[lane], xy[lane], xz[lane], yz[lane]};
@@ -36,11 +33,10 @@ struct TensorLanes {
     }
 };
 
-/// Eight vectors.
-struct VectorLanes {
-    Lanes x, y, z;
-
-    static VectorLanes zero() { return {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()}; }
+/// Vectors side by side.
+template <int n>
+struct VectorLanesOf {
+    LanesOf<n> x = LanesOf<n>::Zero(), y = x, z = x;
 
     Vector operator[](Eigen::Index lane) const { return {x[lane], y[lane], z[lane]}; }
     void set(Eigen::Index lane, const Vector& v) {
@@ -48,15 +44,15 @@ struct VectorLanes {
         y[lane] = v.y();
         z[lane] = v.z();
     }
+    LanesOf<n> distances(const Point& p) const {
+        return ((x - p.x()).square() + (y - p.y()).square() + (z - p.z()).square()).sqrt();
+    }
 };
+using VectorLanes = VectorLanesOf<lane_count>;
 
 /// From `v` to `p`.
 inline VectorLanes displacements(const VectorLanes& v, const Point& p) {
     return {p.x() - v.x, p.y() - v.y, p.z() - v.z};
-}
-
-inline Lanes norms(const VectorLanes& v) {
-    return (v.x.square() + v.y.square() + v.z.square()).sqrt();
 }
 
 /// M^2.

@@ -1,23 +1,14 @@
 #include "cones/tensor_tree.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "metric/running_intersection.h"
 
 namespace controlspace {
 
 namespace {
-
-using Item = TensorTree::Item;
-using Node = TensorTree::Node;
-using Leaf = TensorTree::Leaf;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Metric inverse(const Metric& m) {
     EigenFrame frame = eigen_frame(m);
@@ -32,10 +23,6 @@ struct Bounds {
     double length;   // smallest
 };
 
-Bounds bounds_of(const Item& item) {
-    return {item.source.metric, inverse(item.source.metric), item.length};
-}
-
 // Of all that one of `parts` holds for; there is one at least.
 Bounds bounds_of(std::span<const Bounds> parts) {
     RunningIntersection within(parts.front().within);
@@ -49,115 +36,74 @@ Bounds bounds_of(std::span<const Bounds> parts) {
     return {within.metric(), inverse.metric(), length};
 }
 
-struct Ball {
-    Point centre;
-    double radius;  // as `measure` has it
-
-    Ball(std::span<const Item> items, const Metric& measure) {
-        Point low = items.front().source.position;
-        Point high = low;
-        for (const Item& item : items) {
-            low = low.cwiseMin(item.source.position);
-            high = high.cwiseMax(item.source.position);
-        }
-        centre = 0.5 * (low + high);
-        const Eigen::Matrix3d matrix = measure.matrix();
-        double squared = 0;
-        for (const Item& item : items) {
-            squared = std::max(squared, (matrix * (item.source.position - centre)).squaredNorm());
-        }
-        radius = std::sqrt(squared);
+Point centre_of(std::span<const ConeTreeItem> items) {
+    Point low = items.front().position();
+    Point high = low;
+    for (const ConeTreeItem& item : items) {
+        low = low.cwiseMin(item.position());
+        high = high.cwiseMax(item.position());
     }
-};
-
-// Lanes without a source are as far as need be for them to have no part in anything.
-Leaf make_leaf(std::span<const Item> items) {
-    Leaf leaf;
-    for (int lane = 0; lane < lane_count; ++lane) {
-        const auto i = static_cast<std::size_t>(lane);
-        const Item& item = i < items.size() ? items[i] : items.front();
-        leaf.position.set(lane, item.source.position);
-        leaf.metric.set(lane, item.source.metric);
-        leaf.length[lane] = i < items.size() ? item.length : infinity;
-    }
-    return leaf;
+    return 0.5 * (low + high);
 }
 
-void set_child(Node& node, int lane, const Bounds& bounds, const Ball& ball) {
-    node.centre.set(lane, ball.centre);
-    node.radius[lane] = ball.radius;
-    node.inverse.set(lane, bounds.inverse);
-    node.square.set(lane, square(bounds.within));
-    node.length[lane] = bounds.length;
+// Largest distance from `centre` as `measure` has it: |measure (Q - centre)|.
+double radius_of(std::span<const ConeTreeItem> items, const Point& centre, const Metric& measure) {
+    const Eigen::Matrix3d matrix = measure.matrix();
+    double squared = 0;
+    for (const ConeTreeItem& item : items) {
+        squared = std::max(squared, (matrix * (item.position() - centre)).squaredNorm());
+    }
+    return std::sqrt(squared);
 }
 
 }  // namespace
 
-TensorTree::TensorTree(std::vector<Item> items, double weight)
-    : shape_(ConeTreeShape::with_leaves_of(items.size(), lane_count)) {
-    if (items.empty()) return;
-    put_in_order(items, weight);
-    indices_ = std::vector<std::uint32_t>(items.size());
-    std::transform(items.begin(), items.end(), indices_.begin(),
-                   [](const Item& item) { return item.index; });
-    const auto items_of = [&](std::size_t begin, std::size_t end) {
-        return std::span<const Item>(items).subspan(begin, end - begin);
+TensorTree build_tensor_tree(std::span<ConeTreeItem> items, std::span<const PointSource> sources,
+                             std::span<const double> lengths) {
+    using Items = std::span<const ConeTreeItem>;
+    const auto make_leaf = [&](Items of_leaf, TensorLeaf& leaf) {
+        for (int lane = 0; lane < lane_count; ++lane) {
+            const auto i = static_cast<std::size_t>(lane);
+            const bool exists = i < of_leaf.size();
+            const std::uint32_t source = of_leaf[exists ? i : 0].index;
+            leaf.position.set(lane, sources[source].position);
+            leaf.metric.set(lane, sources[source].metric);
+            leaf.length[lane] = exists ? lengths[source] : std::numeric_limits<double>::infinity();
+        }
     };
-
-    leaves_ = std::vector<Leaf>(shape_.leaves);
-    std::vector<Bounds> below(shape_.leaves);
-    tbb::parallel_for(std::size_t{0}, leaves_.size(), [&](std::size_t l) {
-        const std::size_t begin = l * lane_count;
-        const auto of_leaf = items_of(begin, std::min(begin + lane_count, items.size()));
-        leaves_[l] = make_leaf(of_leaf);
-        std::array<Bounds, lane_count> bounds;
-        for (std::size_t i = 0; i < of_leaf.size(); ++i) bounds[i] = bounds_of(of_leaf[i]);
-        below[l] = bounds_of({bounds.data(), of_leaf.size()});
-    });
-
-    const std::vector<int> levels = levels_of_eight_children(shape_.depth);
-    std::vector<std::size_t> first(levels.size() + 1, 0);
-    for (std::size_t l = 0; l < levels.size(); ++l) {
-        first[l + 1] = first[l] + (std::size_t{1} << levels[l]);
-    }
-    nodes_ = std::vector<Node>(first.back());
-    for (std::size_t l = levels.size(); l-- > 0;) {
-        const bool has_leaves = l + 1 == levels.size();
-        const int level_below = has_leaves ? shape_.depth : levels[l + 1];
-        const std::size_t children = std::size_t{1} << (level_below - levels[l]);
-        std::vector<Bounds> here(std::size_t{1} << levels[l]);
-        tbb::parallel_for(std::size_t{0}, here.size(), [&](std::size_t n) {
-            Node& node = nodes_[first[l] + n];
-            node.first_child = static_cast<std::uint32_t>(first[l + 1] + n * children);
-            node.length.setConstant(infinity);
-            std::array<Bounds, lane_count> bounds;
-            std::size_t count = 0;
-            for (std::size_t c = 0; c < children; ++c) {
-                const auto child = static_cast<std::uint32_t>(n * children + c);
-                const std::uint32_t number = (std::uint32_t{1} << level_below) + child;
-                const auto of_child = items_of(shape_.begin(number), shape_.end(number));
-                if (of_child.empty()) continue;
-                const Bounds& b = below[has_leaves ? shape_.leaf_in(child) : child];
-                set_child(node, static_cast<int>(c), b, Ball(of_child, b.inverse));
-                bounds[count++] = b;
-            }
-            here[n] = bounds_of({bounds.data(), count});
-        });
-        below = std::move(here);
-    }
-}
-
-void TensorTree::put_in_order(std::vector<Item>& items, double weight) const {
-    std::vector<ConeTreeItem> order(items.size());
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        const Point& q = items[i].source.position;
-        order[i] = {{q.x(), q.y(), q.z(), weight * items[i].length}, static_cast<std::uint32_t>(i)};
-    }
-    sort_for_tree(shape_, order);
-    std::vector<Item> ordered(items.size());
-    tbb::parallel_for(std::size_t{0}, items.size(),
-                      [&](std::size_t i) { ordered[i] = items[order[i].index]; });
-    items = std::move(ordered);
+    const auto bounds_of_leaf = [&](Items of_leaf) {
+        std::array<Bounds, lane_count> parts;
+        for (std::size_t i = 0; i < of_leaf.size(); ++i) {
+            const Metric& metric = sources[of_leaf[i].index].metric;
+            parts[i] = {metric, inverse(metric), lengths[of_leaf[i].index]};
+        }
+        return bounds_of(std::span(parts).first(of_leaf.size()));
+    };
+    TensorTree tree;
+    std::vector<Bounds> bounds_of_node(
+        ConeTreeShape::with_leaves_of(items.size(), lane_count).nodes());
+    const auto make_node = [&](std::span<const TensorTree::Child> children, TensorNode& node,
+                               std::uint32_t number) {
+        std::array<Bounds, lane_count> parts;
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < children.size(); ++i) {
+            const auto& [child, of_child] = children[i];
+            if (of_child.empty()) continue;
+            const auto lane = static_cast<Eigen::Index>(i);
+            const Bounds bounds =
+                tree.is_leaf(child) ? bounds_of_leaf(of_child) : bounds_of_node[child];
+            const Point centre = centre_of(of_child);
+            node.centre.set(lane, centre);
+            node.radius[lane] = radius_of(of_child, centre, bounds.inverse);
+            node.inverse.set(lane, bounds.inverse);
+            node.square.set(lane, square(bounds.within));
+            node.length[lane] = bounds.length;
+            parts[count++] = bounds;
+        }
+        bounds_of_node[number] = bounds_of(std::span(parts).first(count));
+    };
+    tree.build(items, lane_count, make_leaf, make_node);
+    return tree;
 }
 
 }  // namespace controlspace

@@ -10,10 +10,7 @@
 #include "controlspace/error.h"
 #include "geometry/large_pages.h"
 #include "geometry/threads.h"
-#include "gradation/parallel_queue.h"
-#include "gradation/passes.h"
-#include "gradation/queue.h"
-#include "gradation/sizes.h"
+#include "gradation/schedules.h"
 
 namespace controlspace {
 
@@ -28,7 +25,7 @@ namespace {
 
 // Returns the number of metrics made smaller.
 template <class Graph>
-std::uint64_t grade_by_sizes(const Graph& graph, OrderedMetrics metrics, double g) {
+std::uint64_t grade_sizes(const Graph& graph, OrderedMetrics metrics, double g) {
     std::vector<double> sizes = large_array<double>(metrics.size());
     constexpr std::size_t nodes_per_task = 4096;
     using Range = tbb::blocked_range<std::size_t>;
@@ -36,7 +33,7 @@ std::uint64_t grade_by_sizes(const Graph& graph, OrderedMetrics metrics, double 
     tbb::parallel_for(all, [&](const Range& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) sizes[i] = metrics[i].xx;
     });
-    SizeRounds(graph, sizes, g).run();
+    grade_in_rounds(graph, std::span(sizes), g);
     return tbb::parallel_reduce(
         all, std::uint64_t{0},
         [&](const Range& range, std::uint64_t operations) {
@@ -53,18 +50,18 @@ std::uint64_t grade_by_sizes(const Graph& graph, OrderedMetrics metrics, double 
 template <class Graph>
 std::uint64_t grade_nodes(const Graph& graph, OrderedMetrics metrics,
                           const GradationOptions& options) {
-    const auto [law, schedule, g, neighbourhood] = options;
-    if (schedule == GradationSchedule::passes) return PassSchedule(graph, metrics, law, g).run();
+    const Grading<Graph> grading{graph, metrics, options.law, options.ratio};
+    if (options.schedule == GradationSchedule::passes) return grade_by_passes(grading);
     // Grids are as fine as memory allows, the queue included: nothing is left for more threads.
     if constexpr (std::is_same_v<Graph, NodeGraph>) {
         const auto all = metrics.all();
         const bool isotropic = std::all_of(all.begin(), all.end(), is_isotropic);
-        if (isotropic && law == GradationLaw::cone) return grade_by_sizes(graph, metrics, g);
-        if (!isotropic && threads_allowed() > 1) {
-            return ParallelQueue(graph, metrics, law, g).run();
+        if (isotropic && options.law == GradationLaw::cone) {
+            return grade_sizes(graph, metrics, options.ratio);
         }
+        if (!isotropic && threads_allowed() > 1) return grade_in_levels(grading);
     }
-    return grade_by_queue(graph, metrics, law, g);
+    return grade_by_queue(grading);
 }
 
 // Metrics may be a span, or OrderedMetrics.

@@ -16,27 +16,18 @@ double one_plus_log(const char* name, double value) {
     return 1 + std::log(value);
 }
 
-// Growth ratios along the eigenvectors of both metrics: how much larger each is than the other.
-struct EigenRatios {
-    double second_over_first = 1;
-    double first_over_second = 1;
-};
-
-void compare_along(const EigenFrame& frame, const Metric& other, double& other_larger,
-                   double& other_smaller) {
+// How many times larger `to` is than `from`, at most, along the eigenvectors of either; 1 at least.
+double largest_eigen_ratio(const Metric& from, const Metric& to) {
+    double ratio = 1;
+    const EigenFrame of_from = eigen_frame(from);
+    const EigenFrame of_to = eigen_frame(to);
     for (int i = 0; i < 3; ++i) {
-        const double d = frame.lengths[static_cast<std::size_t>(i)];
-        const double h = (other.matrix() * frame.directions.col(i)).norm();
-        other_larger = std::max(other_larger, h / d);
-        other_smaller = std::max(other_smaller, d / h);
+        const double along_from = (to.matrix() * of_from.directions.col(i)).norm();
+        const double along_to = (from.matrix() * of_to.directions.col(i)).norm();
+        ratio = std::max({ratio, along_from / of_from.lengths[static_cast<std::size_t>(i)],
+                          of_to.lengths[static_cast<std::size_t>(i)] / along_to});
     }
-}
-
-EigenRatios eigen_ratios(const Metric& m0, const Metric& m1) {
-    EigenRatios ratios;
-    compare_along(eigen_frame(m0), m1, ratios.second_over_first, ratios.first_over_second);
-    compare_along(eigen_frame(m1), m0, ratios.first_over_second, ratios.second_over_first);
-    return ratios;
+    return ratio;
 }
 
 // The cone of `by` at the far end of `v`, cutting `m`.
@@ -64,7 +55,7 @@ Growth growth_between(GradationLaw law, const Metric& from, const Metric& to, co
     }
     const double length = 0.5 * (metric_length(from, v) + metric_length(to, v));
     if (is_isotropic(from) && is_isotropic(to)) return {std::max(1.0, to.xx / from.xx), length};
-    return {eigen_ratios(from, to).second_over_first, length};
+    return {largest_eigen_ratio(from, to), length};
 }
 
 Limited limit_anisotropic_growth(GradationLaw law, double g, const Vector& v, Metric& m0,

@@ -2,49 +2,117 @@
 
 #include <utility>
 
-#include "metric/jacobi.h"
-
 namespace controlspace {
 
+namespace {
+
+// Plane rotation that makes the symmetric 2x2 matrix (pp pq; pq qq) diagonal: the smaller of the
+// two angles. Afterwards pp is less by `tangent * pq`, and qq more.
+struct JacobiRotation {
+    double cosine, sine, tangent;
+
+    // `pq` must not be 0.
+    JacobiRotation(double pp, double qq, double pq) {
+        const double d = qq - pp;
+        tangent = 2 * pq / (d + std::copysign(std::sqrt(d * d + 4 * pq * pq), d));
+        cosine = 1 / std::sqrt(1 + tangent * tangent);
+        sine = cosine * tangent;
+    }
+
+    // Rotates columns p and q of `m`.
+    void apply(Eigen::Matrix3d& m, int p, int q) const {
+        const Vector old = m.col(p);
+        m.col(p) = cosine * old - sine * m.col(q);
+        m.col(q) = sine * old + cosine * m.col(q);
+    }
+};
+
+// Calls rotate(p, q) for all pairs of axes until a sweep changes nothing: until all calls return
+// false. Jacobi's methods converge quadratically: four or five sweeps are usual.
+template <class Rotate>
+void sweep(Rotate&& rotate) {
+    constexpr int most_sweeps = 30;
+    for (int i = 0; i < most_sweeps; ++i) {
+        const bool rotated01 = rotate(0, 1);
+        const bool rotated02 = rotate(0, 2);
+        const bool rotated12 = rotate(1, 2);
+        if (!rotated01 && !rotated02 && !rotated12) return;
+    }
+}
+
+// Sorts three things by calling sort_pair(i, j) for their indices i < j.
+template <class SortPair>
+void sort_three(SortPair&& sort_pair) {
+    sort_pair(0, 1);
+    sort_pair(1, 2);
+    sort_pair(0, 1);
+}
+
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+EigenFrame eigen_frame(const Metric& m) {
+    // Two-sided Jacobi: on positive definite tensors it is as accurate as the six numbers are.
+    EigenFrame frame{{m.xx, m.yy, m.zz}, Eigen::Matrix3d::Identity()};
+    auto& [diagonal, v] = frame;
+    // Entry (p, q) has the index of the third axis.
+    std::array<double, 3> opposite{m.yz, m.xz, m.xy};
+    const auto annihilate = [&](int p, int q) {
+        constexpr double negligible = 1e-16;
+        double& pp = diagonal[index(p)];
+        double& qq = diagonal[index(q)];
+        double& pq = opposite[index(3 - p - q)];
+        if (pq * pq <= negligible * negligible * std::abs(pp * qq)) return false;
+        const JacobiRotation rotation(pp, qq, pq);
+        pp -= rotation.tangent * pq;
+        qq += rotation.tangent * pq;
+        pq = 0;
+        double& kp = opposite[index(q)];
+        double& kq = opposite[index(p)];
+        const double old = kp;
+        kp = rotation.cosine * old - rotation.sine * kq;
+        kq = rotation.sine * old + rotation.cosine * kq;
+        rotation.apply(v, p, q);
+        return true;
+    };
+    sweep(annihilate);
+    sort_three([&](int i, int j) {
+        if (!(diagonal[index(i)] > diagonal[index(j)])) return;
+        std::swap(diagonal[index(i)], diagonal[index(j)]);
+        v.col(i).swap(v.col(j));
+    });
+    return frame;
+}
+
 Svd svd(const Eigen::Matrix3d& matrix) {
-    Eigen::Matrix3d b = matrix;
-    Eigen::Matrix3d v = Eigen::Matrix3d::Identity();
-    std::array<double, 3> squares{b.col(0).squaredNorm(), b.col(1).squaredNorm(),
-                                  b.col(2).squaredNorm()};
+    Svd result{matrix, {}, Eigen::Matrix3d::Identity()};
+    auto& [b, s, v] = result;
+    for (int i = 0; i < 3; ++i) s[index(i)] = b.col(i).squaredNorm();
     // Rotates columns p and q until they are orthogonal; false if they were.
     const auto orthogonalise = [&](int p, int q) {
         constexpr double cosine = 4e-16;  // of columns that rounding alone keeps apart
-        double& pp = squares[static_cast<std::size_t>(p)];
-        double& qq = squares[static_cast<std::size_t>(q)];
+        double& pp = s[index(p)];
+        double& qq = s[index(q)];
         const double pq = b.col(p).dot(b.col(q));
         if (pq * pq <= cosine * cosine * pp * qq) return false;
         const JacobiRotation rotation(pp, qq, pq);
-        rotation.turn(b, p, q);
-        rotation.turn(v, p, q);
+        rotation.apply(b, p, q);
+        rotation.apply(v, p, q);
         pp = b.col(p).squaredNorm();
         qq = b.col(q).squaredNorm();
         return true;
     };
-    for (int sweep = 0; sweep < max_jacobi_sweeps; ++sweep) {
-        const bool rotated01 = orthogonalise(0, 1);
-        const bool rotated02 = orthogonalise(0, 2);
-        const bool rotated12 = orthogonalise(1, 2);
-        if (!rotated01 && !rotated02 && !rotated12) break;
-    }
-    std::array<double, 3> s{std::sqrt(squares[0]), std::sqrt(squares[1]), std::sqrt(squares[2])};
-    const auto order = [&](int i, int j) {
-        double& si = s[static_cast<std::size_t>(i)];
-        double& sj = s[static_cast<std::size_t>(j)];
-        if (si >= sj) return;
-        std::swap(si, sj);
+    sweep(orthogonalise);
+    for (double& length : s) length = std::sqrt(length);
+    sort_three([&](int i, int j) {
+        if (s[index(i)] >= s[index(j)]) return;
+        std::swap(s[index(i)], s[index(j)]);
         b.col(i).swap(b.col(j));
         v.col(i).swap(v.col(j));
-    };
-    order(0, 1);
-    order(1, 2);
-    order(0, 1);
-    for (int i = 0; i < 3; ++i) b.col(i) /= s[static_cast<std::size_t>(i)];
-    return {b, s, v};
+    });
+    for (int i = 0; i < 3; ++i) b.col(i) /= s[index(i)];
+    return result;
 }
 
 Metric left_polar_factor(const Eigen::Matrix3d& b) {

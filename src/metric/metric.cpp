@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "metric/decompose.h"
-#include "metric/jacobi.h"
 
 namespace controlspace {
 
@@ -28,48 +25,6 @@ Metric metric_from_frame(const std::array<double, 3>& lengths, const Eigen::Matr
         m.yz += he.y() * e.z();
     }
     return m;
-}
-
-EigenFrame eigen_frame(const Metric& m) {
-    // Two-sided Jacobi: on positive definite tensors it is as accurate as the six numbers are.
-    std::array<double, 3> diagonal{m.xx, m.yy, m.zz};
-    std::array<double, 3> opposite{m.yz, m.xz,
-                                   m.xy};  // the entry that is in neither row nor column
-    Eigen::Matrix3d v = Eigen::Matrix3d::Identity();
-    // Zeroes entry (p, q); k is the third axis. False if it was negligible.
-    const auto annihilate = [&](std::size_t p, std::size_t q, std::size_t k) {
-        constexpr double negligible = 1e-16;
-        const double pq = opposite[k];
-        if (pq * pq <= negligible * negligible * std::abs(diagonal[p] * diagonal[q])) return false;
-        const JacobiRotation rotation(diagonal[p], diagonal[q], pq);
-        diagonal[p] -= rotation.tangent * pq;
-        diagonal[q] += rotation.tangent * pq;
-        opposite[k] = 0;
-        const double kp = opposite[q];
-        opposite[q] = rotation.cosine * kp - rotation.sine * opposite[p];
-        opposite[p] = rotation.sine * kp + rotation.cosine * opposite[p];
-        rotation.turn(v, static_cast<int>(p), static_cast<int>(q));
-        return true;
-    };
-    for (int sweep = 0; sweep < max_jacobi_sweeps; ++sweep) {
-        const bool rotated01 = annihilate(0, 1, 2);
-        const bool rotated02 = annihilate(0, 2, 1);
-        const bool rotated12 = annihilate(1, 2, 0);
-        if (!rotated01 && !rotated02 && !rotated12) break;
-    }
-    std::array<std::size_t, 3> order{0, 1, 2};
-    const auto ascend = [&](std::size_t i, std::size_t j) {
-        if (diagonal[order[i]] > diagonal[order[j]]) std::swap(order[i], order[j]);
-    };
-    ascend(0, 1);
-    ascend(1, 2);
-    ascend(0, 1);
-    EigenFrame frame;
-    for (std::size_t i = 0; i < 3; ++i) {
-        frame.lengths[i] = diagonal[order[i]];
-        frame.directions.col(static_cast<int>(i)) = v.col(static_cast<int>(order[i]));
-    }
-    return frame;
 }
 
 Vector to_metric_space_by_cholesky(const Metric& m, const Vector& v) {

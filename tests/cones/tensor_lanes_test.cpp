@@ -22,7 +22,7 @@ TEST_CASE("Lanes compute what single tensors do") {
     Draw draw(1);
     for (int round = 0; round < 500; ++round) {
         const TensorLanes m = metrics(draw, anisotropy);
-        VectorLanes v = VectorLanes::zero();
+        VectorLanes v;
         for (int lane = 0; lane < lane_count; ++lane) v.set(lane, draw.vector());
         const Point p = draw.vector();
         const VectorLanes to_p = displacements(v, p);
@@ -54,7 +54,7 @@ TEST_CASE("There is room below where a tensor lies within others, and never else
     CHECK(within > 1000);
     CHECK(within < 3000);
     // Equal, and what is no number.
-    const TensorLanes one = TensorLanes::identity();
+    const TensorLanes one;
     CHECK_FALSE(room_below(Metric{}, Lanes::Ones(), one).are_positive(0));
     CHECK_FALSE(room_below(Metric{}, Lanes::Constant(std::nan("")), one).are_positive(0));
 }

@@ -6,8 +6,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
-#include "gradation/queue.h"
-#include "gradation/sizes.h"
+#include "gradation/schedules.h"
 #include "metric/draw.h"
 
 using namespace controlspace;
@@ -179,8 +178,8 @@ TEST_CASE("sizes in rounds end as one queue of metrics does, to the bit") {
     std::vector<Metric> queued = random_isotropic(lattice.size(), 11);
     std::vector<double> sizes;
     for (const Metric& m : queued) sizes.push_back(m.xx);
-    grade_by_queue(lattice, queued, GradationLaw::cone, g);
-    SizeRounds(lattice, sizes, g).run();
+    grade_by_queue(Grading<Lattice>{lattice, queued, GradationLaw::cone, g});
+    grade_in_rounds(lattice, std::span(sizes), g);
     for (std::size_t i = 0; i < sizes.size(); ++i) CHECK(Metric::isotropic(sizes[i]) == queued[i]);
 }
 
