@@ -14,11 +14,15 @@ function(install_library target)
     set_target_properties(${target} PROPERTIES
         EXPORT_NAME ${ARG_NAME}
         POSITION_INDEPENDENT_CODE ON)
-    if(NOT ARG_SHARES_STATICS)
+    set(group library)
+    if(ARG_SHARES_STATICS)
+        set(group openvdb)
+    else()
         set_target_properties(${target} PROPERTIES
             CXX_VISIBILITY_PRESET hidden
             VISIBILITY_INLINES_HIDDEN ON)
     endif()
+    precompile(${group} ${target})
     add_library(controlspace::${ARG_NAME} ALIAS ${target})
     install(TARGETS ${target} EXPORT controlspace-${ARG_COMPONENT} COMPONENT library)
     get_property(components GLOBAL PROPERTY controlspace_components)

@@ -9,21 +9,29 @@ set(precompiled_common
     <vector> <Eigen/Core> <fmt/format.h> <tbb/parallel_for.h>)
 file(WRITE ${CMAKE_BINARY_DIR}/empty.cpp "")
 
-# add_precompiled(NAME HEADERS HEADER... LIBRARIES TARGET...): HEADERS and the common ones, for precompile(NAME ...).
+# add_precompiled(NAME HEADERS HEADER... LIBRARIES TARGET... PROPERTIES ...): HEADERS and the common ones, for
+# precompile(NAME ...).
 function(add_precompiled name)
-    cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES" ${ARGN})
+    cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES;PROPERTIES" ${ARGN})
     add_library(precompiled_${name} OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/empty.cpp)
     target_link_libraries(precompiled_${name} PRIVATE
         controlspace_flags Eigen3::Eigen fmt::fmt TBB::tbb ${ARG_LIBRARIES})
+    if(ARG_PROPERTIES)
+        set_target_properties(precompiled_${name} PROPERTIES ${ARG_PROPERTIES})
+    endif()
     target_precompile_headers(precompiled_${name} PRIVATE ${precompiled_common} ${ARG_HEADERS})
 endfunction()
 
-# precompile(NAME TARGET...): the targets that exist are compiled with add_precompiled(NAME ...), which must
-# agree with them on position independence and visibility.
+# precompile(NAME TARGET...): the targets are compiled with add_precompiled(NAME ...), which must agree with them
+# on position independence and visibility.
 function(precompile name)
     foreach(target IN LISTS ARGN)
-        if(TARGET ${target})
-            target_precompile_headers(${target} REUSE_FROM precompiled_${name})
+        target_precompile_headers(${target} REUSE_FROM precompiled_${name})
+        if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+            target_include_directories(${target} SYSTEM PRIVATE
+                $<TARGET_PROPERTY:precompiled_${name},INCLUDE_DIRECTORIES>)
+            target_compile_definitions(${target} PRIVATE
+                $<TARGET_PROPERTY:precompiled_${name},COMPILE_DEFINITIONS>)
         endif()
     endforeach()
 endfunction()
