@@ -1,10 +1,13 @@
-// Data flows one way: no folder includes from one to its right.
+// Dependencies point one way: no folder includes from one to its right, and public headers include
+// only each other.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <regex>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "data_folder.h"
 
@@ -14,35 +17,78 @@ namespace {
 
 // Folders with the same number know nothing of each other.
 const std::map<std::string, int> layers{
-    {"geometry", 0}, {"metric", 1}, {"sources", 2}, {"gradation", 2}, {"cones", 3},   {"space", 4},
-    {"fields", 4},   {"io", 5},     {"trees", 5},   {"baselines", 6}, {"measure", 6}, {"mesh", 7},
-    {"gmsh", 8},     {"study", 9},  {"c", 9},       {"cli", 10}};
+    {"geometry", 0}, {"metric", 1},    {"sources", 2}, {"gradation", 2}, {"cones", 3}, {"space", 4},
+    {"fields", 4},   {"io", 5},        {"trees", 5},   {"measure", 6},   {"mesh", 7},  {"gmsh", 8},
+    {"study", 9},    {"baselines", 6}, {"c", 7},       {"cli", 10}};
 
-bool is_source(const fs::path& path) {
-    return path.extension() == ".h" || path.extension() == ".cpp";
+// Includes that are still to go.
+const std::set<std::pair<std::string, std::string>> exceptions{
+    {"mesh", "study"}, {"space", "io"}, {"space", "trees"}};
+
+struct Include {
+    fs::path file;
+    std::string line, target;
+    bool is_public;  // of a public header
+};
+
+// Of the sources below a folder; includes of the compiler's and of libraries' headers left out.
+std::vector<Include> includes_in(const fs::path& folder) {
+    static const std::regex quoted("^#include \"([^\"]+)\".*");
+    std::vector<Include> includes;
+    if (!fs::exists(folder)) return includes;
+    for (const auto& file : fs::recursive_directory_iterator(folder)) {
+        if (file.path().extension() != ".h" && file.path().extension() != ".cpp") continue;
+        std::ifstream text(file.path());
+        for (std::string line; std::getline(text, line);) {
+            std::smatch match;
+            if (!std::regex_match(line, match, quoted)) continue;
+            std::string target = match[1];
+            const bool is_public = target.starts_with("controlspace/");
+            if (is_public) target.erase(0, sizeof "controlspace/" - 1);
+            includes.push_back({file.path(), line, target, is_public});
+        }
+    }
+    return includes;
+}
+
+// The first folder of a path; empty for the headers that lie beside the folders.
+std::string first_folder(const std::string& path) {
+    const std::size_t slash = path.find('/');
+    return slash == std::string::npos ? "" : path.substr(0, slash);
 }
 
 }  // namespace
 
 TEST_CASE("no folder includes from one to its right") {
     const fs::path root = data_folder().parent_path();
-    const std::regex include("^#include \"([a-z]+)/.*");
-    int includes = 0;
+    int seen = 0;
     for (const auto& [folder, layer] : layers) {
         const fs::path place = folder == "baselines" ? root / folder : root / "src" / folder;
-        for (const auto& file : fs::recursive_directory_iterator(place)) {
-            if (!is_source(file.path())) continue;
-            std::ifstream text(file.path());
-            for (std::string line; std::getline(text, line);) {
-                std::smatch match;
-                if (!std::regex_match(line, match, include)) continue;
-                const std::string& from = match[1];
-                CAPTURE(file.path().string(), line);
-                REQUIRE(layers.count(from) == 1);
-                CHECK((from == folder || layers.at(from) < layer));
-                ++includes;
+        for (const fs::path& part : {place, root / "src/include/controlspace" / folder}) {
+            for (const Include& include : includes_in(part)) {
+                const std::string from = first_folder(include.target);
+                if (from.empty()) continue;
+                CAPTURE(include.file.string(), include.line);
+                if (layers.count(from) == 0) {
+                    FAIL_CHECK("a folder that has no layer");
+                    continue;
+                }
+                CHECK((from == folder || layers.at(from) < layer ||
+                       exceptions.count({folder, from}) == 1));
+                ++seen;
             }
         }
     }
-    CHECK(includes > 100);
+    CHECK(seen > 300);
+}
+
+TEST_CASE("public headers include public headers alone") {
+    const fs::path headers = data_folder().parent_path() / "src/include/controlspace";
+    const std::vector<Include> includes = includes_in(headers);
+    for (const Include& include : includes) {
+        CAPTURE(include.file.string(), include.line);
+        CHECK(include.is_public);
+        CHECK(fs::exists(headers / include.target));
+    }
+    CHECK(includes.size() > 30);
 }
