@@ -2,25 +2,25 @@
 import math
 from collections import namedtuple
 
-from .figures import draw, grouped, height_of, legend_outside, lines_axis, log_axis
+from .figures import Spec, grouped, height_of, legend_outside, lines_axis, log_axis
 from .results import quartiles
-from .table import Table
+from .table import table_of
 
-# What is compared: the name, what less and more of it are called, a list of samples or one number,
-# and how it is drawn.
-Measure = namedtuple("Measure", "name less more samples number mark colour full")
+# What is compared: the name, what less and more of it are called, the measure, its samples if there
+# are any, and how it is drawn.
+Measure = namedtuple("Measure", "name less more measure samples mark colour full")
 MEASURES = [
-    Measure("access, random", "faster", "slower", "t_access_ns_random_samples", None, "o",
-            "#0072B2", True),
-    Measure("access, grid", "faster", "slower", "t_access_ns_grid_samples", None, "s", "#E69F00",
+    Measure("access, random", "faster", "slower", "t_access_ns_random",
+            "t_access_ns_random_samples", "o", "#0072B2", True),
+    Measure("access, grid", "faster", "slower", "t_access_ns_grid", "t_access_ns_grid_samples", "s",
+            "#E69F00", True),
+    Measure("creation", "faster", "slower", "creation_s", "t_creation_s_samples", "^", "#009E73",
             True),
-    Measure("creation", "faster", "slower", "t_creation_s_samples", lambda r: r.creation_s, "^",
-            "#009E73", True),
-    Measure("memory", "smaller", "larger", None, lambda r: r["bytes_total"], "D", "#000000", True),
-    Measure("largest δ_R, fine", "more accurate", "less accurate", None,
-            lambda r: r["delta_R_fine_max"], "o", "#D55E00", False),
-    Measure("mean δ_R, fine", "more accurate", "less accurate", None,
-            lambda r: r["delta_R_fine_mean"], "s", "#CC79A7", False)]
+    Measure("memory", "smaller", "larger", "memory_MB", None, "D", "#000000", True),
+    Measure("largest δ_R, fine", "more accurate", "less accurate", "delta_R_fine_max", None, "o",
+            "#D55E00", False),
+    Measure("mean δ_R, fine", "more accurate", "less accurate", "delta_R_fine_mean", None, "s",
+            "#CC79A7", False)]
 # Settings of a study that do not decide whether two rows are of the same case.
 NOT_COMPARED = {"name", "output", "runs"}
 
@@ -64,9 +64,9 @@ def sample_ratio(before, after):
 def ratio_of(measure, pair):
     """None where one of two numbers is 0, and the other is not."""
     before, after = pair
-    if measure.samples and all(len(row.measures.get(measure.samples, ())) > 1 for row in pair):
+    if all(len(row.measures.get(measure.samples) or ()) > 1 for row in pair):
         return sample_ratio(before[measure.samples], after[measure.samples])
-    a, b = (measure.number(row) if measure.number else row[measure.samples][0] for row in pair)
+    a, b = before[measure.measure], after[measure.measure]
     if a == b:
         return Ratio(1, 1, 1, False)
     if a <= 0 or b <= 0 or not math.isfinite(a) or not math.isfinite(b):
@@ -75,18 +75,14 @@ def ratio_of(measure, pair):
 
 
 def counts_table(pairs):
-    table = Table("What changed",
-                  "Numbers of rows. A time that was sampled counts as changed where the quartiles "
-                  "of the samples lie apart.",
-                  ["<measure", "better", "the same", "worse", "no ratio"])
+    rows = []
     for measure in MEASURES:
         ratios = [ratio_of(measure, pair) for pair in pairs]
         known = [r for r in ratios if r]
-        better, worse = (sum(r.high < 1 for r in known), sum(r.low > 1 for r in known))
-        table.rows.append([measure.name, f"{better} {measure.less}",
-                           str(len(known) - better - worse), f"{worse} {measure.more}",
-                           str(len(ratios) - len(known))])
-    return table
+        better, worse = sum(r.high < 1 for r in known), sum(r.low > 1 for r in known)
+        rows.append([measure.name, f"{better} {measure.less}", str(len(known) - better - worse),
+                     f"{worse} {measure.more}", str(len(ratios) - len(known))])
+    return table_of("counts", rows)
 
 
 def ratio_text(ratio):
@@ -103,36 +99,26 @@ def by_group(pairs):
 
 
 def change_tables(pairs):
-    return [Table(f"After / before: {group}",
-                  "In brackets: from the quotients of opposite quartiles of the samples; * where "
-                  "they do not hold 1.", ["<structure", *(m.name for m in MEASURES)],
-                  [[pair[0].label(), *(ratio_text(ratio_of(m, pair)) for m in MEASURES)]
-                   for pair in members]) for group, members in by_group(pairs).items()]
+    return [table_of("change", [[pair[0].label(), *(ratio_text(ratio_of(m, pair)) for m in MEASURES)]
+                                for pair in members], [m.name for m in MEASURES], group=group)
+            for group, members in by_group(pairs).items()]
 
 
-def change_figures(pairs, prefix, made_by):
-    figures = []
+def change_figures(pairs):
     for group, members in by_group(pairs).items():
         def plot(figure):
             ax = figure.subplots()
             ax.axvline(1, color="#888888")
             for k, measure in enumerate(MEASURES):
-                ratios = [(len(members) - i + 0.35 - 0.14 * k, ratio_of(measure, pair))
+                ratios = [(ratio_of(measure, pair), len(members) - i + 0.35 - 0.14 * k)
                           for i, pair in enumerate(members)]
-                places, known = zip(*[(y, r) for y, r in ratios if r] or [((), ())])
-                if not known:
-                    continue
-                ax.errorbar([r.value for r in known], places, linestyle="", label=measure.name,
-                            xerr=[[r.value - r.low for r in known],
-                                  [r.high - r.value for r in known]],
-                            marker=measure.mark, markersize=4, color=measure.colour,
-                            markerfacecolor=measure.colour if measure.full else "none")
+                known = [(r.value, y, r.value - r.low, r.high - r.value) for r, y in ratios if r]
+                if known:
+                    values, places, below, above = zip(*known)
+                    ax.errorbar(values, places, xerr=[below, above], linestyle="", markersize=4,
+                                label=measure.name, marker=measure.mark, color=measure.colour,
+                                markerfacecolor=measure.colour if measure.full else "none")
             lines_axis(ax, [before.label() for before, _ in members])
             log_axis(ax.xaxis, "after / before")
             legend_outside(ax)
-        figures.append(draw(
-            f"{prefix}change-{len(figures) + 1:02}", f"After over before: {group}",
-            "Left of 1: faster, smaller, more accurate. Bars reach from the lower quartile of the "
-            "later samples over the upper one of the earlier to the reverse: what crosses 1 may be "
-            "noise.", made_by, plot, height=height_of(len(members), 34)))
-    return figures
+        yield Spec("change", {"group": group}, plot, height=height_of(len(members), 34))

@@ -6,9 +6,9 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm
 
-from .figures import SMALLEST_ERROR, draw, drawn, height_of, legend_above, lines_axis, log_axis
+from .figures import SMALLEST_ERROR, Spec, drawn, height_of, legend_above, lines_axis, log_axis
 from .results import InputError
-from .table import Table
+from .table import table_of
 
 VISIBLE_ANISOTROPY = 1.01  # below it, lengths in all directions are the same to the eye
 COMPONENTS = [[0, 3, 4], [3, 1, 5], [4, 5, 2]]  # xx yy zz xy xz yz as a matrix
@@ -89,53 +89,46 @@ def percentiles(values, which=(95, 99, 100)):
     return [float(ordered[math.ceil(len(ordered) * p / 100) - 1]) for p in which]
 
 
-def delta_figure(fields, prefix, made_by):
-    _, exact, structures = fields
+def delta_figure(sampled):
+    _, exact, structures = sampled
     low, high, classes = SMALLEST_ERROR, 20, 60
     edges = np.geomspace(low, high, classes + 1)
+    marks = [("95th percentile", "|", "black", 14), ("99th percentile", "o", "#D55E00", 6),
+             ("maximum", "x", "#D55E00", 6)]
 
     def plot(figure):
         ax = figure.subplots()
         n = len(structures)
+        found = []
         for i, sample in enumerate(structures):
             delta = nonconformity(sample.probes, exact.probes)
             shares, _ = np.histogram(np.clip(delta, low, high), edges)
-            base = n - i
-            ax.stairs(base + 0.8 * shares / shares.max(), edges, baseline=base, fill=True,
+            ax.stairs(n - i + 0.8 * shares / shares.max(), edges, baseline=n - i, fill=True,
                       color="#56B4E9")
-            p95, p99, most = (drawn(p) for p in percentiles(delta))
-            first = i == 0
-            ax.plot([p95, p95], [base, base + 0.5], "k", linewidth=2,
-                    label="95th percentile" if first else None)
-            ax.plot(p99, base + 0.25, "o", color="#D55E00", markerfacecolor="none",
-                    label="99th percentile" if first else None)
-            ax.plot(min(most, 2 * high), base + 0.25, "x", color="#D55E00",
-                    label="maximum" if first else None)
+            found.append(percentiles(delta))
+        for values, (label, mark, colour, size) in zip(zip(*found), marks):
+            ax.plot([min(drawn(v), 2 * high) for v in values], np.arange(n, 0, -1) + 0.25, mark,
+                    label=label, color=colour, markersize=size, markerfacecolor="none")
         lines_axis(ax, [sample.label for sample in structures])
         ax.set_ylim(0.8, n + 1)
         log_axis(ax.xaxis, "δ to the exact field", low, high)
         legend_above(ax)
-    return draw(f"{prefix}delta", f"Error δ over the domain: {structures[0].row.group()}",
-                f"Share of the probes in each of {classes} classes of equal width on this axis; the "
-                "largest class of every structure has the same height. Errors below "
-                f"{SMALLEST_ERROR} are drawn at the left edge.", made_by, plot,
-                height=height_of(len(structures), 40))
+    yield Spec("delta", {"group": structures[0].row.group(), "classes": classes}, plot,
+               height=height_of(len(structures), 40))
 
 
-def delta_table(fields):
-    _, exact, structures = fields
-    table = Table("Error δ over the domain",
-                  "At the probes of δ_R, from the sampled fields; in brackets what the rows say.",
-                  ["<structure", "95th percentile", "99th percentile", "maximum"])
+def delta_table(sampled):
+    _, exact, structures = sampled
+    rows = []
     for sample in structures:
         values = percentiles(nonconformity(sample.probes, exact.probes))
         stored = [sample.row[f"delta_R_{key}"] for key in ("p95", "p99", "max")]
-        table.rows.append([sample.label, *(f"{v:.4f} ({s:.4f})" for v, s in zip(values, stored))])
-    return table
+        rows.append([sample.label, *(f"{v:.4f} ({s:.4f})" for v, s in zip(values, stored))])
+    return table_of("delta", rows)
 
 
-def cross_validation(fields, prefix, made_by):
-    _, exact, structures = fields
+def cross_validation(sampled):
+    _, exact, structures = sampled
     samples = [exact, *structures]
     n = len(samples)
     pairs = np.zeros((2, n, n))
@@ -159,55 +152,46 @@ def cross_validation(fields, prefix, made_by):
             ax.grid(False)
         figure.colorbar(image, ax=figure.axes, shrink=0.8)
     side, names = min(max(40 * n, 240), 6000), 7 * max(map(len, labels))
-    return draw(f"{prefix}cross-validation",
-                f"Structures against each other: {structures[0].row.group()}",
-                "δ between two structures at the probes of δ_R: structures that share nothing but "
-                "the sources agree where both are right.", made_by, plot,
-                width=2 * side + names + 120, height=side + names + 80)
+    yield Spec("cross-validation", {"group": structures[0].row.group()}, plot,
+               2 * side + names + 120, side + names + 80)
 
 
-def slice_figures(fields, prefix, made_by):
-    about, exact, structures = fields
+def slice_figures(sampled):
+    about, exact, structures = sampled
     x0, x1, y0, y1 = about["domain"][:4]
-    lengths, ratios = mean_length(exact.slice), anisotropy(exact.slice)
-    anisotropic = np.nanmax(ratios) > VISIBLE_ANISOTROPY
+    measures = [("h_mean [length]", mean_length)]
+    if np.nanmax(anisotropy(exact.slice)) > VISIBLE_ANISOTROPY:
+        measures.append(("anisotropy", anisotropy))
+    delta_norm = LogNorm(SMALLEST_ERROR, 10)
 
-    def norm_of(values):
-        known = values[np.isfinite(values) & (values > 0)]
-        return LogNorm(known.min(), max(known.max(), 1.01 * known.min()))
-
-    def panel(ax, values, title, norm, cmap, outlines=None):
+    def panel(ax, values, title, norm, cmap="viridis", outlines=None):
         image = ax.imshow(values, extent=(x0, x1, y0, y1), origin="lower", cmap=cmap, norm=norm,
                           interpolation="nearest")
         if outlines is not None:
             corners = outlines[:, [[0, 3], [0, 1], [2, 1]]]  # left and lower sides
             ax.add_collection(LineCollection(corners, colors="white", linewidths=0.3, alpha=0.5))
-        ax.set(title=title, xlabel="x [length]", ylabel="y [length]", xlim=(x0, x1), ylim=(y0, y1))
-        ax.title.set_fontsize(9)
+        ax.set(xlabel="x [length]", ylabel="y [length]", xlim=(x0, x1), ylim=(y0, y1))
+        ax.set_title(title, fontsize=9)
         ax.grid(False)
         ax.figure.colorbar(image, ax=ax, shrink=0.8, format="%.3g")
 
-    figures = []
     for sample in structures:
         def plot(figure):
-            axes = figure.subplots(1 + anisotropic, 3, squeeze=False)
-            panel(axes[0][0], lengths, "exact: h_mean [length]", norm_of(lengths), "viridis")
-            panel(axes[0][1], mean_length(sample.slice), f"{sample.label}: h_mean [length]",
-                  norm_of(lengths), "viridis", sample.outlines)
+            axes = figure.subplots(len(measures), 3, squeeze=False)
+            for line, (name, measure) in zip(axes, measures):
+                values = measure(exact.slice)
+                known = values[np.isfinite(values) & (values > 0)]
+                norm = LogNorm(known.min(), max(known.max(), 1.01 * known.min()))
+                panel(line[0], values, f"exact: {name}", norm)
+                panel(line[1], measure(sample.slice), f"{sample.label}: {name}", norm,
+                      outlines=sample.outlines)
+                line[2].set_axis_off()
+            axes[0][2].set_axis_on()
             delta = np.maximum(nonconformity(sample.slice, exact.slice), SMALLEST_ERROR)
-            panel(axes[0][2], delta, "error: δ", LogNorm(SMALLEST_ERROR, 10), "inferno_r")
-            if anisotropic:
-                panel(axes[1][0], ratios, "exact: anisotropy", norm_of(ratios), "viridis")
-                panel(axes[1][1], anisotropy(sample.slice), f"{sample.label}: anisotropy",
-                      norm_of(ratios), "viridis", sample.outlines)
-                axes[1][2].set_axis_off()
-        cells = "with its cells" if sample.outlines is not None else \
-            "whose cells are too many to be drawn"
-        figures.append(draw(
-            f"{prefix}slice-{len(figures) + 1:02}",
-            f"Slice at z = {about['z']:.4g}, {sample.label}: {sample.row.group()}",
-            f"Mean length{' (anisotropy below it)' if anisotropic else ''} of the exact field, of "
-            f"{sample.label}, {cells}, and the error δ between the two; colours span the range of "
-            "the exact field." + ("" if anisotropic else " The field is isotropic."),
-            made_by, plot, width=1200, height=820 if anisotropic else 430, kind="png"))
-    return figures
+            panel(axes[0][2], delta, "error: δ", delta_norm, "inferno_r")
+        yield Spec("slice", {
+            "z": about["z"], "label": sample.label, "group": sample.row.group(),
+            "shown": "Mean length" + (" (anisotropy below it)" if len(measures) > 1 else ""),
+            "cells": "with its cells" if sample.outlines is not None
+            else "whose cells are too many to be drawn"},
+            plot, 1200, 430 * len(measures), raster=True)

@@ -2,6 +2,7 @@
 # differ for a reason that an experiment shows, and which conclusions hold.
 import csv
 import math
+import tomllib
 from collections import namedtuple
 from pathlib import Path
 
@@ -21,17 +22,12 @@ SPHERE = {"sources": "sphere", "centre": [0, 0, 0], "radius": 0.8, "h": 0.015}
 AS_PUBLISHED = {"law": "mean-length", "schedule": "passes", "reference": "published-sphere",
                 "s_a": 2, "s_n": 1, "epsilon": 0.2, "g_r": 1.25}
 
-# One of the paper's tables: its title, our value, the key of the paper's value, and why values
-# cannot be compared (another machine, another clock).
-PaperTable = namedtuple("PaperTable", "title ours paper not_comparable")
-SIZE = PaperTable("Table 1: size in the paper's accounting [MB]",
-                  lambda row: (row["bytes_published_accounting"] or 0) / 1e6, "size_MB", None)
-CREATION = PaperTable("Table 2: creation time [s]", lambda row: row.creation_s, "creation_s",
-                      "another machine")
-ACCESS = PaperTable("Table 3: access time [µs]", lambda row: row["t_access_ns_random"] / 1e3,
-                    "access_us", "ticks of 0.370 µs")
-DELTA_R = PaperTable("Table 4: largest delta_R", lambda row: row["delta_R_max"], "delta_R_max",
-                     None)
+# One of the paper's tables: its title, the measure, and why its values cannot be compared.
+PaperTable = namedtuple("PaperTable", "title measure not_comparable", defaults=[None])
+SIZE = PaperTable("Table 1: size in the paper's accounting [MB]", "size_MB")
+CREATION = PaperTable("Table 2: creation time [s]", "creation_s", "another machine")
+ACCESS = PaperTable("Table 3: access time [µs]", "access_us", "ticks of 0.370 µs")
+DELTA_R = PaperTable("Table 4: largest delta_R", "delta_R_max")
 TABLES = (SIZE, CREATION, ACCESS, DELTA_R)
 
 
@@ -73,6 +69,12 @@ def paper_row(setting):
                                  setting["rho"], setting["tau"]))
 
 
+def is_as_published(setting):
+    """Whether a case was run as the paper's, with no setting beyond: nothing frozen, and so on."""
+    return setting.keys() <= {*AS_PUBLISHED, "structure", "split", "rho", "tau", "max_depth"} and \
+        all(setting.get(k) == v for k, v in AS_PUBLISHED.items())
+
+
 def rounded(x):
     """In units of the last digit that the paper prints."""
     return math.floor(abs(x) * 100 + 0.5) if math.isfinite(x) else math.inf
@@ -88,7 +90,19 @@ def key_of(setting, **changes):
     return frozenset((k, v) for k, v in merged.items() if v is not None)
 
 
-Cell = namedtuple("Cell", "row paper")
+class Cell(namedtuple("Cell", "row paper")):
+    """A row of ours that the paper has too."""
+
+    def ours(self, table):
+        return self.row[table.measure]
+
+    def theirs(self, table):
+        return getattr(self.paper, table.measure)
+
+    def published_nodes(self):
+        """Control nodes in the paper's size, if its tree has the elements of ours: its Table 1
+        counts 104 bytes for each."""
+        return self.row["control_nodes"] + (self.paper.size_MB - self.row["size_MB"]) * 1e6 / 104
 
 
 class Evidence:
@@ -109,18 +123,9 @@ class Evidence:
                     self.entries.append((row, box))
         self.by_key = {row.key: row for row, box in self.entries
                        if box == PAPER_BOX and row.measures is not None}
-        order = {id(p): i for i, p in enumerate(PAPER_ROWS)}
-        published = {**AS_PUBLISHED, "structure": None, "split": None, "rho": None, "tau": None,
-                     "max_depth": None}
-        cells = []
-        for row, box in self.entries:
-            s = row.setting
-            # No setting beyond those of the paper: nothing frozen, no other neighbourhood.
-            as_published = set(s) <= set(published) and all(
-                s.get(k) == v for k, v in AS_PUBLISHED.items())
-            if box == PAPER_BOX and as_published and paper_row(s):
-                cells.append(Cell(row, paper_row(s)))
-        self.cells = sorted(cells, key=lambda cell: order[id(cell.paper)])
+        cells = [Cell(row, paper_row(row.setting)) for row, box in self.entries
+                 if box == PAPER_BOX and is_as_published(row.setting) and paper_row(row.setting)]
+        self.cells = sorted(cells, key=lambda cell: PAPER_ROWS.index(cell.paper))
 
     @property
     def measured_cells(self):
@@ -168,27 +173,21 @@ EQUAL, EXPLAINED, NOT_COMPARABLE, UNEXPLAINED, FAILED = VERDICTS = (
 Judged = namedtuple("Judged", "cell verdict reason")
 
 
-def published_nodes(cell):
-    """Control nodes in the paper's size, if its tree has the elements of ours: its Table 1 counts
-    104 bytes for each."""
-    more = cell.paper.size_MB * 1e6 - (cell.row["bytes_published_accounting"] or 0)
-    return cell.row["control_nodes"] + more / 104
-
-
-def value_range(table, rows):
-    values = [table.ours(row) for row in rows]
+def value_range(measure, rows):
+    values = [row[measure] for row in rows]
     return min(values), max(values)
 
 
 # Each rule: whether it explains the difference of a cell, and the numbers that decide it; None where
 # it does not apply. They are tried in this order.
 
-def balance(evidence, table, row, paper):
+def balance(evidence, table, cell):
+    row, paper = cell
     plain_row = evidence.find(row.setting, structure="K_oL")
     plain_paper = paper_row({**row.setting, "structure": "K_oL"})
-    if row.setting["structure"] != "K_oLB" or not plain_row or not plain_paper:
+    if paper.structure != "K_oLB" or not plain_row or not plain_paper:
         return None
-    growth = SIZE.ours(row) / SIZE.ours(plain_row)
+    growth = row["size_MB"] / plain_row["size_MB"]
     paper_growth = paper.size_MB / plain_paper.size_MB
     delta, plain_delta = row["delta_R_max"], plain_row["delta_R_max"]
     accurate = table is not DELTA_R or delta <= plain_delta
@@ -197,68 +196,65 @@ def balance(evidence, table, row, paper):
             f"{delta:.2f} against its {plain_delta:.2f}; the paper's has {paper_growth:.1f} times")
 
 
-def ties(evidence, table, row, paper):
-    if row.split in ("", "s_L"):
+def ties(evidence, table, cell):
+    if cell.paper.split in ("", "s_L"):
         return None
-    variants = evidence.near_ties(row.setting)
+    variants = evidence.near_ties(cell.row.setting)
     if not variants:
         return False, "ties: not tried here"
-    low, high = value_range(table, [row, *variants])
-    theirs = getattr(paper, table.paper)
-    return (abs(table.ours(row) - theirs) <= high - low or within(theirs, low, high),
+    low, high = value_range(table.measure, [cell.row, *variants])
+    return (abs(cell.ours(table) - cell.theirs(table)) <= high - low
+            or within(cell.theirs(table), low, high),
             f"ties: {len(variants)} runs that choose otherwise among edges of almost equal length "
             f"give {low:.2f} to {high:.2f}")
 
 
-def shared_vertices(evidence, table, row, paper):
-    if row.setting["structure"] not in ("K_V", "K_oV"):
+def shared_vertices(evidence, table, cell):
+    if cell.paper.structure not in ("K_V", "K_oV"):
         return None
-    nodes, places = published_nodes(Cell(row, paper)), row["control_nodes"]
-    better = table is not DELTA_R or row["delta_R_max"] < paper.delta_R_max
+    nodes, places = cell.published_nodes(), cell.row["control_nodes"]
+    better = table is not DELTA_R or cell.ours(table) < cell.theirs(table)
     return (nodes > 1.05 * places and better,
             f"shared vertices: the paper's size holds {nodes:.0f} control nodes, ours one for each "
             f"of {places} places")
 
 
-def links(evidence, table, row, paper):
-    if row.setting["structure"] != "K_oL" or table is not DELTA_R:
+def links(evidence, table, cell):
+    if cell.paper.structure != "K_oL" or table is not DELTA_R:
         return None
-    queue = evidence.find(row.setting, schedule="queue")
+    queue = evidence.find(cell.row.setting, schedule="queue")
     if not queue:
         return False, "links: not tried here"
-    ours, with_queue = row["delta_R_max"], queue["delta_R_max"]
-    return (abs(ours - paper.delta_R_max) <= abs(with_queue - ours),
+    ours, with_queue = cell.ours(table), queue["delta_R_max"]
+    return (abs(ours - cell.theirs(table)) <= abs(with_queue - ours),
             f"links: which leaves are compared decides; with one leaf a face and passes {ours:.2f}, "
             f"with all leaves and the queue {with_queue:.2f}")
 
 
-def published_interpolation(evidence, table, row, paper):
-    if row.setting["structure"] != "K_Li":
+def interpolation(evidence, table, cell):
+    published = evidence.find(cell.row.setting, interpolation="published")
+    if cell.paper.structure != "K_Li" or not published:
         return None
-    published = evidence.find(row.setting, interpolation="published")
-    if not published:
-        return None
-    variants = evidence.near_ties(row.setting, interpolation="published")
-    low, high = value_range(table, [published, *variants])
-    theirs = getattr(paper, table.paper)
-    return (within(theirs, low, high) or abs(table.ours(published) - theirs) <= high - low,
-            f"interpolation: with the published one, its two slips included, "
-            f"{table.ours(published):.2f}" +
+    variants = evidence.near_ties(cell.row.setting, interpolation="published")
+    low, high = value_range(table.measure, [published, *variants])
+    value = published[table.measure]
+    return (abs(value - cell.theirs(table)) <= high - low or within(cell.theirs(table), low, high),
+            f"interpolation: with the published one, its two slips included, {value:.2f}" +
             (f" ({low:.2f} to {high:.2f} over {len(variants)} runs that choose otherwise among "
              f"edges of almost equal length)" if variants else ""))
 
 
-def scatter(evidence, table, row, paper):
-    variants = evidence.near_densities(row.setting) if table is DELTA_R else []
+def scatter(evidence, table, cell):
+    variants = evidence.near_densities(cell.row.setting) if table is DELTA_R else []
     if not variants:
         return None
-    low, high = value_range(table, [row, *variants])
-    return (within(paper.delta_R_max, low, high),
+    low, high = value_range(table.measure, [cell.row, *variants])
+    return (within(cell.theirs(table), low, high),
             f"scatter: the largest of 27000 errors is {low:.2f} to {high:.2f} with sources 1 % "
             f"closer or farther apart")
 
 
-RULES = (balance, ties, shared_vertices, links, published_interpolation, scatter)
+RULES = (balance, ties, shared_vertices, links, interpolation, scatter)
 
 
 def judge(evidence, table):
@@ -267,116 +263,92 @@ def judge(evidence, table):
 
 
 def verdict(evidence, table, cell):
-    row, paper = cell
-    if row.measures is None:
-        return FAILED, row.error
+    if cell.row.measures is None:
+        return FAILED, cell.row.error
     if table.not_comparable:
         return NOT_COMPARABLE, table.not_comparable
-    if rounded(table.ours(row)) == rounded(getattr(paper, table.paper)):
+    if rounded(cell.ours(table)) == rounded(cell.theirs(table)):
         return EQUAL, ""
-    tried = []
-    for rule in RULES:
-        explanation = rule(evidence, table, row, paper)
-        if explanation and explanation[0]:
-            return EXPLAINED, explanation[1]
-        if explanation:
-            tried.append(f"not {explanation[1]}")
-    return UNEXPLAINED, "; ".join(tried) or "no experiment bears on it"
+    tried = [found for found in (rule(evidence, table, cell) for rule in RULES) if found]
+    for explains, text in tried:
+        if explains:
+            return EXPLAINED, text
+    return (UNEXPLAINED,
+            "; ".join(f"not {text}" for _, text in tried) or "no experiment bears on it")
 
 
 # ---- Conclusions that the paper's tables suggest
 
-# What a claim may speak of: one structure at one setting, ours or the paper's. `deep`: largest
-# delta_R with the deepest limit that was tried.
-Entry = namedtuple("Entry", "label memory creation access delta_r deep", defaults=[None])
-UNITS = {"memory": " MB", "creation": " s", "access": " µs", "delta_r": ""}
+# At one setting, claims speak of structures by label, ours or the paper's: measure -> (value, lower
+# and upper quartile), and "deep": largest delta_R with the deepest limit that was tried.
+UNITS = {"memory_MB": " MB", "creation_s": " s", "access_us": " µs", "delta_R_max": ""}
 
 
-def pair_text(a, b, measure):
-    unit = UNITS[measure]
-    return (f"{a.label} {getattr(a, measure):.3g}{unit}, "
-            f"{b.label} {getattr(b, measure):.3g}{unit}")
+def pair_text(entries, a, b, measure):
+    return ", ".join(f"{label} {entries[label][measure][0]:.3g}{UNITS[measure]}" for label in (a, b))
 
 
-def all_hold(*conditions):
-    """A test of conditions (structure, measure, "<" or ">", factor, other structure)."""
-    def test(entries):
-        by_label = {e.label: e for e in entries}
-        holds, texts = True, []
-        for left, measure, order, factor, right in conditions:
-            if left not in by_label or right not in by_label:
-                return None
-            a, b = by_label[left], by_label[right]
-            x, y = getattr(a, measure), factor * getattr(b, measure)
-            holds = holds and (x < y if order == "<" else x > y)
-            texts.append(pair_text(a, b, measure))
-        return holds, "; ".join(texts)
-    return test
+def below(a, b, factor=1):
+    """Whether a < factor b; None, indistinguishable, where the quartiles overlap."""
+    return True if a[2] < factor * b[1] else False if a[1] >= factor * b[2] else None
+
+
+# Tests at one setting: (whether it holds, or None; the numbers), or None where an entry is missing.
+
+def all_hold(entries, conditions):
+    if any(label not in entries for c in conditions for label in (c[0], c[4])):
+        return None
+    held = []
+    for left, measure, order, factor, right in conditions:
+        a, b = entries[left][measure], entries[right][measure]
+        held.append(below(a, b, factor) if order == "<" else below(b, a, 1 / factor))
+    return (False if False in held else None if None in held else True,
+            "; ".join(pair_text(entries, c[0], c[4], c[1]) for c in conditions))
 
 
 def all_rounder(entries):
-    entries = [e for e in entries if not e.label.endswith("s_M")]
-    if len(entries) < 9:  # among a few, a good rank says little
+    labels = [label for label in entries if not label.endswith("s_M")]
+    if len(labels) < 9:  # among a few, a good rank says little
         return None
-    ranks = [average_ranks([getattr(e, measure) for e in entries]) for measure in UNITS]
+    ranks = [average_ranks([entries[label][measure][0] for label in labels]) for measure in UNITS]
     means = sorted((sum(r) / len(r), i) for i, r in enumerate(zip(*ranks)))
-    best = [(entries[i].label, mean) for mean, i in means[:3]]
+    best = [(labels[i], mean) for mean, i in means[:3]]
     return (any(label.startswith("K_L ") for label, _ in best),
             "mean ranks: " + ", ".join(f"{label} {mean:.2f}" for label, mean in best))
 
 
 def fastest_octree(entries):
-    octree = next((e for e in entries if e.label == "K_oL"), None)
-    others = [e for e in entries if e is not octree]
-    if not octree or not others:
+    others = [label for label in entries if label != "K_oL"]
+    if "K_oL" not in entries or not others:
         return None
-    other = min(others, key=lambda e: e.access)
-    return octree.access < other.access, pair_text(octree, other, "access")
+    other = min(others, key=lambda label: entries[label]["access_us"][0])
+    return all_hold(entries, [("K_oL", "access_us", "<", 1, other)])
 
 
 def poor_deep_slabs(entries):
-    by_label = {e.label: e for e in entries}
-    middle, slabs = by_label.get("K_L s_L"), by_label.get("K_L s_M")
-    if not middle or not slabs or slabs.deep is None:
+    middle, slabs = entries.get("K_L s_L"), entries.get("K_L s_M")
+    if not middle or not slabs or "deep" not in slabs:
         return None
-    return (slabs.deep > 2 * middle.delta_r,
-            f"K_L s_M {slabs.delta_r:.3g} at the paper's depth, {slabs.deep:.3g} at the deepest; "
-            f"K_L s_L {middle.delta_r:.3g}")
+    deep, limit = slabs["deep"], middle["delta_R_max"][0]
+    return (deep > 2 * limit, f"K_L s_M {slabs['delta_R_max'][0]:.3g} at the paper's depth, "
+            f"{deep:.3g} at the deepest; K_L s_L {limit:.3g}")
 
 
-# The sentence, what is compared, where to see more, and a test at one setting: (holds, numbers), or
-# None where an entry that it needs is missing.
-Claim = namedtuple("Claim", "sentence compared more test")
-CLAIMS = [Claim(*claim) for claim in (
-    ("K_L is a good all-rounder.",
-     "mean rank in memory, creation, access and delta_R among the best three of nine, s_M left out",
-     "Tables 1-4", all_rounder),
-    ("Interpolation buys accuracy for time.",
-     "K_Li against K_L, with s_L and with s_G: smaller delta_R, longer access", "Tables 3 and 4",
-     all_hold(("K_Li s_L", "delta_r", "<", 1, "K_L s_L"), ("K_Li s_L", "access", ">", 1, "K_L s_L"),
-              ("K_Li s_G", "delta_r", "<", 1, "K_L s_G"),
-              ("K_Li s_G", "access", ">", 1, "K_L s_G"))),
-    ("Values at vertices buy accuracy for memory and creation time.",
-     "K_V against K_L, with s_L: smaller delta_R, more MB, more s", "Tables 1, 2 and 4",
-     all_hold(("K_V s_L", "delta_r", "<", 1, "K_L s_L"), ("K_V s_L", "memory", ">", 1, "K_L s_L"),
-              ("K_V s_L", "creation", ">", 1, "K_L s_L"))),
-    ("The plain octree is the fastest to read.", "access time of K_oL against all others",
-     "Table 3", fastest_octree),
-    ("The split s_M is poor.", "delta_R of K_L: more than twice that of s_L", "Table 4",
-     all_hold(("K_L s_M", "delta_r", ">", 2, "K_L s_L"))),
-    ("The split s_M is poor at any depth.", "the same, at the deepest limit tried",
-     "experiment: the depth limit of s_M", poor_deep_slabs),
-    ("The octree with values at vertices is bad.", "delta_R of K_oV above that of K_V s_L",
-     "experiment: shared vertices", all_hold(("K_oV", "delta_r", ">", 1, "K_V s_L"))),
-    ("Balancing ruins memory.", "K_oLB: more than twice the MB of K_oL", "experiment: balance",
-     all_hold(("K_oLB", "memory", ">", 2, "K_oL"))),
-    ("Balancing ruins accuracy.", "delta_R of K_oLB above that of K_oL", "experiment: balance",
-     all_hold(("K_oLB", "delta_r", ">", 1, "K_oL"))))]
+TEXTS = tomllib.loads((HERE / "paper.toml").read_text(encoding="utf-8"))
+CLAIMS = {claim["sentence"]: claim for claim in TEXTS["claims"]}
 
-STANDS, DOES_NOT_STAND, NOT_MEASURED = CLAIM_VERDICTS = (
-    "Conclusions that stand", "Conclusions that do not stand", "Conclusions that were not measured")
-JudgedClaim = namedtuple("JudgedClaim", "claim verdict holds settings paper_holds paper_settings "
-                                        "numbers")
+
+def tested(claim, entries):
+    if "conditions" in claim:
+        return all_hold(entries, claim["conditions"])
+    return globals()[claim["test"]](entries)
+
+
+STANDS, DOES_NOT_STAND, UNDECIDED, NOT_MEASURED = CLAIM_VERDICTS = (
+    "Conclusions that stand", "Conclusions that do not stand",
+    "Conclusions that times do not decide", "Conclusions that were not measured")
+JudgedClaim = namedtuple("JudgedClaim", "claim verdict holds undecided settings paper_holds "
+                                        "paper_settings numbers")
 
 
 def setting_name(paper):
@@ -390,34 +362,37 @@ def cells_by_setting(evidence):
     return groups
 
 
-def our_entry(evidence, row):
+def entry_of(evidence, row):
+    entry = {measure: (row[measure], *row.spread(measure)) for measure in UNITS}
     deep = evidence.other_depths(row.setting)
-    return Entry(f"{row.setting['structure']} {row.split}".strip(), row["bytes_total"] / 1e6,
-                 row.creation_s, ACCESS.ours(row), row["delta_R_max"],
-                 deep[-1]["delta_R_max"] if deep else None)
+    return entry | ({"deep": deep[-1]["delta_R_max"]} if deep else {})
 
 
-def paper_entry(p):
-    return Entry(f"{p.structure} {p.split}".strip(), p.size_MB, p.creation_s, p.access_us,
-                 p.delta_R_max)
+def paper_entry(paper):
+    values = paper._asdict() | {"memory_MB": paper.size_MB}
+    return {measure: (values[measure],) * 3 for measure in UNITS}
 
 
 def judge_claims(evidence):
-    """All claims, each at every setting that has rows run as published: it stands if it holds at
-    every one. Numbers are those of the first setting where it fails, else of the first."""
-    settings = [(name, [our_entry(evidence, cell.row) for cell in cells],
-                 [paper_entry(cell.paper) for cell in cells])
-                for name, cells in cells_by_setting(evidence).items()]
+    """All claims, each at every setting that has rows run as published: it stands if it fails at
+    none. Numbers are those of the first setting where it fails, else of the first."""
+    settings = []
+    for name, cells in cells_by_setting(evidence).items():
+        labels = [f"{cell.paper.structure} {cell.paper.split}".strip() for cell in cells]
+        settings.append((name, dict(zip(labels, (entry_of(evidence, c.row) for c in cells))),
+                         dict(zip(labels, (paper_entry(c.paper) for c in cells)))))
     judged = []
-    for claim in CLAIMS:
-        outcomes = [(name, claim.test(ours), claim.test(paper)) for name, ours, paper in settings]
+    for claim in CLAIMS.values():
+        outcomes = [(name, tested(claim, ours), tested(claim, paper))
+                    for name, ours, paper in settings]
         outcomes = [outcome for outcome in outcomes if outcome[1]]
+        ours = [our[0] for _, our, _ in outcomes]
         papers = [paper[0] for _, _, paper in outcomes if paper]
-        failed = [outcome for outcome in outcomes if not outcome[1][0]]
-        shown = (failed or outcomes or [None])[0]
-        state = NOT_MEASURED if not outcomes else DOES_NOT_STAND if failed else STANDS
-        judged.append(JudgedClaim(claim, state, len(outcomes) - len(failed), len(outcomes),
-                                  sum(papers), len(papers),
+        state = NOT_MEASURED if not ours else DOES_NOT_STAND if False in ours else \
+            STANDS if True in ours else UNDECIDED
+        shown = next((o for o in outcomes if o[1][0] is False), (outcomes or [None])[0])
+        judged.append(JudgedClaim(claim, state, ours.count(True), ours.count(None), len(ours),
+                                  papers.count(True), len(papers),
                                   f"{shown[0]}: {shown[1][1]}" if shown else ""))
     return judged
 

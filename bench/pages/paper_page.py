@@ -14,127 +14,48 @@ def case_of(cell):
     return [cell.paper.structure, cell.paper.split, plain(cell.paper.rho), plain(cell.paper.tau)]
 
 
-# ---- Experiments: title, note, columns, and the columns' values of a cell (one list, or a list of
-# lists where a cell has several lines); nothing where the experiment has no row for the cell.
+# ---- Experiments
 
-def balance(evidence, cell):
-    row, paper = cell
-    if paper.structure != "K_oLB":
-        return None
-    plain_row = evidence.find(row.setting, structure="K_oL")
-    plain_paper = p.paper_row({**row.setting, "structure": "K_oL"})
-    if not plain_row or not plain_paper:
-        return None
-    size = p.SIZE.ours(row)
-    return map(fixed, (size, size / p.SIZE.ours(plain_row), paper.size_MB,
-                       paper.size_MB / plain_paper.size_MB, row["delta_R_max"],
-                       plain_row["delta_R_max"], paper.delta_R_max, plain_paper.delta_R_max))
+def value_text(value, digits, who):
+    """The text of a value of paper.toml: "row.size_MB / other.size_MB", of what `who` names."""
+    if " / " in value:
+        a, b = (operand.split(".") for operand in value.split(" / "))
+        return fixed(who[a[0]][a[1]] / who[b[0]][b[1]], digits)
+    name, key = value.split(".")
+    if name == "range":
+        low, high = p.value_range(key, who["all"])
+        return f"{low:.2f} to {high:.2f}"
+    return fixed(who[name][key], digits) if who[name] else "–"
 
 
-def shared_vertices(_, cell):
-    if cell.paper.structure not in ("K_V", "K_oV"):
-        return None
-    nodes, places = p.published_nodes(cell), cell.row["control_nodes"]
-    return [str(places), fixed(nodes, 0), fixed(nodes / places), fixed(cell.row["delta_R_max"]),
-            fixed(cell.paper.delta_R_max)]
+def experiment_lines(experiment, evidence, cell):
+    setting = cell.row.setting
+    changes = experiment.get("other", {})
+    other = evidence.find(setting, **changes)
+    rows = getattr(evidence, experiment["rows"])(setting) if "rows" in experiment else ()
+    needed = [other] * ("other" in experiment) + [rows] * ("rows" in experiment)
+    if cell.paper.structure not in experiment.get("only", [cell.paper.structure]) or \
+            not all(needed):
+        return []
+    paper_other = p.paper_row({**setting, **changes})
+    who = {"other": other, "rows": {"count": len(rows)}, "all": [cell.row, *rows],
+           "paper": cell.paper._asdict() | {"nodes": cell.published_nodes()},
+           "paper_other": paper_other and paper_other._asdict()}
+    return [[*case_of(cell), *(value_text(column[1], *column[2:] or [2], {
+        **who, "row": row.setting | row.measures, "paper": who["paper"] if row is cell.row else None
+    }) for column in experiment["columns"])]
+        for row in (who["all"] if "each" in experiment else [cell.row])]
 
 
-def depth_limit(evidence, cell):
-    rows = evidence.other_depths(cell.row.setting)
-    return [[str(row.setting["max_depth"]), str(row["depth"]), str(row["cells"]),
-             fixed(row["delta_R_max"]), fixed(row["delta_R_mean"], 4),
-             fixed(cell.paper.delta_R_max) if row is cell.row else "–"]
-            for row in [cell.row, *rows]] if rows else None
-
-
-def near_ties(evidence, cell):
-    variants = evidence.near_ties(cell.row.setting)
-    return [str(len(variants)), *ours_range_paper(p.SIZE, cell, variants),
-            *ours_range_paper(p.DELTA_R, cell, variants)] if variants else None
-
-
-def ours_range_paper(table, cell, variants):
-    low, high = p.value_range(table, [cell.row, *variants])
-    return [fixed(table.ours(cell.row)), f"{low:.2f} to {high:.2f}",
-            fixed(getattr(cell.paper, table.paper))]
-
-
-def accounting(_, cell):
-    allocated = cell.row["bytes_total"] / 1e6
-    return map(fixed, (cell.paper.size_MB, p.SIZE.ours(cell.row), allocated,
-                       cell.row["bytes_payload"] / 1e6, cell.paper.size_MB / allocated))
-
-
-def two_references(evidence, cell):
-    exact = evidence.find(cell.row.setting, reference="exact")
-    return [fixed(cell.row["delta_R_max"]), fixed(exact["delta_R_max"]),
-            fixed(cell.paper.delta_R_max), fixed(cell.row["delta_R_mean"], 4),
-            fixed(exact["delta_R_mean"], 4)] if exact else None
-
-
-def schedules(evidence, cell):
-    queue = evidence.find(cell.row.setting, schedule="queue")
-    return [fixed(cell.row["delta_R_max"]), fixed(queue["delta_R_max"]),
-            fixed(cell.paper.delta_R_max), fixed(cell.row["gradation_max_left"], 4),
-            fixed(queue["gradation_max_left"], 4)] if queue else None
-
-
-def interpolations(evidence, cell):
-    published = evidence.find(cell.row.setting, interpolation="published")
-    return [text for table in (p.SIZE, p.DELTA_R)
-            for text in (fixed(table.ours(cell.row)), fixed(table.ours(published)),
-                         fixed(getattr(cell.paper, table.paper)))] if published else None
-
-
-def scatter(evidence, cell):
-    variants = evidence.near_densities(cell.row.setting)
-    return [str(len(variants)), *ours_range_paper(p.DELTA_R, cell, variants)] if variants else None
-
-
-EXPERIMENTS = [
-    ("balance",
-     "K_oLB with every leaf at most one level finer than its neighbours across faces, beside K_oL "
-     "at the same setting.",
-     ["MB", "times K_oL", "paper MB", "times K_oL", "delta_R", "K_oL delta_R", "paper delta_R",
-      "paper K_oL delta_R"], balance),
-    ("shared vertices",
-     "Our trees have one control node at each place. The paper's number follows from its size, "
-     "which counts 104 bytes for each, on the elements of our tree. Of several nodes at one place "
-     "each gets what its own leaves get.",
-     ["places", "paper's nodes", "nodes a place", "delta_R", "paper delta_R"], shared_vertices),
-    ("the depth limit of s_M",
-     "s_M peels slabs, so its depth grows linearly with the box. Depth: of the tree; the root has "
-     "level 0.",
-     ["limit", "depth", "leaves", "delta_R", "mean", "paper delta_R"], depth_limit),
-    ("edges that are almost equally long",
-     "s_G and s_M cut boxes whose edges are equally long but for rounding or the digits of the "
-     "golden section, and s_M slabs that are as long as l_min but for rounding. Range over runs "
-     "with another order among them: a box longer by a billionth along some axes, l_min by as "
-     "much, s_G's sections to all digits instead of five.",
-     ["runs", "MB", "range", "paper", "delta_R", "range", "paper"], near_ties),
-    ("the accounting of Table 1",
-     "The paper's size counts 136 bytes a leaf, 108 (kd-tree) or 216 (octree) an inner node and "
-     "104 a vertex, and no metric of a leaf. Beside it what our structure allocates, the metrics "
-     "in it among that.",
-     ["paper MB", "in its accounting", "allocated", "metrics", "paper / allocated"], accounting),
-    ("the clock of Table 3", None, None, None),
-    ("the two references",
-     "The same graded structure against the analytic field h + s ||p| - r| with s = 2 (g-1)/(g+1), "
-     "and against the exact field of all sources' cones.",
-     ["analytic", "exact", "paper", "analytic, mean", "exact, mean"], two_references),
-    ("links and schedules",
-     "At most ten passes over the nearest leaf across each face, as for the tables, and the queue "
-     "of the paper's text over all leaves across each face, until nothing changes. G left: the "
-     "largest gradation ratio between linked nodes at the end.",
-     ["delta_R passes", "queue", "paper", "G left passes", "queue"], schedules),
-    ("the interpolation of K_Li",
-     "Ours, and the published one with its two slips: the trilinear part of the basis evaluated at "
-     "t in [0, 1] where 2t - 1 is meant, and one corner that is the mean of a wrong face.",
-     ["MB", "published", "paper", "delta_R", "published", "paper"], interpolations),
-    ("what a maximum over 27000 places is worth",
-     "Largest delta_R with the sources a little closer together or farther apart: differences "
-     "within the range say nothing of a structure.",
-     ["runs", "delta_R", "range", "paper"], scatter)]
+def experiment_tables(evidence):
+    tables = [clock_ticks()]
+    for experiment in p.TEXTS["experiments"]:
+        lines = [line for cell in evidence.measured_cells
+                 for line in experiment_lines(experiment, evidence, cell)]
+        note = experiment["note"] + ("" if lines else " Not in these results: see `--experiments`.")
+        tables.append(Table(f"Experiment: {experiment['name']}", note,
+                            CASE + [column[0] for column in experiment["columns"]], lines))
+    return tables
 
 
 def clock_ticks():
@@ -150,36 +71,22 @@ def clock_ticks():
           str(len({round(t / tick) for t in times})), fixed(min(times) / tick, 0)]])
 
 
-def experiment_tables(evidence):
-    tables = []
-    for name, note, columns, values_of in EXPERIMENTS:
-        if values_of is None:
-            tables.append(clock_ticks())
-            continue
-        table = Table(f"Experiment: {name}", note, CASE + columns)
-        for cell in evidence.measured_cells:
-            values = list(values_of(evidence, cell) or [])
-            lines = values if values and isinstance(values[0], list) else [values]
-            table.rows += [case_of(cell) + line for line in lines if line]
-        if not table.rows:
-            table.note += " Not in these results: see `--experiments`."
-        tables.append(table)
-    return tables
-
-
 # ---- The summary
 
 def claims_tables(evidence):
     judged = p.judge_claims(evidence)
     tables = []
     for verdict in p.CLAIM_VERDICTS:
-        rows = [[j.claim.sentence, share(j.holds, j.settings), share(j.paper_holds, j.paper_settings),
-                 j.numbers, j.claim.compared, j.claim.more] for j in judged if j.verdict == verdict]
+        rows = [[j.claim["sentence"], share(j.holds, j.settings)
+                 + (f", {j.undecided} indistinguishable" if j.undecided else ""),
+                 share(j.paper_holds, j.paper_settings), j.numbers, j.claim["compared"],
+                 j.claim["more"]] for j in judged if j.verdict == verdict]
         if rows:
             tables.append(Table(
                 verdict,
                 "Holds: number of settings of the sphere at which our numbers bear it out, and the "
-                "paper's own. It stands if ours do at every setting.",
+                "paper's own. It stands if ours fail at none; times whose quartiles overlap are "
+                "indistinguishable and decide nothing.",
                 ["<conclusion", "holds", "in the paper", "<numbers, ours", "<compared",
                  "<more in"], rows))
     return tables
@@ -195,15 +102,14 @@ def rank_table(evidence):
                   "Within each column of a table. 1: the same order; -1: the reverse; ties share "
                   "the mean of their ranks. Without faults: without K_oLB, K_V and K_oV.",
                   ["<table", "<rows", "mean", *groups])
-    measures = [(t.title, t.ours, t.paper) for t in p.TABLES]
-    measures.append(("Table 1 against the memory really allocated",
-                     lambda row: row["bytes_total"] / 1e6, "size_MB"))
+    measures = [(t.title, t.measure, t.measure) for t in p.TABLES]
+    measures.append(("Table 1 against the memory really allocated", "memory_MB", "size_MB"))
     for title, ours, theirs in measures:
         for rows, left_out in (("all", ()), ("without faults", ("K_oLB", "K_V", "K_oV"))):
             rhos = []
             for cells in groups.values():
                 cells = [cell for cell in cells if cell.paper.structure not in left_out]
-                rhos.append(p.spearman([ours(cell.row) for cell in cells],
+                rhos.append(p.spearman([cell.row[ours] for cell in cells],
                                        [getattr(cell.paper, theirs) for cell in cells]))
             known = [rho for rho in rhos if rho is not None]
             mean = sum(known) / len(known) if known else None
@@ -224,11 +130,10 @@ def counts_table(evidence):
 
 
 def cell_line(table, judged):
-    row, paper = judged.cell
+    cell = judged.cell
     digits = 3 if table.not_comparable else 2
-    ours = fixed(table.ours(row), digits) if row.measures is not None else "–"
-    return [*case_of(judged.cell), ours, fixed(getattr(paper, table.paper)), judged.verdict,
-            judged.reason]
+    ours = fixed(cell.ours(table), digits) if cell.row.measures is not None else "–"
+    return [*case_of(cell), ours, fixed(cell.theirs(table)), judged.verdict, judged.reason]
 
 
 CELL_COLUMNS = CASE + ["ours", "paper", "<verdict", "<why"]
@@ -266,26 +171,23 @@ def detail_tables(evidence):
 
 def side_by_side(evidence):
     """Tables 1-4 with ours beside the paper's: structures down, settings across."""
-    columns = [p.setting_name(cell.paper) for cell in evidence.cells]
-    columns = sorted(set(columns), key=columns.index)
+    columns = list(dict.fromkeys(p.setting_name(cell.paper) for cell in evidence.cells))
+    groups = p.cells_by_setting(evidence)
     tables = []
     for t in p.TABLES:
-        def ranks(value_of, t=t):
-            return {name: sorted(value_of(cell) for cell in cells)
-                    for name, cells in p.cells_by_setting(evidence).items()}
-        ours, theirs = lambda c, t=t: t.ours(c.row), lambda c, t=t: getattr(c.paper, t.paper)
-        our_ranks, their_ranks = ranks(ours), ranks(theirs)
+        def text(cell):
+            if cell.row.measures is None:
+                return f"failed / {plain(cell.theirs(t))}"
+            if not t.not_comparable:
+                return f"{cell.ours(t):.2f} / {plain(cell.theirs(t))}"
+            peers = groups[p.setting_name(cell.paper)]
+            ranks = [1 + sum(value(peer, t) < value(cell, t) for peer in peers)
+                     for value in (p.Cell.ours, p.Cell.theirs)]
+            return f"{cell.ours(t):.3g} ({ranks[0]}) / {plain(cell.theirs(t))} ({ranks[1]})"
         lines = {}
         for cell in evidence.cells:
-            name = p.setting_name(cell.paper)
             line = lines.setdefault(tuple(case_of(cell)[:2]), {})
-            if cell.row.measures is None:
-                line[name] = f"failed / {plain(theirs(cell))}"
-            elif t.not_comparable:
-                line[name] = (f"{ours(cell):.3g} ({our_ranks[name].index(ours(cell)) + 1}) / "
-                              f"{plain(theirs(cell))} ({their_ranks[name].index(theirs(cell)) + 1})")
-            else:
-                line[name] = f"{ours(cell):.2f} / {plain(theirs(cell))}"
+            line[p.setting_name(cell.paper)] = text(cell)
         tables.append(Table(
             f"{t.title}, ours {'(rank) ' if t.not_comparable else ''}/ paper",
             f"In brackets: ranks in the column; values cannot be compared ({t.not_comparable})."

@@ -9,8 +9,8 @@ from . import compare_runs, fields, figures, paper_page
 from .command import OK
 from .paper import Evidence
 from .paper_command import evidence_in
-from .results import write_file
-from .table import Table, fixed
+from .results import Row, read_results, write_file
+from .table import fixed, table_of
 
 Section = namedtuple("Section", "title parts")  # parts: (kind, item) as report.html.j2 shows them
 
@@ -24,122 +24,94 @@ def titled(title, found):
 
 
 def origin_table(results):
-    head = results.head
+    head, settings = results.head, results.settings
     failed = len(results.rows) - len(results.measured)
-    return Table("Where it is from", "", ["<what", "<value"], [
-        ["program", results.version], ["commit", head["commit"]], ["compiler", head["compiler"]],
-        ["flags", head["flags"]], ["processor", head["cpu"]],
-        ["cores, threads", f"{head['cores']}, {head['threads']}"], ["date (UTC)", head["date"]],
-        ["command", head["command_line"]],
-        ["sources, seed", f"{results.settings.get('sources')}, {results.settings.get('seed')}"],
+    return table_of("origin", [
+        ["program", results.version], *([key, head[key]] for key in ("commit", "compiler", "flags")),
+        ["processor", head["cpu"]], ["cores, threads", f"{head['cores']}, {head['threads']}"],
+        ["date (UTC)", head["date"]], ["command", head["command_line"]],
+        ["sources, seed", f"{settings.get('sources')}, {settings.get('seed')}"],
         ["rows", f"{len(results.rows)}, {failed} failed"
          f"{'' if results.complete else '; not complete: cases are missing'}"]])
 
 
 def front_tables(rows):
-    found = []
     for work, members in figures.fronts(rows).items():
         fronts = [(name, figures.front_of(members, cost, "delta_R_fine_max"))
                   for name, (_, _, cost) in zip(("memory", "access"), figures.COSTS)]
-        lines = [[row.front_label(), fixed(row["bytes_total"] / 1e6),
-                  fixed(row["t_access_ns_random"], 1), fixed(row["delta_R_fine_max"], 4),
+        lines = [[row.front_label(), fixed(row["memory_MB"]), fixed(row["t_access_ns_random"], 1),
+                  fixed(row["delta_R_fine_max"], 4),
                   ", ".join(name for name, front in fronts if row in front)]
                  for row in sorted(members, key=lambda r: r["delta_R_fine_max"])
                  if any(row in front for _, front in fronts)]
-        found.append(Table(f"On a front: {work}",
-                           "No other row is as accurate (largest δ_R at the finer probes) and "
-                           "smaller (memory), or as fast at random places (access).",
-                           ["<structure", "MB", "random ns", "fine max", "<front of"], lines))
-    return found
+        yield table_of("front", lines, work=work)
 
 
-# Columns of the tables of measures: the head, and the text of a measured row.
-MEASURES = [
-    ("leaves", lambda r: str(r["cells"] or "–")), ("MB", lambda r: fixed(r["bytes_total"] / 1e6)),
-    ("creation s", lambda r: fixed(r.creation_s, 3)),
-    ("random ns", lambda r: fixed(r["t_access_ns_random"], 1)),
-    ("grid ns", lambda r: fixed(r["t_access_ns_grid"], 1)),
-    ("δ_R max", lambda r: fixed(r["delta_R_max"], 4)),
-    ("δ_R mean", lambda r: fixed(r["delta_R_mean"], 4)),
-    ("δ_R p99", lambda r: fixed(r["delta_R_p99"], 4)),
-    ("fine max", lambda r: fixed(r["delta_R_fine_max"], 4)),
-    ("fine coarser", lambda r: f"{100 * known(r, 'coarser_fine_share'):.2f} %"),
-    ("worst", lambda r: fixed(known(r, "coarser_fine_max"), 3)),
-    ("G left", lambda r: fixed(r["gradation_max_left"], 4)), ("<remark", lambda r: r["remark"])]
-
-
-def known(row, key):
-    """A measure that older results do not have."""
-    value = row.measures.get(key)
-    return float("nan") if value is None else value
+def measure_cells(row):
+    if row.measures is None:
+        return ["–"] * 12 + [f"failed: {row.error}"]
+    # Older results do not have the share that is coarser.
+    share, worst = (row.measures.get(f"coarser_fine_{key}") for key in ("share", "max"))
+    numbers = [("memory_MB", 2), ("creation_s", 3), ("t_access_ns_random", 1),
+               ("t_access_ns_grid", 1), ("delta_R_max", 4), ("delta_R_mean", 4), ("delta_R_p99", 4),
+               ("delta_R_fine_max", 4)]
+    return [str(row["cells"] or "–"), *(fixed(row[key], digits) for key, digits in numbers),
+            "–" if share is None else f"{100 * share:.2f} %",
+            "–" if worst is None else fixed(worst, 3), fixed(row["gradation_max_left"], 4),
+            row["remark"]]
 
 
 def measure_tables(rows):
-    found = []
-    for group, members in figures.grouped(rows, lambda r: r.group()).items():
-        lines = []
-        for row in members:
-            texts = [text(row) for _, text in MEASURES] if row.measures is not None else \
-                ["–"] * (len(MEASURES) - 1) + [f"failed: {row.error}"]
-            lines.append([row.setting["structure"] + row.variant(), row.split, *texts])
-        found.append(Table(
-            f"All measures: {group}",
-            "Fine: at the finer probes. Coarser: share of them where a required length exceeds the "
-            "reference's by over 1 % in some direction; worst: largest ratio of the two.",
-            ["<structure", "<split", *(head for head, _ in MEASURES)], lines))
-    return found
+    return [table_of("measures", [[row.setting["structure"] + row.variant(), row.split,
+                                   *measure_cells(row)] for row in members], group=group)
+            for group, members in figures.grouped(rows, Row.group).items()]
 
 
-def results_section(results, styles, prefix):
-    made_by = results.head["command_line"]
+def results_section(results, styles, drawn):
     rows = results.measured
     evidence = Evidence(*evidence_in(results.folder))
     parts = tables([origin_table(results)])
     parts += titled("Error against memory and access time",
-                    figures.pareto_figures(rows, styles, prefix, made_by))
+                    drawn(figures.pareto_figures(rows, styles)))
     parts += tables(front_tables(rows))
     if evidence.cells:
         parts += [("heading", "The paper's tables"), ("paragraph", paper_page.headline(evidence)),
-                  ("figures", figures.paper_figures(evidence, styles, prefix, made_by))]
+                  ("figures", drawn(figures.paper_figures(evidence, styles)))]
         parts += tables(paper_page.summary_tables(evidence) + paper_page.side_by_side(evidence)
                         + paper_page.detail_tables(evidence))
-    parts += titled("Creation time", figures.creation_figures(rows, styles, prefix, made_by))
-    parts += titled("Access time", figures.access_figures(rows, prefix, made_by))
+    parts += titled("Creation time", drawn(figures.creation_figures(rows, styles)))
+    parts += titled("Access time", drawn(figures.access_figures(rows)))
     parts += tables(measure_tables(results.rows))
     return Section(f"{results.settings.get('name')} ({results.folder})", parts)
 
 
-def comparison_section(before, after, prefix):
+def comparison_section(before, after, drawn):
     pairs = compare_runs.row_pairs(before, after)
     a, b = before.head, after.head
-    text = (f"{len(pairs)} rows of {len(before.rows)} have the same setting as one of "
-            f"{len(after.rows)}. Before: {before.version}, {a['cpu']}, {a['date']}. After: "
-            f"{after.version}, {b['cpu']}, {b['date']}."
-            f"{'' if a['cpu'] == b['cpu'] else ' The machines differ: so do times.'}")
-    parts = [("paragraph", text)]
+    parts = [("paragraph", f"{len(pairs)} rows of {len(before.rows)} have the same setting as one of "
+              f"{len(after.rows)}. Before: {before.version}, {a['cpu']}, {a['date']}. After: "
+              f"{after.version}, {b['cpu']}, {b['date']}."
+              f"{'' if a['cpu'] == b['cpu'] else ' The machines differ: so do times.'}")]
     differing = compare_runs.differing_settings(before, after)
     if differing:
         parts.append(("paragraph", f"The studies differ: {differing}. What depends on these cannot "
                                    "be compared."))
     if pairs:
-        made_by = f"{a['command_line']}; {b['command_line']}"
         parts += [*tables([compare_runs.counts_table(pairs)]),
-                  ("figures", compare_runs.change_figures(pairs, prefix, made_by)),
+                  ("figures", drawn(compare_runs.change_figures(pairs))),
                   *tables(compare_runs.change_tables(pairs))]
     return Section(f"{after.folder} after {before.folder}", parts)
 
 
-def fields_section(results, prefix):
+def fields_section(results, drawn):
     sampled = fields.sampled_fields(results)
-    made_by = results.head["command_line"]
-    parts = [("paragraph", "Structures of the first setting, each with its first split.")]
-    if sampled is None:
-        parts = [("paragraph", "Fields are not shown: they were not sampled, or are not kept.")]
-    else:
-        parts += [("figures", [fields.delta_figure(sampled, prefix, made_by),
-                               fields.cross_validation(sampled, prefix, made_by)]),
-                  *tables([fields.delta_table(sampled)]),
-                  ("figures", fields.slice_figures(sampled, prefix, made_by))]
+    parts = [("paragraph", "Fields are not shown: they were not sampled, or are not kept.")]
+    if sampled:
+        parts = [("paragraph", "Structures of the first setting, each with its first split."),
+                 ("figures", drawn(fields.delta_figure(sampled))
+                  + drawn(fields.cross_validation(sampled))),
+                 *tables([fields.delta_table(sampled)]),
+                 ("figures", drawn(fields.slice_figures(sampled)))]
     return Section(f"Fields of {results.settings.get('name')}", parts)
 
 
@@ -167,16 +139,20 @@ def main(arguments):
     parser.add_argument("--figures", metavar="FOLDER", type=Path,
                         help="folder for the figures as files too")
     options = parser.parse_args(arguments)
-    results = [evidence_in(folder)[0] for folder in options.folders]
+    results = [read_results(folder) for folder in options.folders]
     styles = figures.Styles([row for r in results for row in r.rows])
-    several = len(results) > 1
-    sections = [comparison_section(results[0], after, f"{i}-")
+
+    def drawing(i, *made_from):
+        prefix = f"{i}-" if len(results) > 1 else ""
+        made_by = "; ".join(r.head["command_line"] for r in made_from)
+        return lambda specs: figures.draw(specs, prefix, made_by)
+
+    sections = [comparison_section(results[0], after, drawing(i, results[0], after))
                 for i, after in enumerate(results[1:], 2)]
     for i, found in enumerate(results, 1):
-        prefix = f"{i}-" if several else ""
-        sections.append(results_section(found, styles, prefix))
+        sections.append(results_section(found, styles, drawing(i, found)))
         if not options.without_fields:
-            sections.append(fields_section(found, prefix))
+            sections.append(fields_section(found, drawing(i, found)))
     names = ", ".join(str(r.settings.get("name")) for r in results)
     path = (options.output or options.folders[0]) / "report.html"
     text = page(f"Control spaces: {names}", sections)

@@ -3,7 +3,6 @@ import json
 import math
 import os
 import statistics
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,11 +13,14 @@ class InputError(Exception):
 
 # Measures that every measured row has; JSON has no infinity: null where an error is infinite.
 NUMBERS = """sources_inserted tree_nodes cells control_nodes depth bytes_total bytes_payload
-    bytes_topology bytes_auxiliary t_insert_s t_gradation_s gradation_max_left
-    gradation_operations""".split()
+    bytes_topology bytes_auxiliary t_insert_s t_gradation_s t_access_ns_random t_access_ns_grid
+    gradation_max_left gradation_operations""".split()
 ERRORS = """delta_S_max delta_R_max delta_R_mean delta_R_p95 delta_R_p99 delta_R_fine_max
     delta_R_fine_mean delta_R_fine_p95 delta_R_fine_p99 delta_metric_R_max""".split()
 SAMPLES = ["t_access_ns_random_samples", "t_access_ns_grid_samples"]
+# The samples that a time is the median of, and their unit in that of the time.
+SAMPLED = {"access_us": ("t_access_ns_random_samples", 1e-3),
+           "creation_s": ("t_creation_s_samples", 1)}
 RENAMED = {"elements": "tree_nodes", "leaves": "cells"}  # schema 1 to 2
 PROVENANCE = "version commit dirty compiler flags cpu cores threads date command_line".split()
 
@@ -45,41 +47,26 @@ class Row:
     """One case: its settings, and its measures where it did not fail."""
 
     def __init__(self, json_row):
-        split = list(json_row).index("sources")
         items = list(json_row.items())
+        split = list(json_row).index("sources")
         self.setting = {key: value for key, value in items[:split]
                         if value is not None and DEFAULTS.get(key) != value}
+        self.key = frozenset(self.setting.items())
+        self.split = self.setting.get("split", "")
         self.sources = json_row["sources"]
         self.error = json_row["error"]
-        measures = dict(items[split + 1:])
-        self.measures = None if self.error else measures
-        self.key = frozenset((k, v) for k, v in self.setting.items())
-        if self.measures is not None:
-            self._check()
-
-    def _check(self):
-        m = self.measures
-        for key in ERRORS:
-            if m[key] is None:
-                m[key] = math.inf
-        for key in NUMBERS + ERRORS:
-            float(m[key])
-            if isinstance(m[key], (str, bool)):
-                raise ValueError(f"{key} is no number")
-        for key in SAMPLES:
-            if not m[key] or not all(isinstance(x, (int, float)) for x in m[key]):
-                raise ValueError(f"{key} is no list of numbers")
+        self.measures = None if self.error else checked(dict(items[split + 1:]))
 
     def __getitem__(self, key):
         return self.measures[key]
 
-    @property
-    def creation_s(self):
-        return self["t_insert_s"] + self["t_gradation_s"]
-
-    @property
-    def split(self):
-        return self.setting.get("split", "")
+    def spread(self, key):
+        """Lower and upper quartile of a time; any other measure is one number."""
+        samples, unit = SAMPLED.get(key, (None, 1))
+        if len(self.measures.get(samples) or ()) < 2:
+            return self[key], self[key]
+        low, _, high = quartiles(self[samples])
+        return low * unit, high * unit
 
     def variant(self):
         """What the case adds to its structure: ", voxel 0.05"."""
@@ -141,6 +128,22 @@ class Results:
                 f"{'' if self.complete else ', not complete'}: `{self.head['command_line']}`")
 
 
+def checked(m):
+    """The measures of a row, with those that follow from them under the names of the paper's."""
+    for key in ERRORS:
+        m[key] = math.inf if m[key] is None else m[key]
+    for key in NUMBERS + ERRORS:
+        if isinstance(m[key], bool) or not isinstance(m[key], (int, float)):
+            raise ValueError(f"{key} is no number")
+    for key in SAMPLES:
+        if not m[key] or not all(isinstance(x, (int, float)) for x in m[key]):
+            raise ValueError(f"{key} is no list of numbers")
+    return m | {"size_MB": (m["bytes_published_accounting"] or 0) / 1e6,
+                "memory_MB": m["bytes_total"] / 1e6, "metrics_MB": m["bytes_payload"] / 1e6,
+                "creation_s": m.get("t_creation_s") or m["t_insert_s"] + m["t_gradation_s"],
+                "access_us": m["t_access_ns_random"] / 1e3}
+
+
 def from_schema_1(row):
     row = {RENAMED.get(key, key): value for key, value in row.items()}
     if row.get("depth"):
@@ -186,24 +189,14 @@ def quartiles(samples):
 def write_file(path, content):
     """Replaces `path` at once: readers see the old content or the new one, never a part."""
     path = Path(path)
-    partial = None
+    partial = path.with_name(f"{path.name}.{os.getpid()}.partial")
     try:
         if path.exists() and not path.is_file():
             raise OSError(0, "not a regular file")
         path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, prefix=path.name, suffix=".partial",
-                                         delete=False) as file:
-            partial = file.name
-            file.write(content.encode() if isinstance(content, str) else content)
-        os.chmod(partial, 0o666 & ~umask())
-        os.replace(partial, path)
+        partial.write_bytes(content.encode() if isinstance(content, str) else content)
+        partial.replace(path)
     except OSError as error:
-        if partial:
-            Path(partial).unlink(missing_ok=True)
+        if partial.parent.is_dir():
+            partial.unlink(missing_ok=True)
         raise InputError(f"cannot write {path}: {error.strerror}: choose another folder") from error
-
-
-def umask():
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

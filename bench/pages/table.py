@@ -1,5 +1,9 @@
 # Tables of text, and their Markdown.
+import tomllib
 from dataclasses import dataclass, field
+from pathlib import Path
+
+TEXTS = tomllib.loads((Path(__file__).parent / "texts.toml").read_text(encoding="utf-8"))
 
 
 @dataclass
@@ -25,6 +29,13 @@ class Table:
                       for t, w, is_left in zip(line, widths, left))
             text += "| " + " | ".join(padded) + " |\n"
         return text
+
+
+def table_of(kind, rows, more_columns=(), **words):
+    """A table with the texts of texts.toml."""
+    texts = TEXTS["tables"][kind]
+    return Table(texts["title"].format(**words), texts["note"],
+                 [*texts["columns"], *more_columns], rows)
 
 
 def cell(text):

@@ -10,7 +10,7 @@ from samples import (PAPER_ROWS, ROOT, evidence_of, failed_row, json_row, paper_
                      results_of, run, write_results)
 
 from pages import paper, paper_page
-from pages.paper import DELTA_R, SIZE, Entry, Evidence
+from pages.paper import DELTA_R, SIZE, Evidence
 from pages.paper_command import EXPERIMENTS, STUDIES, study_at, toml_text
 from pages.results import InputError
 
@@ -203,15 +203,22 @@ class Cells(unittest.TestCase):
 
 
 class Claims(unittest.TestCase):
-    def claim(self, sentence):
-        return next(c for c in paper.CLAIMS if c.sentence == sentence)
+    @staticmethod
+    def outcome(sentence, *entries):
+        """Entries: label, memory, creation, access, delta_R, and delta_R at the deepest limit; a
+        time is a value, or its quartiles and median."""
+        def triple(x):
+            return x if isinstance(x, tuple) else (x,) * 3
+        return paper.tested(paper.CLAIMS[sentence], {
+            label: dict(zip(paper.UNITS, map(triple, values))) |
+            ({"deep": values[4]} if len(values) > 4 else {}) for label, *values in entries})
 
     def check(self, sentence, holds, *entries):
-        self.assertEqual(self.claim(sentence).test([Entry(*e) for e in entries])[0], holds)
+        self.assertIs(self.outcome(sentence, *entries)[0], holds)
 
     def judged(self, rows, sentence):
         return next(j for j in paper.judge_claims(evidence_of(rows)) if
-                    j.claim.sentence == sentence)
+                    j.claim["sentence"] == sentence)
 
     def test_each_claim_is_true_of_rows_that_it_fits_and_false_of_others(self):
         for memory, delta, ruins, harms in ((21, 1, True, False), (19, 1.1, False, True)):
@@ -246,20 +253,39 @@ class Claims(unittest.TestCase):
         self.check(sentence, True, *entries)
         self.check(sentence, True, *entries, ("K_L s_M", 1, 1, 20, 20))
         self.check(sentence, False, ("K_L s_L", *[20] * 4), ("K_L s_G", *[21] * 4), *entries[2:])
-        self.assertIsNone(self.claim(sentence).test([Entry(*e) for e in entries[:4]]))
+        self.assertIsNone(self.outcome(sentence, *entries[:4]))
+
+    def test_times_decide_only_where_their_quartiles_lie_apart(self):
+        sentence = "The plain octree is the fastest to read."
+        for octree, other, holds in (((3, 2.9, 3.1), (4, 3.9, 4.1), True),
+                                     ((4, 3.9, 4.1), (3, 2.9, 3.1), False),
+                                     ((3, 2.9, 3.5), (3.2, 3.1, 4.1), None),
+                                     ((3.2, 2.9, 3.5), (3.1, 2.9, 3.5), None)):
+            self.check(sentence, holds, ("K_oL", 1, 1, octree, 1), ("K_oV", 1, 1, other, 1))
+
+        def judged(*samples):
+            rows = [json_row(structure, tau=tau, t_access_ns_random=s[1],
+                             t_access_ns_random_samples=s)
+                    for tau, pair in zip((1, 0.5), samples)
+                    for structure, s in zip(("K_oL", "K_oV"), pair)]
+            return self.judged(rows, sentence)
+        fast, slow, wide = [1, 2, 3], [7, 8, 9], [1, 2.2, 9]
+        self.assertEqual(judged((fast, slow), (fast, wide))[1:5], (paper.STANDS, 1, 1, 2))
+        self.assertEqual(judged((fast, slow), (slow, fast))[1:5], (paper.DOES_NOT_STAND, 1, 0, 2))
+        self.assertEqual(judged((wide, wide), (fast, wide))[1:5], (paper.UNDECIDED, 0, 2, 2))
 
     def test_a_claim_without_its_rows_is_not_measured(self):
         for claim in paper.CLAIMS:
-            self.assertIsNone(claim.test([]))
+            self.assertIsNone(self.outcome(claim))
         judged = self.judged([json_row("K_oL")], "Balancing ruins memory.")
-        self.assertEqual(judged[1:], (paper.NOT_MEASURED, 0, 0, 0, 0, ""))
+        self.assertEqual(judged[1:], (paper.NOT_MEASURED, 0, 0, 0, 0, 0, ""))
 
     def test_the_papers_own_numbers_bear_out_what_they_suggest(self):
         for sentence in ("Balancing ruins memory.", "Balancing ruins accuracy.",
                          "The split s_M is poor.", "The octree with values at vertices is bad.",
                          "Interpolation buys accuracy for time."):
             judged = self.judged(paper_json_rows(), sentence)
-            self.assertEqual(judged[1:6], (paper.STANDS, 6, 6, 6, 6))
+            self.assertEqual(judged[1:7], (paper.STANDS, 6, 0, 6, 6, 6))
             self.assertIn("ρ 1 τ 1: ", judged.numbers)
 
     def test_a_claim_stands_only_if_it_holds_at_every_setting(self):
@@ -267,7 +293,7 @@ class Claims(unittest.TestCase):
             if row["structure"] == "K_oLB" and row["tau"] == 0.2:
                 row["bytes_total"] = 1_000_000
         mixed = self.judged(paper_json_rows(cheap), "Balancing ruins memory.")
-        self.assertEqual(mixed[1:4], (paper.DOES_NOT_STAND, 4, 6))
+        self.assertEqual(mixed[1:5], (paper.DOES_NOT_STAND, 4, 0, 6))
         self.assertTrue(mixed.numbers.startswith("ρ 1 τ 0.2: K_oLB 1 MB"), mixed.numbers)
 
     def test_s_m_at_other_depths_counts_with_the_deepest(self):
@@ -278,7 +304,7 @@ class Claims(unittest.TestCase):
                  if (row["structure"], row["split"]) == ("K_L", "s_M")
                  for depth, delta in ((200, 2.0), (100, 7.0))]
         judged = self.judged(rows, sentence)
-        self.assertEqual(judged[1:6], (paper.DOES_NOT_STAND, 0, 6, 0, 0))
+        self.assertEqual(judged[1:7], (paper.DOES_NOT_STAND, 0, 0, 6, 0, 0))
 
 
 class Ranks(unittest.TestCase):
