@@ -167,6 +167,10 @@ cspace_status cspace_sample(const cspace* space, size_t n, const double* positio
     return guarded([&] {
         if (n > 0) require(positions, "positions");
         if (n > 0) require(metrics, "metrics");
+        for (std::size_t i = 0; i < n; ++i) {
+            if (!point_at(positions, i).array().isNaN().any()) continue;
+            throw InputError(fmt::format("position {} is NaN", i));
+        }
         // Point and Metric are three and six numbers without gaps (spaces/state.h).
         space_of(space).sample({reinterpret_cast<const Point*>(positions), n},
                                {reinterpret_cast<Metric*>(metrics), n});

@@ -3,14 +3,37 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "controlspace/error.h"
 #include "io/text/text_file.h"
-#include "study/names.h"
 
 namespace controlspace {
 
 namespace {
+
+constexpr std::pair<std::string_view, double SpaceOptions::*> numbers[] = {
+    {"tau", &SpaceOptions::l_min},
+    {"epsilon", &SpaceOptions::tolerance},
+    {"finest_length", &SpaceOptions::finest_length},
+    {"voxel", &SpaceOptions::voxel},
+    {"g_r", &SpaceOptions::ratio}};
+
+constexpr std::pair<std::string_view, int SpaceOptions::*> counts[] = {
+    {"kd_depth", &SpaceOptions::kd_depth}, {"octree_depth", &SpaceOptions::octree_depth}};
+
+constexpr std::pair<std::string_view, SplitRule> splits[] = {{"s_L", SplitRule::middle},
+                                                             {"s_G", SplitRule::golden},
+                                                             {"s_Gx", SplitRule::exact_golden},
+                                                             {"s_M", SplitRule::metric}};
+
+/// The value of the row named `name`; null where there is none.
+template <class Rows>
+auto find(const Rows& rows, std::string_view name) {
+    const auto row = std::find_if(std::begin(rows), std::end(rows),
+                                  [&](const auto& known) { return known.first == name; });
+    return row == std::end(rows) ? nullptr : &row->second;
+}
 
 template <class Number>
 Number number_from(std::string_view name, std::string_view text) {
@@ -22,32 +45,21 @@ Number number_from(std::string_view name, std::string_view text) {
 }
 
 void set_option(SpaceOptions& options, std::string_view name, std::string_view value) {
-    const auto number = [&] { return number_from<double>(name, value); };
-    const auto count = [&] { return number_from<int>(name, value); };
-    if (name == "split") {
-        const auto split = from_name<SplitRule>(value);
-        if (!split)
+    if (const auto* number = find(numbers, name)) {
+        options.*(*number) = number_from<double>(name, value);
+    } else if (const auto* count = find(counts, name)) {
+        options.*(*count) = number_from<int>(name, value);
+    } else if (name == "split") {
+        const SplitRule* split = find(splits, value);
+        if (split == nullptr) {
             throw InputError(
                 fmt::format("there is no split {}: give s_L, s_G, s_Gx or s_M", quote(value)));
+        }
         options.split = *split;
-    } else if (name == "tau") {
-        options.l_min = number();
-    } else if (name == "epsilon") {
-        options.tolerance = number();
-    } else if (name == "kd_depth") {
-        options.kd_depth = count();
-    } else if (name == "octree_depth") {
-        options.octree_depth = count();
-    } else if (name == "finest_length") {
-        options.finest_length = number();
-    } else if (name == "voxel") {
-        options.voxel = number();
-    } else if (name == "g_r") {
-        options.ratio = number();
     } else if (name == "takes_later_sources") {
-        options.takes_later_sources = count() != 0;
+        options.takes_later_sources = number_from<int>(name, value) != 0;
     } else if (name == "max_memory") {
-        const double gib = number();
+        const auto gib = number_from<double>(name, value);
         if (!(gib > 0 && gib < 1e9)) {
             throw InputError(fmt::format("max_memory is {} GiB: give a value above 0", gib));
         }

@@ -1,32 +1,56 @@
-#include "cli/build.h"
-
+// The command `build`: builds and grades one structure, and saves it.
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <memory>
+
+#include "cli/command.h"
 #include "cli/filled_space.h"
+#include "cli/options.h"
+#include "cli/progress.h"
 #include "cli/standard_output.h"
-#include "cli/step_progress.h"
 #include "controlspace/error.h"
 #include "controlspace/space/control_space_file.h"
 
 namespace controlspace {
+namespace {
 
-void build(const BuildOptions& options) {
-    if (!is_control_space(options.output)) {
-        throw InputError(fmt::format("cannot save to {}: name a file that ends in .ctrl",
-                                     options.output.string()));
+struct Build {
+    std::filesystem::path input, output;
+    WordsByKey given;
+    bool quiet = false;
+};
+
+int build(const Build& job) {
+    const std::filesystem::path& output = job.output;
+    if (!is_control_space(output)) {
+        throw InputError(
+            fmt::format("cannot save to {}: name a file that ends in .ctrl", output.string()));
     }
     FilledSpace filled;
     {
-        StepProgress progress(options.quiet, options.output);
-        filled = filled_space(options.input, options.settings, progress.observer());
+        StepProgress progress(job.quiet, output);
+        filled = filled_space(job.input, given_settings(job.given), progress.observer());
         progress.started("writing");
-        save_control_space(options.output, *filled.space);
+        save_control_space(output, *filled.space);
     }
     const Footprint footprint = filled.space->footprint();
     print(fmt::format("{}: {} with {} control nodes, {:.3g} MB in memory, {:.3g} MB in the file\n",
-                      options.output.string(), filled.space->making()->structure,
-                      footprint.control_nodes, static_cast<double>(footprint.bytes_total()) / 1e6,
-                      static_cast<double>(std::filesystem::file_size(options.output)) / 1e6));
+                      output.string(), filled.space->making()->structure, footprint.control_nodes,
+                      static_cast<double>(footprint.bytes_total()) / 1e6,
+                      static_cast<double>(std::filesystem::file_size(output)) / 1e6));
+    return 0;
+}
+
+}  // namespace
+
+Action add_build(Options& options) {
+    const auto job = std::make_shared<Build>();
+    add_study_input(options, job->input);
+    options.add({"-o,--output", "FILE.ctrl", "File to write", "", true}, job->output);
+    add_making_options(options, job->given);
+    add_quiet(options, job->quiet);
+    return [job](const std::string&) { return build(*job); };
 }
 
 }  // namespace controlspace

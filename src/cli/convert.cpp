@@ -1,25 +1,31 @@
-#include "cli/convert.h"
+// The command `convert`: writes the sources of one file in another format.
+#include <filesystem>
+#include <memory>
 
-#include <string>
-#include <vector>
-
+#include "cli/command.h"
+#include "cli/formats.h"
 #include "cli/input_study.h"
-#include "controlspace/io/read_sources.h"
-#include "io/text/write_sources.h"
-
-#ifdef CONTROLSPACE_VTK
-#include "controlspace/io/write_vtk.h"
-#endif
+#include "cli/options.h"
 
 namespace controlspace {
 
-void convert(const ConvertOptions& options) {
-    const std::vector<PointSource> sources = sources_of_input(options.input, options.settings);
-#ifdef CONTROLSPACE_VTK
-    const std::string ending = lower_case_extension(options.output);
-    if (ending == ".vtu" || ending == ".vtp") return write_vtk_sources(options.output, sources);
-#endif
-    write_sources(options.output, sources);
+Action add_convert(Options& options) {
+    struct Convert {
+        std::filesystem::path input, output;
+        WordsByKey given;
+    };
+    const auto job = std::make_shared<Convert>();
+    options.add({"IN", "FILE", source_formats_help(), "", true}, job->input);
+    options.add({"OUT", "FILE",
+                 "File to write: .csv; .mesh, .sol, .meshb or .solb, which makes both a mesh and a "
+                 "solution; .pos; .vtu, .vtp",
+                 "", true},
+                job->output);
+    add_reading_options(options, job->given);
+    return [job](const std::string&) {
+        write_source_file(job->output, sources_of_input(job->input, given_settings(job->given)));
+        return 0;
+    };
 }
 
 }  // namespace controlspace

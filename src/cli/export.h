@@ -1,38 +1,41 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "cli/given_settings.h"
-#include "controlspace/io/write_vdb.h"
-#include "controlspace/io/write_vtk.h"
+#include "cli/filled_space.h"
+#include "cli/options.h"
+#include "cli/progress.h"
 
 namespace controlspace {
 
-/// What the command line of `export` asks for.
-struct ExportOptions {
-    std::filesystem::path input;   ///< as of filled_space; empty: the paper's sphere
-    std::filesystem::path output;  ///< its ending says the format
-    GivenSettings settings;        ///< they override the study file in all of its runs
-    std::string command_line;
-    bool quiet = false;
-
-    VdbOptions vdb;             ///< .vdb; without sources and notes
-    bool with_sources = false;  ///< .vdb: as a grid of points too
-
-    std::filesystem::path mesh;           ///< .sol, .solb: at the vertices of this mesh
-    bool nodes = false;                   ///< .vtu: the control nodes in place of the leaves
-    std::vector<std::string> slice{"z"};  ///< .vti: axis and place on it, the middle if left out
-    int samples = Slice{}.samples;        ///< .vti: along the longer edge
+/// A field to be written to a file.
+struct Export {
+    const std::filesystem::path& input;  ///< as of filled_space
+    const std::filesystem::path& output;
+    const std::string& command_line;
+    const FilledSpace& filled;
+    StepProgress& progress;
 };
 
-/// Makes and grades the one structure that `options` ask for, K_oL if nothing is said, writes its
-/// field to a file, and says on standard output what was written. Throws InputError.
-void export_field(const ExportOptions& options);
+/// A format of files of fields.
+struct FieldFormat {
+    std::vector<std::string> endings;
+    /// Writes the file, and returns what was written, for standard output.
+    std::function<std::string(const Export&)> write;
+    std::string group = "";  ///< of its options in the help; they are refused with other formats
+    /// Throws InputError where options that it needs are missing.
+    std::function<void()> check_options = [] {};
+};
 
-/// The endings of files that the program can write fields to, for help texts: ".vdb, .sol, .solb".
-std::string exported_formats();
+// Each adds the options of some formats to the command, and returns the formats.
+std::vector<FieldFormat> add_text_formats(Options& options);
+std::vector<FieldFormat> add_vdb_formats(Options& options);
+std::vector<FieldFormat> add_vtk_formats(Options& options);
+
+/// "FILE: `what`; 1.2 MB", and a line end.
+std::string written(const Export& e, const std::string& what);
 
 }  // namespace controlspace

@@ -1,77 +1,69 @@
-#include "cli/export_vdb.h"
-
+// The format .vdb of `export`.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <chrono>
-#include <ctime>
+#include <memory>
 
+#include "cli/export.h"
 #include "cli/peak_memory.h"
 #include "controlspace/error.h"
+#include "controlspace/io/metric_grids.h"
+#include "controlspace/io/write_vdb.h"
+#include "io/text/text_file.h"
+#include "mesh/stopwatch.h"
 #include "study/names.h"
 #include "study/provenance.h"
 
 namespace controlspace {
 namespace {
 
-std::vector<VdbNote> notes_of(const ExportOptions& options, const std::optional<Origin>& origin) {
+std::vector<VdbNote> notes_of(const Export& e) {
     std::vector<VdbNote> notes;
-    if (origin) {
-        const Case& c = origin->c;
+    if (e.filled.origin) {
+        const Case& c = e.filled.origin->c;
         notes = {{"structure", structure_label(c)},
                  {"law", std::string(name_of(c.law))},
                  {"g_r", c.g_r},
                  {"settings", setting_label(c)},
                  {"sources", sources_name(c.sources)}};
     } else {
-        notes = {{"sources", options.input.string()}};
+        notes = {{"sources", e.input.string()}};
     }
     notes.emplace_back("version", version_text(current_provenance()));
-    notes.emplace_back("command_line", options.command_line);
+    notes.emplace_back("command_line", e.command_line);
     return notes;
 }
 
-/// What writing took.
-struct Cost {
-    double seconds;
-    double processor_seconds;
-};
-
-std::string summary(const std::filesystem::path& path, const VdbReport& report, const Cost& cost) {
+std::string summary(const Export& e, const VdbReport& report, const Stopwatch& time) {
     return fmt::format(
         "{}: {} x {} x {} voxels of {:.4g}, {:.0f} % of them kept, the others in tiles of 8^3; "
         "smallest lengths {:.4g} to {:.4g}\n"
         "{:.1f} MB in the file; {:.1f} s, {:.1f} s of processors, {:.0f} MB of memory at most\n",
-        path.string(), report.counts[0], report.counts[1], report.counts[2], report.voxel,
+        e.output.string(), report.counts[0], report.counts[1], report.counts[2], report.voxel,
         100 * report.kept, report.finest, report.coarsest, static_cast<double>(report.file) / 1e6,
-        cost.seconds, cost.processor_seconds, static_cast<double>(peak_memory()) / 1e6);
+        time.seconds(), time.processor_seconds(), static_cast<double>(peak_memory()) / 1e6);
 }
 
-}  // namespace
-
-std::string export_vdb(const ExportOptions& options, const FilledSpace& filled,
-                       StepProgress& progress) {
-    const std::optional<Origin>& origin = filled.origin;
-    VdbOptions vdb = options.vdb;
-    vdb.notes = notes_of(options, origin);
-    progress.started("sampling");
+std::string export_vdb(const Export& e, VdbOptions vdb) {
+    const std::optional<Origin>& origin = e.filled.origin;
+    const bool with_sources = std::erase(vdb.grids, sources_grid) > 0;
+    vdb.notes = notes_of(e);
+    e.progress.started("sampling");
     vdb.progress = [&](std::size_t done, std::size_t all) {
-        progress.advanced(done, all, "voxels");
-        if (done == all) progress.started("writing");
+        e.progress.advanced(done, all, "voxels");
+        if (done == all) e.progress.started("writing");
     };
     if (origin) {
         const auto& [study, c, workload] = *origin;
         vdb.max_bytes = space_options(study, c, workload).max_bytes;
-        if (options.with_sources) vdb.sources = workload.sources;
-    } else if (options.with_sources) {
+        if (with_sources) vdb.sources = workload.sources;
+    } else if (with_sources) {
         throw InputError(
-            fmt::format("{} keeps no sources: leave them out of --grids", options.input.string()));
+            fmt::format("{} keeps no sources: leave them out of --grids", e.input.string()));
     }
-    const auto start = std::chrono::steady_clock::now();
-    const std::clock_t processor_start = std::clock();
-    const VdbReport report = write_vdb(options.output, *filled.space, vdb);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    const auto ticks = static_cast<double>(std::clock() - processor_start);
+    const Stopwatch time;
+    const VdbReport report = write_vdb(e.output, *e.filled.space, vdb);
+    const std::string text = summary(e, report, time);
     const double finest = origin ? origin->workload.finest_length : report.finest;
     if (report.voxel > finest) {
         spdlog::warn(
@@ -79,7 +71,54 @@ std::string export_vdb(const ExportOptions& options, const FilledSpace& filled,
             "to see all of it",
             report.voxel, finest);
     }
-    return summary(options.output, report, {seconds.count(), ticks / CLOCKS_PER_SEC});
+    return text;
+}
+
+VdbCompression compression_named(const std::string& name) {
+    if (name == "blosc") return VdbCompression::blosc;
+    if (name == "zip") return VdbCompression::zip;
+    if (name == "none") return VdbCompression::none;
+    throw InputError(fmt::format("--compression: {} is none of blosc, zip and none", quote(name)));
+}
+
+}  // namespace
+
+std::vector<FieldFormat> add_vdb_formats(Options& options) {
+    struct Vdb {
+        VdbOptions options;
+        std::vector<std::string> compression{"blosc"};
+    };
+    const auto vdb = std::make_shared<Vdb>();
+    const std::string group = "A .vdb file";
+    options.add(
+        {"--voxel", "NUMBER",
+         "Edge of a voxel [length]; left out: 1/128 of the longest edge of the domain", group},
+        vdb->options.voxel);
+    options.add(
+        {"--tolerance", "NUMBER",
+         "Non-conformity up to which voxels share a metric; 0: only equal metrics (default: "
+         "0.02)",
+         group},
+        vdb->options.tolerance);
+    std::string names;
+    for (const MetricGrid& grid : metric_grids()) names += fmt::format("{}, ", grid.name);
+    options.add(
+        {"--grids", "TEXT,...",
+         fmt::format("Grids to write, of {}and {}, the sources as points (left out: all but "
+                     "these)",
+                     names, sources_grid),
+         group},
+        vdb->options.grids, 0);
+    options.add({"--compression", "TEXT", "blosc, zip or none (default: blosc)", group},
+                vdb->compression, 1);
+    options.add({"--half", "", "Numbers of 16 bits", group}, vdb->options.half);
+    return {{{".vdb"},
+             [vdb](const Export& e) {
+                 vdb->options.compression = compression_named(vdb->compression.front());
+                 return export_vdb(e, vdb->options);
+             },
+             group,
+             [vdb] { compression_named(vdb->compression.front()); }}};
 }
 
 }  // namespace controlspace

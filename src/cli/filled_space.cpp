@@ -4,8 +4,8 @@
 
 #include <utility>
 
+#include "cli/formats.h"
 #include "cli/input_study.h"
-#include "cli/readers.h"
 #include "cli/threads.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"

@@ -1,18 +1,34 @@
-#include "cli/info.h"
-
+// The command `info`: describes a file of sources, or a control space.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <memory>
 
+#include "cli/command.h"
 #include "cli/filled_space.h"
+#include "cli/formats.h"
 #include "cli/input_study.h"
-#include "cli/space_info.h"
+#include "cli/options.h"
 #include "cli/standard_output.h"
+#include "controlspace/baselines/catalogue.h"
+#include "controlspace/gradation/grade.h"
+#include "controlspace/space/control_space_file.h"
 #include "io/text/indefinite_tensors.h"
+#include "measure/source_summary.h"
+#include "study/names.h"
 
 namespace controlspace {
 namespace {
+
+std::string lengths_text(const LengthSummary& s) {
+    return fmt::format(
+        "  isotropic    {} of them\n"
+        "  sizes        {:.6g} to {:.6g}, {:.6g} in the mean\n"
+        "  anisotropy   {:.4g} at most\n",
+        s.isotropic, s.finest, s.coarsest, s.mean, s.anisotropy);
+}
 
 std::string sources_info(const SourceSummary& s) {
     std::string text =
@@ -45,29 +61,93 @@ std::string indefinite_info(const IndefiniteTensors& tensors) {
     return text;
 }
 
-std::string info_text(const InfoOptions& options) {
-    if (is_control_space(options.input)) {
-        require_no_settings(options.input, options.settings);
-        return space_info(options.input);
+double mb(std::size_t bytes) { return static_cast<double>(bytes) / 1e6; }
+
+/// The options that this structure uses, under the names that `build` has for them.
+std::string options_text(const CatalogueEntry& entry, const SpaceOptions& o) {
+    const bool is_tree = entry.group == "trees" || entry.group == "anchored";
+    std::string text;
+    const auto add = [&](std::string_view name, const auto& value) {
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);
+    };
+    if (entry.has_split_rules) add("split", name_of(o.split));
+    if (is_tree || entry.has_levels || o.voxel == 0) add("tau", o.l_min);
+    add("epsilon", o.tolerance);
+    if (is_tree) add("depth at most", entry.has_split_rules ? o.kd_depth : o.octree_depth);
+    if (!entry.takes_metrics) add("g_r", o.ratio);
+    if (entry.has_voxels && o.voxel > 0) add("voxel", o.voxel);
+    if (entry.has_levels) add("voxel_factor", o.voxel_factor);
+    if (entry.can_prune) add("prune_delta", o.prune_delta);
+    if (o.takes_later_sources) text += ", takes later sources";
+    return text;
+}
+
+/// Structure and options, parts and memory, and the range of the control nodes' metrics.
+std::string space_info(const std::filesystem::path& file) {
+    const auto space = load_control_space(file, structures());
+    const Making& making = *space->making();
+    const CatalogueEntry& entry = *find_entry(structures(), making.structure);
+    const Footprint footprint = space->footprint();
+    std::string text = fmt::format("  structure    {}: {}\n", entry.id, entry.description);
+    if (making.frozen) {
+        text += fmt::format("  frozen       in {}: it is only read\n",
+                            *making.frozen == Precision::floats ? "floats" : "doubles");
     }
-    const std::string name = options.input.string() + "\n";
+    text +=
+        fmt::format("  saved by     {}\n  domain       {}\n  options      {}\n", making.saved_by,
+                    to_string(space->domain()), options_text(entry, making.options));
+    text += fmt::format("  elements     {}", footprint.elements);
+    if (footprint.leaves > 0) {
+        text += fmt::format(", {} of them leaves, in {} levels", footprint.leaves, footprint.depth);
+    }
+    if (!footprint.remark.empty()) text += "; " + footprint.remark;
+    text += fmt::format(
+        "\n  memory       {:.3g} MB: {:.3g} of metrics, {:.3g} to find them, {:.3g} beside; {:.3g} "
+        "MB in the file\n",
+        mb(footprint.bytes_total()), mb(footprint.bytes_payload), mb(footprint.bytes_topology),
+        mb(footprint.bytes_auxiliary), mb(std::filesystem::file_size(file)));
+    const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
+    const LengthSummary lengths = summarise_lengths(nodes.metrics);
+    text += fmt::format("  nodes        {} that carry metrics\n", lengths.count);
+    return text + lengths_text(lengths) +
+           fmt::format("  gradation    {:.4g} at most, between neighbours (g_r of the cone law)\n",
+                       largest_gradation(nodes.graph, nodes.metrics, GradationLaw::cone));
+}
+
+std::string info_text(const std::filesystem::path& input, const GivenSettings& settings) {
+    if (is_control_space(input)) {
+        require_no_settings(input, settings);
+        return space_info(input);
+    }
     try {
-        return name + sources_info(summarise(sources_of_input(options.input, options.settings)));
+        return sources_info(summarise(sources_of_input(input, settings)));
     } catch (const IndefiniteTensors& tensors) {
-        return name + indefinite_info(tensors);
+        return indefinite_info(tensors);
     }
 }
 
 }  // namespace
 
-std::string lengths_text(const LengthSummary& s) {
-    return fmt::format(
-        "  isotropic    {} of them\n"
-        "  sizes        {:.6g} to {:.6g}, {:.6g} in the mean\n"
-        "  anisotropy   {:.4g} at most\n",
-        s.isotropic, s.finest, s.coarsest, s.mean, s.anisotropy);
+Action add_info(Options& options) {
+    struct Info {
+        std::filesystem::path input;
+        WordsByKey given;
+    };
+    const auto job = std::make_shared<Info>();
+    options.add(
+        {"FILE", "FILE", source_formats_help() + "; or a saved control space (.ctrl)", "", true},
+        job->input);
+    add_reading_options(options, job->given);
+    options.set_footer(
+        "Exit status:\n"
+        "  0    the file was read; tensors that are not positive definite are counted\n"
+        "  1    the program or the system failed\n"
+        "  2    the file cannot be read, or a setting does not fit");
+    return [job](const std::string&) {
+        const std::string text = info_text(job->input, given_settings(job->given));
+        print(job->input.string() + "\n" + text);
+        return 0;
+    };
 }
-
-void info(const InfoOptions& options) { print(info_text(options)); }
 
 }  // namespace controlspace

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "cli/readers.h"
+#include "cli/formats.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
 #include "study/study_file.h"

@@ -1,5 +1,4 @@
-#include "cli/list.h"
-
+// The command `list`: structures, and the other names that options take.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "cli/command.h"
+#include "cli/standard_output.h"
 #include "controlspace/baselines/catalogue.h"
 #include "study/names.h"
 
@@ -25,8 +26,6 @@ std::string section(std::string_view title, std::span<const Entry> entries) {
     }
     return text;
 }
-
-}  // namespace
 
 std::string list_text() {
     std::vector<Entry> entries;
@@ -78,6 +77,15 @@ std::string list_text() {
            section("\nReferences (--reference)", references) +
            section("\nSampling of surfaces (--sampling)", samplings) +
            section("\nAnalytic fields (--field)", fields);
+}
+
+}  // namespace
+
+Action add_list(Options&) {
+    return [](const std::string&) {
+        print(list_text());
+        return 0;
+    };
 }
 
 }  // namespace controlspace

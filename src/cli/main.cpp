@@ -1,62 +1,129 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
+#include <deque>
 #include <exception>
 #include <new>
 #include <string>
+#include <vector>
 
-#include "cli/build.h"
-#include "cli/command_line.h"
-#include "cli/compare.h"
-#include "cli/export.h"
-#include "cli/list.h"
-#include "cli/mesh.h"
+#include "cli/command.h"
+#include "cli/options.h"
 #include "cli/standard_output.h"
 #include "controlspace/error.h"
+#include "study/provenance.h"
 
+namespace controlspace {
 namespace {
+
+struct CommandRow {
+    const char* name;
+    const char* description;
+    Action (*add)(Options& options);
+};
+constexpr CommandRow commands[] = {
+    {"compare", "Run a study: build, grade and measure structures on the same sources",
+     add_compare},
+    {"info", "Describe a file of sources (number, sizes, gradation) or a control space", add_info},
+    {"convert", "Write the sources of one file in another format", add_convert},
+    {"build", "Build and grade one structure, and save it", add_build},
+    {"query", "Write the metrics of one structure at given points", add_query},
+    {"export",
+     "Write the field of one structure to a file, for Blender, Houdini, ParaView or a mesher",
+     add_export},
+    {"mesh", "Make meshes with structures as size fields, and measure their conformity", add_mesh},
+    {"list", "List the structures and the other names that options take", add_list},
+};
+
+constexpr const char* statuses =
+    "Exit status:\n"
+    "  0    success\n"
+    "  1    the program or the system failed\n"
+    "  2    the input cannot be used\n"
+    "  3    some cases failed: results are written, and their rows say why\n"
+    "  130  interrupted by Ctrl-C";
+
+/// CLI11 would say of another word only that a command is missing.
+void require_command(const std::string& word) {
+    std::vector<std::string> names;
+    for (const CommandRow& row : commands) names.emplace_back(row.name);
+    if (std::find(names.begin(), names.end(), word) != names.end()) return;
+    throw InputError(
+        fmt::format("unknown command '{}': give one of {}", word, fmt::join(names, ", ")));
+}
+
+/// The command line, quoted for a shell.
+std::string command_line_text(int argc, const char* const* argv) {
+    std::string text;
+    for (int i = 0; i < argc; ++i) {
+        std::string word = argv[i];
+        if (word.empty() || word.find_first_of(" \t\n'\"\\$`*?&|;<>()[]{}#~!") != word.npos) {
+            std::string quoted;
+            for (const char c : word)
+                quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+            word = "'" + quoted + "'";
+        }
+        text += (i > 0 ? " " : "") + word;
+    }
+    return text;
+}
+
+int run(int argc, const char* const* argv) {
+    CLI::App app(
+        "Builds and compares control spaces for mesh generation: metrics at every point of a box, "
+        "from point sources.",
+        "controlspace");
+    app.set_version_flag("--version", "controlspace " + version_text(current_provenance()));
+    app.require_subcommand(1);
+    app.footer(statuses);
+    std::deque<Options> options;
+    std::vector<Action> actions;
+    for (const CommandRow& row : commands) {
+        CLI::App* command = app.add_subcommand(row.name, row.description);
+        command->footer(statuses);
+        actions.push_back(row.add(options.emplace_back(*command)));
+    }
+
+    if (argc > 1 && argv[1][0] != '-') require_command(argv[1]);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        print(app.help());
+        return 0;
+    } catch (const CLI::CallForVersion& version) {
+        print(std::string(version.what()) + "\n");
+        return 0;
+    } catch (const CLI::ParseError& error) {
+        throw InputError(fmt::format("{} (see controlspace --help)", error.what()));
+    }
+    for (std::size_t i = 0; i < actions.size(); ++i) {
+        if (app.got_subcommand(commands[i].name)) return actions[i](command_line_text(argc, argv));
+    }
+    return 0;
+}
 
 int fail(int status, std::string what) {
     std::replace(what.begin(), what.end(), '\n', ' ');
-    controlspace::print_error(fmt::format("controlspace: error: {}\n", what));
+    print_error(fmt::format("controlspace: error: {}\n", what));
     return status;
 }
 
 }  // namespace
+}  // namespace controlspace
 
 int main(int argc, char** argv) {
     using namespace controlspace;
-    keep_standard_places();
+    occupy_standard_descriptors();
     std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit, writing fails as on a full disk
     try {
         spdlog::set_default_logger(spdlog::stderr_color_mt("controlspace"));
         spdlog::set_pattern("%n: %l: %v");
-        const Command command = parse_command_line(argc, argv);
-        if (const auto* text = std::get_if<TextCommand>(&command)) {
-            print(text->text);
-        } else if (std::holds_alternative<ListCommand>(command)) {
-            print(list_text());
-        } else if (const auto* info_options = std::get_if<InfoOptions>(&command)) {
-            info(*info_options);
-        } else if (const auto* convert_options = std::get_if<ConvertOptions>(&command)) {
-            convert(*convert_options);
-        } else if (const auto* build_options = std::get_if<BuildOptions>(&command)) {
-            build(*build_options);
-        } else if (const auto* query_options = std::get_if<QueryOptions>(&command)) {
-            query(*query_options);
-        } else if (const auto* export_options = std::get_if<ExportOptions>(&command)) {
-            export_field(*export_options);
-#ifdef CONTROLSPACE_GMSH
-        } else if (const auto* mesh_options = std::get_if<MeshOptions>(&command)) {
-            return mesh(*mesh_options) ? 0 : 3;
-#endif
-        } else {
-            return compare(std::get<CompareOptions>(command)) ? 0 : 3;
-        }
-        return 0;
+        return run(argc, argv);
     } catch (const InputError& error) {
         return fail(2, error.what());
     } catch (const std::bad_alloc&) {

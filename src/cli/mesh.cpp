@@ -1,5 +1,4 @@
-#include "cli/mesh.h"
-
+// The command `mesh`: makes meshes with structures as size fields.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,11 +6,14 @@
 #include <optional>
 #include <utility>
 
+#include "cli/command.h"
 #include "cli/filled_space.h"
+#include "cli/formats.h"
 #include "cli/input_study.h"
 #include "cli/mesh_field.h"
 #include "cli/mesh_folder.h"
-#include "cli/readers.h"
+#include "cli/modules/module.h"
+#include "cli/options.h"
 #include "cli/standard_output.h"
 #include "cli/threads.h"
 #include "controlspace/baselines/catalogue.h"
@@ -22,6 +24,13 @@
 
 namespace controlspace {
 namespace {
+
+struct MeshJob {
+    /// Study file, file of sources, or a control space that was saved; empty: the paper's sphere.
+    std::filesystem::path input;
+    WordsByKey given;  ///< settings of the study, of its runs, and of the meshing
+    bool quiet = false;
+};
 
 /// What cases with the same exact field share.
 struct Reference {
@@ -103,6 +112,7 @@ private:
         std::optional<SpaceAsField> field;
         const auto make = [&](MeshRow& made) -> const MetricField& {
             Measures measures;
+            load_module_of(c.structure);  // before its creation is timed
             space = make_and_fill(study_, c, entry_of(c, structures()), reference.workload,
                                   measures, {});
             made.creation_s = measures.insert_s + measures.gradation_s;
@@ -152,36 +162,52 @@ GivenSettings without_settings_of_meshing(const GivenSettings& given) {
     return left;
 }
 
-}  // namespace
-
-bool mesh(const MeshOptions& options) {
-    const bool is_saved = is_control_space(options.input);
-    if (is_saved) {
-        require_no_settings(options.input, without_settings_of_meshing(options.settings));
-    }
-    Study study = study_of_input(is_saved ? "" : options.input, options.settings);
+int mesh(const MeshJob& job, const std::string& command_line) {
+    const GivenSettings given = given_settings(job.given);
+    const bool is_saved = is_control_space(job.input);
+    if (is_saved) require_no_settings(job.input, without_settings_of_meshing(given));
+    Study study = study_of_input(is_saved ? "" : job.input, given);
     if (study.name == Study{}.name) study.name = "mesh";
     MeshSettings settings;
-    apply(options.settings, mesh_settings(), settings);
+    apply(given, mesh_settings(), settings);
     const auto threads = limit_threads(study.threads);
     Interruption interruption;
-    const auto saved = is_saved ? load_control_space(options.input, structures()) : nullptr;
-    MeshFolder folder(study, std::move(settings), options.command_line, options.quiet);
+    const auto saved = is_saved ? load_control_space(job.input, structures()) : nullptr;
+    MeshFolder folder(study, std::move(settings), command_line, job.quiet);
     {
         const Interruption::Watch watch(interruption, nullptr, [&] {
             print_error(fmt::format("controlspace: interrupted: {} meshes are in {}\n",
                                     folder.rows().size(), folder.path().string()));
         });
         if (saved) {
-            mesh_saved(options.input, *saved, study.probe_grid, folder, interruption);
+            mesh_saved(job.input, *saved, study.probe_grid, folder, interruption);
         } else {
             StudyMeshes(study, folder, interruption).run();
         }
     }
     print(mesh_tables(folder.rows(), TableStyle::terminal));
     print(fmt::format("\nMeshes: {}\n", folder.path().string()));
-    return std::all_of(folder.rows().begin(), folder.rows().end(),
-                       [](const MeshRow& row) { return row.error.empty(); });
+    const bool all_made = std::all_of(folder.rows().begin(), folder.rows().end(),
+                                      [](const MeshRow& row) { return row.error.empty(); });
+    return all_made ? 0 : some_failed;
+}
+
+}  // namespace
+
+Action add_mesh(Options& options) {
+    const auto job = std::make_shared<MeshJob>();
+    add_filled_input(options, job->input);
+    options.add_settings(mesh_settings(), MeshSettings{}, "Settings of the meshing", job->given);
+    constexpr std::string_view without[] = {"access_points", "access_repeats", "fine_probe_grid"};
+    Run defaults;
+    defaults.structures = {"K_oL"};
+    defaults.splits = {SplitRule::middle};
+    options.add_settings(run_settings(), defaults,
+                         "Settings of cases (lists with commas; all combinations are meshed)",
+                         job->given);
+    options.add_settings(study_settings(), Study{}, "Settings of the study", job->given, without);
+    add_quiet(options, job->quiet);
+    return [job](const std::string& command_line) { return mesh(*job, command_line); };
 }
 
 }  // namespace controlspace

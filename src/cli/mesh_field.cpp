@@ -11,8 +11,8 @@
 #include "controlspace/mesh/write_medit.h"
 #include "controlspace/mesh/write_msh.h"
 #include "controlspace/mesh/write_vtu.h"
-#include "gmsh/estimate.h"
 #include "io/text/write_medit_sources.h"
+#include "mesh/estimate.h"
 #include "mesh/size_query.h"
 
 namespace controlspace {

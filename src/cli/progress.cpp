@@ -1,18 +1,25 @@
 #include "cli/progress.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "cli/live_line.h"
+#include <utility>
+
 #include "cli/standard_output.h"
+#include "io/text/output_file.h"
 
 namespace controlspace {
 namespace {
 
-double seconds_between(std::chrono::steady_clock::time_point a,
-                       std::chrono::steady_clock::time_point b) {
-    return std::chrono::duration<double>(b - a).count();
+/// Writes `text`, as much of it as fits, over the current line of the terminal.
+void show_live_line(const std::string& text) {
+    winsize size{};
+    const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    print_error(fmt::format("\r\033[K{}", text.substr(0, (known ? size.ws_col : 80) - 1)));
 }
+
+void clear_live_line() { print_error("\r\033[K"); }
 
 }  // namespace
 
@@ -28,7 +35,7 @@ void Progress::case_started(const Case& c) {
     const std::lock_guard lock(mutex_);
     case_ = structure_label(c);
     phase_.clear();
-    case_start_ = Clock::now();
+    case_time_ = {};
 }
 
 void Progress::phase_started(std::string_view phase) {
@@ -38,7 +45,7 @@ void Progress::phase_started(std::string_view phase) {
 
 void Progress::case_finished(const Row& row) {
     const std::lock_guard lock(mutex_);
-    const double seconds = seconds_between(case_start_, Clock::now());
+    const double seconds = case_time_.seconds();
     estimate_.case_finished(seconds);
     ++finished_;
     if (style_ == ProgressStyle::lines) {
@@ -52,7 +59,7 @@ void Progress::case_finished(const Row& row) {
 void Progress::show() {
     const std::lock_guard lock(mutex_);
     if (style_ != ProgressStyle::live || over_ || finished_ == count_) return;
-    const double elapsed = seconds_between(start_, Clock::now());
+    const double elapsed = all_.seconds();
     std::string line = fmt::format("case {}/{}  {}  {}  {} elapsed", finished_ + 1, count_, case_,
                                    phase_, duration_text(elapsed));
     if (const auto left = estimate_.seconds_left()) {
@@ -74,8 +81,59 @@ std::size_t Progress::finished() const {
 }
 
 void Progress::clear_line() {
-    if (style_ != ProgressStyle::live || over_) return;
-    clear_live_line();
+    if (style_ == ProgressStyle::live && !over_) clear_live_line();
+}
+
+StepProgress::StepProgress(bool quiet, std::filesystem::path output)
+    : live_(!quiet && progress_style_of_stderr() == ProgressStyle::live),
+      output_(std::move(output)) {
+    watch_.emplace(
+        interruption_, [this] { show(); },
+        [this] {
+            clear();
+            std::error_code ignored;
+            std::filesystem::remove(OutputFile::partial(output_), ignored);
+            print_error("controlspace: interrupted: nothing was written\n");
+        });
+}
+
+StepProgress::~StepProgress() {
+    watch_.reset();
+    clear();
+}
+
+void StepProgress::started(std::string_view step) {
+    const std::lock_guard lock(mutex_);
+    step_ = step;
+    step_time_ = {};
+    part_.reset();
+}
+
+void StepProgress::advanced(std::size_t done, std::size_t all, std::string_view unit) {
+    const std::lock_guard lock(mutex_);
+    part_ = {done, all, std::string(unit)};
+}
+
+StudyObserver StepProgress::observer() {
+    StudyObserver observer;
+    observer.phase_started = [this](std::string_view phase) { started(phase); };
+    return observer;
+}
+
+void StepProgress::show() {
+    constexpr double short_run = 2;
+    const std::lock_guard lock(mutex_);
+    const double elapsed = all_.seconds();
+    if (!live_ || elapsed < short_run) return;
+    shown_ = true;
+    const std::string part =
+        part_ ? part_text(part_->done, part_->all, part_->unit, step_time_.seconds()) + ", " : "";
+    show_live_line(fmt::format("{}  {}{} elapsed", step_, part, duration_text(elapsed)));
+}
+
+void StepProgress::clear() {
+    const std::lock_guard lock(mutex_);
+    if (std::exchange(shown_, false)) clear_live_line();
 }
 
 }  // namespace controlspace

@@ -1,26 +1,55 @@
-#include "cli/query.h"
-
+// The command `query`: writes the metrics of one structure at given points.
+#include <filesystem>
+#include <memory>
 #include <vector>
 
+#include "cli/command.h"
 #include "cli/filled_space.h"
-#include "cli/step_progress.h"
+#include "cli/options.h"
+#include "cli/progress.h"
 #include "io/text/csv.h"
 
 namespace controlspace {
+namespace {
 
-void query(const QueryOptions& options) {
-    const std::vector<Point> places = read_csv_points(options.points);
-    std::vector<Metric> metrics(places.size());
+struct Query {
+    std::filesystem::path input, points, output = "/dev/stdout";
+    WordsByKey given;
+    bool quiet = false;
+};
+
+int query(const Query& job) {
+    const std::vector<Point> points = read_csv_points(job.points);
+    std::vector<Metric> metrics(points.size());
     {
-        StepProgress progress(options.quiet, options.output);
+        StepProgress progress(job.quiet, job.output);
         const FilledSpace filled =
-            filled_space(options.input, options.settings, progress.observer());
+            filled_space(job.input, given_settings(job.given), progress.observer());
         progress.started("sampling");
-        filled.space->sample(places, metrics);
+        filled.space->sample(points, metrics);
     }
-    std::vector<PointSource> answers(places.size());
-    for (std::size_t i = 0; i < places.size(); ++i) answers[i] = {places[i], metrics[i]};
-    write_csv_sources(options.output, answers);
+    std::vector<PointSource> answers(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) answers[i] = {points[i], metrics[i]};
+    write_csv_sources(job.output, answers);
+    return 0;
+}
+
+}  // namespace
+
+Action add_query(Options& options) {
+    const auto job = std::make_shared<Query>();
+    options.add({"INPUT", "FILE", "Study file (.toml), file of sources, or control space (.ctrl)",
+                 "", true},
+                job->input);
+    options.add(
+        {"POINTS", "FILE.csv", "Points: columns x, y and z; other columns are ignored", "", true},
+        job->points);
+    options.add({"-o,--output", "FILE.csv",
+                 "File to write: x,y,z,h, or the components of M; left out: standard output"},
+                job->output);
+    add_making_options(options, job->given);
+    add_quiet(options, job->quiet);
+    return [job](const std::string&) { return query(*job); };
 }
 
 }  // namespace controlspace

@@ -7,8 +7,9 @@
 #include <tuple>
 #include <utility>
 
+#include "cli/formats.h"
+#include "cli/modules/module.h"
 #include "cli/progress.h"
-#include "cli/readers.h"
 #include "cli/standard_output.h"
 #include "cli/threads.h"
 #include "controlspace/baselines/catalogue.h"
@@ -31,7 +32,11 @@ std::vector<Row> run_and_record(PreparedStudy prepared, std::vector<Row> rows,
     };
     record(false);
     std::move(prepared).run({
-        .case_started = [&](const Case& c) { progress.case_started(c); },
+        .case_started =
+            [&](const Case& c) {
+                progress.case_started(c);
+                load_module_of(c.structure);  // before its creation is timed
+            },
         .phase_started = [&](std::string_view phase) { progress.phase_started(phase); },
         .case_finished =
             [&](const Row& row) {

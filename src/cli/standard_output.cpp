@@ -9,10 +9,10 @@
 
 namespace controlspace {
 
-void keep_standard_places() {
-    for (const int place : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-        // The lowest that is free; read-only, so that nobody takes it to have been written to.
-        if (::fcntl(place, F_GETFD) < 0) ::open("/dev/null", O_RDONLY);
+void occupy_standard_descriptors() {
+    for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        // open() returns the lowest free number. Read-only: writing fails rather than being lost.
+        if (::fcntl(descriptor, F_GETFD) < 0) ::open("/dev/null", O_RDONLY);
     }
 }
 

@@ -4,14 +4,14 @@
 
 namespace controlspace {
 
-/// Keeps the places of standard input, output and error that the caller has closed from files that
-/// are opened later. What is written there still fails. To be called first.
-void keep_standard_places();
+/// Occupies descriptors 0 to 2 if the caller closed them, so that files opened later cannot get
+/// these numbers. Writing there still fails. To be called first.
+void occupy_standard_descriptors();
 
-/// Writes `text` to standard output; throws InputError if it does not take it (a full disk).
+/// Writes `text` to standard output. Throws InputError if that fails (a full disk).
 void print(std::string_view text);
 
-/// Writes `text` to standard error. What that does not take is lost: nobody could be told.
+/// Writes `text` to standard error. Failures are ignored.
 void print_error(std::string_view text);
 
 }  // namespace controlspace

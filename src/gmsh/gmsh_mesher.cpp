@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "controlspace/error.h"
-#include "gmsh/estimate.h"
+#include "mesh/estimate.h"
 #include "gmsh/gmsh_session.h"
 #include "mesh/size_query.h"
 #include "mesh/stopwatch.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <string>
 #include <thread>
 #include <vector>
@@ -113,6 +114,11 @@ TEST_CASE("C: what cannot be used is refused with a reason") {
     CHECK(cspace_insert(space, 1, place.data(), nullptr) == CSPACE_BAD_INPUT);
     CHECK(cspace_grade(space, 0.5) == CSPACE_BAD_INPUT);
     CHECK(cspace_sample(space, 0, nullptr, nullptr) == CSPACE_OK);
+    const double nan = std::nan("");
+    const double places[6] = {0.3, 0.2, 0.1, 0.3, nan, 0.1};
+    std::array<double, 12> metrics{};
+    CHECK(cspace_sample(space, 2, places, metrics.data()) == CSPACE_BAD_INPUT);
+    CHECK_THAT(cspace_last_error(), Contains("position 1 is NaN"));
     CHECK(sampled(space) == before);
     cspace_free(space);
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "controlspace/fields/formula_field.h"
-#include "gmsh/estimate.h"
+#include "mesh/estimate.h"
 #include "mesh/fixtures.h"
 #include "sources/files.h"
 

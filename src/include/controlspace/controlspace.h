@@ -1,15 +1,20 @@
-/* Control spaces for meshers in C and Fortran: a metric at every point of a box, learnt from point
- * sources.
+/* Control spaces for mesh generators in C and Fortran: a metric at every point of a box, built from
+ * point sources.
  *
- * A metric is six numbers, xx yy zz xy xz yz, of the symmetric tensor M whose eigenvalues are the
- * desired edge lengths along its eigenvectors, in the unit of length of the domain: h on the
- * diagonal for the same length h in every direction. (The tensor of Riemannian meshers is M^-2:
- * cspace_to_riemannian(), cspace_from_riemannian().) Positions are three numbers, x y z, none of
- * them NaN. Arrays hold one after the other, without gaps, and stay the caller's.
+ * A metric is six numbers, xx yy zz xy xz yz, of the symmetric positive definite tensor M whose
+ * eigenvalues are LENGTHS: the desired edge lengths along its eigenvectors, in the unit of length
+ * of the domain. The isotropic metric of length h has h on the diagonal and zeros elsewhere.
  *
- * Functions that can fail return a cspace_status, and cspace_last_error() says what went wrong, in
- * one line. No exception leaves them, nothing is printed. A control space may be read by several
- * threads at a time as long as none writes to it. */
+ * M is not the Riemannian metric of most mesh generators, whose eigenvalues are 1/h^2: that is
+ * M^-2. cspace_to_riemannian() and cspace_from_riemannian() convert; all other functions take and
+ * return M.
+ *
+ * Points are three numbers, x y z. Arrays hold one point or metric after the other, without gaps,
+ * and remain the caller's.
+ *
+ * Functions that can fail return a cspace_status; cspace_last_error() returns the reason, in one
+ * line. No exception leaves the library and nothing is printed. Several threads may read a control
+ * space at the same time as long as none changes it. */
 #ifndef CONTROLSPACE_CONTROLSPACE_H
 #define CONTROLSPACE_CONTROLSPACE_H
 
@@ -25,73 +30,76 @@
 extern "C" {
 #endif
 
-/** A control space; to be freed by cspace_free(). */
+/** A control space, and the structure that it is built from. To be freed by cspace_free(). */
 typedef struct cspace cspace;
 
-/** What a function returns. */
+/** Result of a function. */
 typedef enum cspace_status {
     CSPACE_OK = 0,
-    CSPACE_FAILURE = 1,  /**< of the system or of the library: out of memory */
-    CSPACE_BAD_INPUT = 2 /**< something that was given cannot be used */
+    CSPACE_FAILURE = 1,  /**< the system or the library failed: out of memory */
+    CSPACE_BAD_INPUT = 2 /**< an argument cannot be used */
 } cspace_status;
 
 /** The library's version, "MAJOR.MINOR.PATCH". */
 CSPACE_API const char* cspace_version(void);
 
-/** What the last function that failed on this thread had to say; "" if none did. Valid until the
- * next one fails on this thread. */
+/** The reason why the last function on this thread that failed did so; "" if none failed. Valid
+ * until the next failure on this thread. */
 CSPACE_API const char* cspace_last_error(void);
 
-/** Makes a control space, which holds half of its domain's diagonal as the length everywhere.
+/** Creates a control space. Before the first source, its metric is isotropic everywhere; the length
+ * is half of the domain's diagonal.
  *
- * @param structure  its name in the catalogue, "K_oV"; cspace_structure() lists them
- * @param domain     its box: x0 y0 z0 x1 y1 z1
+ * @param structure  id of the data structure, "K_oV"; cspace_structure() lists them
+ * @param domain     the box: x0 y0 z0 x1 y1 z1
  * @param options    "" or NULL for the defaults, or some of these, as in "tau=0.5 split=s_G":
- *                   split (of kd-trees: s_L, s_G, s_Gx, s_M), tau (longest edge of a source's
- *                   leaf, in the source's metric), epsilon (tolerance of insertion), kd_depth,
- *                   octree_depth, finest_length (smallest length that sources ask for: grids size
- *                   their voxels by it), voxel (their longest edge), g_r (gradation ratio, for
- *                   structures that keep sources), takes_later_sources (1: sources may come after
- *                   gradation), max_memory (GiB)
- * @param space      where to put it; NULL after a failure */
+ *                   split (split rule of kd-trees: s_L, s_G, s_Gx, s_M), tau (maximum leaf edge:
+ *                   longest edge of a source's leaf, in the source's metric), epsilon (insertion
+ *                   tolerance), kd_depth, octree_depth (maximum depth; the root has depth 0),
+ *                   finest_length (smallest length of the sources [length]: grids choose their
+ *                   voxels by it), voxel (longest edge of a grid's voxels [length]), g_r (gradation
+ *                   ratio, for structures that keep sources), takes_later_sources (1: sources may
+ *                   be inserted after gradation), max_memory [GiB]
+ * @param space      receives the control space; NULL after a failure */
 CSPACE_API cspace_status cspace_create(const char* structure, const double* domain,
                                        const char* options, cspace** space);
 
-/** Name of the structure number `i`, from 0 on; NULL beyond the last. */
+/** Id of data structure number `i`, from 0; NULL beyond the last. */
 CSPACE_API const char* cspace_structure(size_t i);
 
 /** Frees a control space; NULL is allowed. */
 CSPACE_API void cspace_free(cspace* space);
 
-/** Inserts `n` sources: metrics that are asked for at places in the domain. A source that is
- * refused leaves those before it. */
+/** Inserts `n` sources: metrics M requested at points of the domain. If a source is refused, those
+ * before it are inserted. */
 CSPACE_API cspace_status cspace_insert(cspace* space, size_t n, const double* positions,
                                        const double* metrics);
 
-/** The same for lengths that are alike in every direction, one for each source. */
+/** The same for isotropic sources: one length each. */
 CSPACE_API cspace_status cspace_insert_lengths(cspace* space, size_t n, const double* positions,
                                                const double* lengths);
 
-/** Makes the field grow smoothly, by a ratio of neighbours of at most `ratio` (g_r >= 1). To be
- * called once all sources are inserted, unless the space takes later ones. */
+/** Limits the growth of lengths from point to point to the gradation ratio `ratio` (g_r >= 1).
+ * To be called after all sources are inserted, unless the control space takes later sources. */
 CSPACE_API cspace_status cspace_grade(cspace* space, double ratio);
 
-/** In place of insertion and gradation: replaces all that the space holds by the field of `n`
- * sources, whose lengths grow by `ratio` (g_r >= 1) with the distance, and cuts a tree until it
- * keeps within a non-conformity (delta) of `target` to it (above 0; 0.1 say). `reached`, unless
- * NULL, gets the largest delta that was found. */
+/** Replaces the whole content, instead of insertion and gradation, by the graded field of `n`
+ * sources with metrics M, whose lengths grow with the distance by `ratio` (g_r >= 1); a tree is
+ * refined until its non-conformity (delta) to that field is at most `target` (above 0, for example
+ * 0.1). `reached`, unless NULL, receives the largest delta found. */
 CSPACE_API cspace_status cspace_adapt(cspace* space, size_t n, const double* positions,
                                       const double* metrics, double ratio, double target,
                                       double* reached);
 
-/** Metrics at `n` places; outside the domain, that of its nearest place. Many places in one call
- * are far faster than one by one. */
+/** Metrics M at `n` points; a point outside the domain gets the metric of the nearest point of the
+ * domain. A coordinate that is NaN is refused, and nothing is written. Many points in one call are
+ * far faster than one by one. */
 CSPACE_API cspace_status cspace_sample(const cspace* space, size_t n, const double* positions,
                                        double* metrics);
 
-/** The Riemannian metrics M^-2 of `n` metrics M, and the way back; numbers in the same order, xx yy
- * zz xy xz yz. Both arrays may be the same. Refused, by its index, is what is not positive
- * definite; those before it are converted. */
+/** Converts `n` metrics M to Riemannian metrics M^-2, and back; six numbers each, in the same
+ * order, xx yy zz xy xz yz. Both arrays may be the same. A tensor that is not positive definite is
+ * refused with its index; those before it are converted. */
 CSPACE_API cspace_status cspace_to_riemannian(size_t n, const double* metrics, double* riemannian);
 CSPACE_API cspace_status cspace_from_riemannian(size_t n, const double* riemannian,
                                                 double* metrics);
@@ -99,10 +107,10 @@ CSPACE_API cspace_status cspace_from_riemannian(size_t n, const double* riemanni
 /** The domain: x0 y0 z0 x1 y1 z1. */
 CSPACE_API cspace_status cspace_domain(const cspace* space, double* domain);
 
-/** Saves a control space to a .ctrl file, whole or not at all. */
+/** Saves a control space to a .ctrl file. If that fails, no part of a file is left. */
 CSPACE_API cspace_status cspace_save(const cspace* space, const char* file);
 
-/** Loads a control space that was saved, to be freed as one that was made; NULL after a failure. */
+/** Loads a saved control space, to be freed by cspace_free(); NULL after a failure. */
 CSPACE_API cspace_status cspace_load(const char* file, cspace** space);
 
 #ifdef __cplusplus

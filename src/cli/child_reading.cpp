@@ -1,0 +1,113 @@
+#include "cli/child_reading.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "controlspace/error.h"
+#include "io/text/indefinite_tensors.h"
+
+namespace controlspace {
+namespace {
+
+constexpr int readable = 0, refused = 1, failed = 2;
+
+/// Sanitizers map terabytes.
+constexpr bool limits_memory =
+#ifdef __SANITIZE_ADDRESS__
+    false;
+#else
+    true;
+#endif
+
+void limit(int resource, rlim_t most) {
+    const rlimit both{most, most};
+    ::setrlimit(static_cast<__rlimit_resource>(resource), &both);
+}
+
+/// Most that reading the file may take beside what the program holds already.
+rlim_t memory_limit(const std::filesystem::path& file) {
+    constexpr rlim_t libraries = rlim_t{1} << 30;  // the stacks and heaps of threads among them
+    constexpr rlim_t bytes_per_byte = 1000;
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    std::error_code none;
+    const auto size = std::filesystem::file_size(file, none);
+    return pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + libraries +
+           bytes_per_byte * (none ? 0 : size);
+}
+
+/// Seconds of processors that reading the file may take: far more than the slowest reader does.
+rlim_t time_limit(const std::filesystem::path& file) {
+    constexpr std::uintmax_t bytes_per_second = 100'000;
+    std::error_code none;
+    const auto size = std::filesystem::file_size(file, none);
+    return 20 + (none ? 0 : size) / bytes_per_second;
+}
+
+[[noreturn]] void read_in_child(const std::filesystem::path& file,
+                                const std::function<void()>& read, int answer) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    // What libraries have to say of a crash is no line of ours.
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    ::dup2(nowhere, STDOUT_FILENO);
+    ::dup2(nowhere, STDERR_FILENO);
+    limit(RLIMIT_CORE, 0);
+    if (limits_memory) limit(RLIMIT_AS, memory_limit(file));
+    limit(RLIMIT_CPU, time_limit(file));
+    int status = failed;
+    try {
+        read();
+        status = readable;
+    } catch (const IndefiniteTensors&) {
+        status = readable;
+    } catch (const InputError& error) {
+        const std::string what = error.what();
+        if (::write(answer, what.data(), what.size()) > 0) status = refused;
+    } catch (...) {
+    }
+    std::_Exit(status);
+}
+
+std::string text_from(int descriptor) {
+    std::string text;
+    std::array<char, 4096> piece;
+    for (ssize_t got = 1; got > 0 || (got < 0 && errno == EINTR);) {
+        got = ::read(descriptor, piece.data(), piece.size());
+        if (got > 0) text.append(piece.data(), static_cast<std::size_t>(got));
+    }
+    return text;
+}
+
+}  // namespace
+
+void require_readable(const std::filesystem::path& file, const std::function<void()>& read) {
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::bad_alloc();
+    const pid_t child = ::fork();
+    if (child == 0) read_in_child(file, read, ends[1]);
+    ::close(ends[1]);
+    const std::string answer = text_from(ends[0]);
+    ::close(ends[0]);
+    int status = 0;
+    const bool ended =
+        child > 0 && TEMP_FAILURE_RETRY(::waitpid(child, &status, 0)) == child && WIFEXITED(status);
+    if (ended && WEXITSTATUS(status) == readable) return;
+    if (ended && WEXITSTATUS(status) == refused) throw InputError(answer);
+    throw InputError(
+        fmt::format("{}: the library that reads such files fails on it: is it damaged, or cut off?",
+                    file.string()));
+}
+
+}  // namespace controlspace

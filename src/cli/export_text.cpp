@@ -1,0 +1,51 @@
+// Formats of `export` that need no external library: tables, views and solutions.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "cli/export.h"
+#include "controlspace/error.h"
+#include "io/text/medit.h"
+#include "io/text/write_medit_sources.h"
+#include "io/text/write_sources.h"
+
+namespace controlspace {
+namespace {
+
+std::string write_solution(const Export& e, const std::filesystem::path& mesh) {
+    const std::vector<Point> vertices = read_medit_vertices(mesh);
+    std::vector<Metric> metrics(vertices.size());
+    e.filled.space->sample(vertices, metrics);
+    write_medit_solution(e.output, metrics);
+    return written(e,
+                   fmt::format("metrics at the {} vertices of {}", vertices.size(), mesh.string()));
+}
+
+std::string write_node_table(const Export& e) {
+    const ControlNodes nodes = e.filled.space->control_nodes(Neighbourhood::faces);
+    const std::vector<Point> places = positions(nodes.graph);
+    std::vector<PointSource> sources;
+    for (std::size_t i = 0; i < places.size(); ++i)
+        sources.push_back({places[i], nodes.metrics[i]});
+    write_sources(e.output, sources);
+    return written(e, fmt::format("{} control nodes", sources.size()));
+}
+
+}  // namespace
+
+std::vector<FieldFormat> add_text_formats(Options& options) {
+    const auto mesh = std::make_shared<std::filesystem::path>();
+    const std::string group = "A .sol or .solb file";
+    options.add({"--mesh", "FILE",
+                 "The mesh (.mesh, .meshb) at whose vertices the field is sampled", group},
+                *mesh);
+    return {{{".csv", ".pos"}, write_node_table},
+            {{".sol", ".solb"},
+             [mesh](const Export& e) { return write_solution(e, *mesh); },
+             group,
+             [mesh] {
+                 if (mesh->empty()) throw InputError("name the mesh of the solution by --mesh");
+             }}};
+}
+
+}  // namespace controlspace

@@ -1,0 +1,78 @@
+// The formats of VTK of `export`: leaves or control nodes, a slice, an octree.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "cli/export.h"
+#include "controlspace/error.h"
+#include "controlspace/io/write_vtk.h"
+#include "controlspace/space/space_field.h"
+#include "io/text/text_file.h"
+
+namespace controlspace {
+namespace {
+
+struct SliceOptions {
+    std::vector<std::string> place{"z"};  ///< axis, and coordinate on it; the middle if left out
+    int samples = Slice{}.samples;
+};
+
+std::string write_grid(const Export& e, bool nodes) {
+    const ControlSpace& space = *e.filled.space;
+    if (nodes) {
+        write_nodes(e.output, space);
+        return written(e, fmt::format("{} control nodes", space.footprint().control_nodes));
+    }
+    write_leaves(e.output, space);
+    return written(e, "the elements, with their metrics");
+}
+
+Slice slice_of(const SliceOptions& options, const Box& domain) {
+    const std::string& name = options.place.front();
+    const std::size_t axis = std::string("xyz").find(name);
+    if (name.size() != 1 || axis > 2) {
+        throw InputError(fmt::format("--slice: {} is no axis: give x, y or z", quote(name)));
+    }
+    Slice slice;
+    slice.axis = static_cast<Axis>(axis);
+    slice.at = domain.centre()[slice.axis];
+    slice.samples = options.samples;
+    if (options.place.size() > 1 && !parse_number(options.place[1], slice.at)) {
+        throw InputError(fmt::format("--slice: {} is not a number", quote(options.place[1])));
+    }
+    return slice;
+}
+
+std::string write_image(const Export& e, const SliceOptions& options) {
+    const ControlSpace& space = *e.filled.space;
+    const Slice slice = slice_of(options, space.domain());
+    write_slice(e.output, SpaceAsField(space), space.domain(), slice);
+    return written(e, fmt::format("a slice at {} = {}", "xyz"[slice.axis], slice.at));
+}
+
+}  // namespace
+
+std::vector<FieldFormat> add_vtk_formats(Options& options) {
+    const auto nodes = std::make_shared<bool>(false);
+    const auto slice = std::make_shared<SliceOptions>();
+    const std::string grid_group = "A .vtu file", image_group = "A .vti file";
+    options.add({"--nodes", "", "Write control nodes in place of leaves", grid_group}, *nodes);
+    options.add(
+        {"--slice", "AXIS [NUMBER]",
+         "Axis across the slice (x, y or z) and coordinate on it [length]; left out: z, and "
+         "the middle of the domain",
+         image_group},
+        slice->place, 2);
+    options.add(
+        {"--samples", "COUNT",
+         fmt::format("Samples along the longer edge (default: {})", slice->samples), image_group},
+        slice->samples);
+    return {{{".vtu"}, [nodes](const Export& e) { return write_grid(e, *nodes); }, grid_group},
+            {{".vti"}, [slice](const Export& e) { return write_image(e, *slice); }, image_group},
+            {{".htg"}, [](const Export& e) {
+                 write_octree(e.output, *e.filled.space);
+                 return written(e, "an octree");
+             }}};
+}
+
+}  // namespace controlspace

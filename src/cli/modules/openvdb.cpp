@@ -1,0 +1,14 @@
+#include "cli/modules/module.h"
+#include "controlspace/version.h"
+
+CONTROLSPACE_MODULE(OpenvdbModule) {
+    static const controlspace::OpenvdbModule table{
+        .version = controlspace::version(),
+        .make_openvdb_grid = controlspace::make_openvdb_grid,
+        .make_openvdb_levels = controlspace::make_openvdb_levels,
+        .make_openvdb_vec3s = controlspace::make_openvdb_vec3s,
+        .read_vdb_sources = controlspace::read_vdb_sources,
+        .read_vdb_field = controlspace::read_vdb_field,
+        .write_vdb = controlspace::write_vdb};
+    return &table;
+}

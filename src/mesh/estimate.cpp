@@ -1,0 +1,35 @@
+#include "mesh/estimate.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <vector>
+
+#include "controlspace/error.h"
+#include "controlspace/measure/accuracy.h"
+
+namespace controlspace {
+
+double estimated_tets(const Box& domain, const MetricField& field) {
+    constexpr int samples = 24;
+    const std::vector<Point> places = cell_centres(domain, samples);
+    std::vector<Metric> metrics(places.size());
+    field.evaluate(places, metrics);
+    const double cell = domain.edges().prod() / static_cast<double>(places.size());
+    const double per_unit = 6 * std::sqrt(2.0);  // regular ones of edge 1 in a unit of volume
+    double sum = 0;
+    for (const Metric& m : metrics) sum += per_unit * cell / m.matrix().determinant();
+    return sum;
+}
+
+void require_few_tets(const Box& domain, const MetricField& field, double most) {
+    const double tets = estimated_tets(domain, field);
+    if (tets <= most) return;
+    throw InputError(
+        fmt::format("the field asks for some {:.2g} tetrahedra, more than {:.2g}: ask "
+                    "for larger lengths, or allow more",
+                    tets, most));
+}
+
+}  // namespace controlspace

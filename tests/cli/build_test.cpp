@@ -1,0 +1,84 @@
+// End to end: `controlspace build`, and what takes what it saves.
+#include <catch2/catch.hpp>
+
+#include "cli/sandbox.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const std::string sources_csv = "x,y,z,h\n0,0,0,0.1\n1,0,0,0.2\n0,1,0,0.2\n1,1,1,0.4\n";
+const std::vector<std::string> saved_structures{
+    "K_V",
+    "K_V --frozen floats",
+    "K_oLA",
+    "uniform-trilinear",
+#ifdef CONTROLSPACE_OPENVDB
+    "openvdb-levels-trilinear",
+#endif
+};
+const std::string places_csv = "x,y,z\n0,0,0\n0.3,0.4,0.5\n0.9,0.1,0.7\n";
+
+}  // namespace
+
+TEST_CASE("what is queried of a saved control space is what was queried before it was saved") {
+    const Sandbox box("build");
+    box.write("s.csv", sources_csv);
+    box.write("places.csv", places_csv);
+    const std::string structure = GENERATE(from_range(saved_structures));
+    CAPTURE(structure);
+    const Outcome built = box.run("build s.csv -o f.ctrl --structures " + structure);
+    INFO(built.err);
+    REQUIRE(built.status == 0);
+    CHECK_THAT(built.out,
+               Contains("f.ctrl: " + structure.substr(0, structure.find(' ')) + " with"));
+    const Outcome made = box.run("query s.csv places.csv --structures " + structure);
+    const Outcome loaded = box.run("query f.ctrl places.csv");
+    INFO(loaded.err);
+    CHECK(loaded.status == 0);
+    CHECK(loaded.out == made.out);
+    CHECK(lines(loaded.out) == 4);
+}
+
+TEST_CASE("info says what a saved control space is and holds") {
+    const Sandbox box("build-info");
+    box.write("s.csv", sources_csv);
+    const auto said = [&](const std::string& options) {
+        REQUIRE(box.run("build s.csv -o f.ctrl " + options).status == 0);
+        const Outcome outcome = box.run("info f.ctrl");
+        INFO(outcome.err);
+        REQUIRE(outcome.status == 0);
+        CHECK(outcome.err.empty());
+        return outcome.out;
+    };
+    CHECK_THAT(said("--structures K_V --splits s_G --tau 0.5 --frozen floats"),
+               Contains("structure    K_V: kd-tree, trilinear") &&
+                   Contains("frozen       in floats") && Contains("saved by     controlspace ") &&
+                   Contains(", format 2\n") && Contains("split s_G, tau 0.5, epsilon 0.2") &&
+                   Contains("of them leaves, in ") && Contains("MB in the file") &&
+                   Contains("sizes        0.1 to ") && Contains("anisotropy   1 at most") &&
+                   Contains("gradation    1."));
+    CHECK_THAT(said("--structures K_oLA --g-r 1.5"),
+               Contains("g_r 1.5") && Contains("octree, up to three sources"));
+    CHECK_THAT(said("--structures uniform-nearest --voxel 0.25"),
+               Contains("voxel 0.25") && !Contains("leaves") && !Contains("frozen"));
+    check_refused(box.run("info f.ctrl --source-array a"), "--source-array");
+    box.write("cut.ctrl", file_text(box / "f.ctrl").substr(0, 200));
+    check_refused(box.run("info cut.ctrl"), "is truncated");
+}
+
+TEST_CASE("saved control spaces that cannot be used") {
+    const Sandbox box("build-bad");
+    box.write("s.csv", sources_csv);
+    box.write("places.csv", places_csv);
+    check_refused(box.run("build s.csv -o f.txt"), "ends in .ctrl");
+    check_refused(box.run("build s.csv -o f.ctrl --structures K_L,K_V"), "only one can be taken");
+    CHECK(!fs::exists(box / "f.ctrl"));
+    REQUIRE(box.run("build s.csv -o f.ctrl").status == 0);
+    check_refused(box.run("query f.ctrl places.csv --tau 0.5"), "--tau");
+    box.write("cut.ctrl", file_text(box / "f.ctrl").substr(0, 200));
+    check_refused(box.run("query cut.ctrl places.csv"), "is truncated");
+    box.write("text.ctrl", sources_csv);
+    check_refused(box.run("query text.ctrl places.csv"), "is no control space");
+}

@@ -1,0 +1,42 @@
+// The completion of bash, asked as bash asks it.
+#include "cli/sandbox.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// What bash offers for the last of `words`, a blank between two.
+std::string offered(const std::string& words) {
+    const Sandbox box("completion");
+    box.write("ask.sh", "source '" CONTROLSPACE_COMPLETION
+                        "'\n"
+                        "COMP_WORDS=('" CONTROLSPACE_APP
+                        "' \"$@\"); COMP_CWORD=$#\n"
+                        "_controlspace; echo \"${COMPREPLY[*]}\"\n");
+    const Outcome outcome = box.run("--version", "bash ask.sh " + words + " >offered; ");
+    CHECK(outcome.status == 0);
+    const std::string text = file_text(box / "offered");
+    return text.substr(0, text.find('\n'));
+}
+
+}  // namespace
+
+TEST_CASE("commands, options and values are completed as the program names them") {
+    CHECK(offered("compa") == "compare");
+    CHECK(offered("--v") == "--version");
+    CHECK(offered("compare --sched") == "--schedule");
+    CHECK(offered("compare --splits s_") == "s_L s_G s_Gx s_M");
+    CHECK(offered("compare --law ''") == "cone mean-length");
+    CHECK(offered("compare --quiet --sched") == "--schedule");
+    CHECK_THAT(offered("compare -"), Contains("--help") && Contains("--dry-run"));
+}
+
+TEST_CASE("each item of a list is completed") {
+    CHECK(offered("compare --structures K_L,K_oL") == "K_L,K_oL K_L,K_oLB K_L,K_oLA");
+}
+
+TEST_CASE("where files are asked for, nothing is offered in their place") {
+    CHECK(offered("compare study").empty());
+    CHECK(offered("compare --output res").empty());
+}

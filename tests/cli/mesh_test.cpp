@@ -1,0 +1,163 @@
+// End to end: `controlspace mesh`.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/sandbox.h"
+
+using namespace controlspace;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// The sphere at lengths of 0.2: some thousand tetrahedra.
+const std::string coarse = "mesh --h 0.1 --probe-grid 10 --output out ";
+
+const std::string thin = "--s-a 4 --s-n 0.25 ";
+
+}  // namespace
+
+TEST_CASE("one command makes meshes, and says how they conform") {
+    const Sandbox box("mesh");
+    const Outcome outcome = box.run(coarse + "--structures K_oV,uniform-trilinear");
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    CHECK(lines(outcome.err) == 3);
+    CHECK_THAT(outcome.out, Contains("exact") && Contains("K_oV") && Contains("L_R") &&
+                                Contains("1.25–1.41") && Contains("Meshes: out"));
+    for (const char* name : {"00-exact", "01-K_oV", "02-uniform-trilinear"}) {
+        for (const char* ending : {".msh", ".mesh", ".sol", ".vtu"}) {
+            CHECK(fs::file_size(box / "out" / (std::string(name) + ending)) > 1000);
+        }
+    }
+    CHECK_THAT(file_text(box / "out" / "summary.md"), Contains("## Meshes: delaunay"));
+    const auto json = nlohmann::json::parse(file_text(box / "out" / "meshes.json"));
+    CHECK(json["complete"] == true);
+    REQUIRE(json["rows"].size() == 3);
+    for (const auto& row : json["rows"]) {
+        INFO(row.dump());
+        CHECK(row["tets"] > 1000);
+        CHECK(row["L_R"] > 0.5);
+        CHECK(row["unit_share"] > row["L_R"]);
+        CHECK(row["quality_min"] > 0.1);
+        CHECK(row["queries"] > row["nodes"].get<int>() / 4);
+        CHECK(row["query_s"] < row["mesh_s"]);
+        CHECK(row["peak_bytes"] > 1e6);
+    }
+}
+
+TEST_CASE("a study's cases are meshed as its options say") {
+    const Sandbox box("mesh-study");
+    box.write("s.csv", "x,y,z,h\n0,0,0,0.1\n1,0,0,0.2\n0,1,0,0.2\n1,1,1,0.4\n");
+    box.write("study.toml",
+              "sources = 's.csv'\nprobe_grid = 5\n[[runs]]\nstructures = 'K_L'\nsplits = 's_L'\n"
+              "tau = [1, 0.5]\n");
+    const Outcome outcome = box.run(
+        "mesh study.toml --mesher hxt --files none --exact no --quiet --factor 0.8 --output out");
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    CHECK(outcome.err.empty());
+    CHECK_THAT(outcome.out, !Contains("exact ") || Contains("K_L s_L"));
+    CHECK(std::distance(fs::directory_iterator(box / "out"), fs::directory_iterator()) == 2);
+    const auto json = nlohmann::json::parse(file_text(box / "out" / "meshes.json"));
+    REQUIRE(json["rows"].size() == 2);
+    CHECK(json["rows"][1]["mesher"] == "hxt");
+    CHECK(json["settings"]["factor"] == "0.8");
+}
+
+TEST_CASE("a saved control space is meshed as it is") {
+    const Sandbox box("mesh-saved");
+    REQUIRE(box.run("build --h 0.1 --structures K_oV -o f.ctrl").status == 0);
+    const Outcome outcome = box.run("mesh f.ctrl --output out --files vtu");
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    CHECK(lines(outcome.err) == 1);
+    CHECK_THAT(outcome.out, Contains("Meshes: delaunay, f.ctrl") && Contains("K_oV") &&
+                                !Contains("\nexact ") && !Contains("Table 5"));
+    CHECK(fs::file_size(box / "out" / "00-K_oV.vtu") > 1000);
+    const auto json = nlohmann::json::parse(file_text(box / "out" / "meshes.json"));
+    REQUIRE(json["rows"].size() == 1);
+    const auto& row = json["rows"][0];
+    CHECK(row["field"] == "K_oV");
+    CHECK(row["setting"] == "f.ctrl");
+    CHECK(row["L_R"] > 0.5);
+    CHECK_FALSE(row.contains("delta_R_max"));
+    // The same mesh as of the structure before it was saved.
+    REQUIRE(box.run("mesh --h 0.1 --probe-grid 10 --structures K_oV --exact no --files none "
+                    "--quiet --output made")
+                .status == 0);
+    const auto made = nlohmann::json::parse(file_text(box / "made" / "meshes.json"));
+    CHECK(made["rows"][0]["tets"] == row["tets"]);
+
+    check_refused(box.run("mesh f.ctrl --output no --tau 0.5"), "--tau: f.ctrl was made with");
+    check_refused(box.run("mesh none.ctrl --output no"), "none.ctrl");
+    box.write("text.ctrl", "x,y,z,h\n");
+    check_refused(box.run("mesh text.ctrl --output no"), "is no control space");
+    CHECK_FALSE(fs::exists(box / "no"));
+}
+
+TEST_CASE("Gmsh on an anisotropic field warns and goes on") {
+    const Sandbox box("mesh-warning");
+    const Outcome outcome =
+        box.run(coarse + "--s-n 0.8 --mesher delaunay --exact no --files none --quiet");
+    INFO(outcome.err);
+    CHECK(outcome.status == 0);
+    CHECK(lines(outcome.err) == 1);
+    CHECK_THAT(outcome.err, Contains("anisotropic") && Contains("--mesher mmg"));
+}
+
+TEST_CASE("a mesher that fails makes a row with its reason, and status 3") {
+    const Sandbox box("mesh-failed");
+    box.write("mmg", "#!/bin/sh\necho not SPD\nexit 1\n");
+    fs::permissions(box / "mmg", fs::perms::owner_all);
+    const Outcome outcome = box.run(coarse + thin + "--mmg ./mmg --files none --quiet");
+    INFO(outcome.err);
+    CHECK(outcome.status == 3);
+    CHECK_THAT(outcome.err, Contains("MMG failed with status 1: not SPD (its files: "));
+    CHECK_THAT(outcome.out, Contains("failed: MMG failed"));
+    const auto json = nlohmann::json::parse(file_text(box / "out" / "meshes.json"));
+    CHECK(json["rows"].size() == 2);
+}
+
+TEST_CASE("what cannot be meshed ends with one line, and leaves no folder") {
+    const Sandbox box("mesh-refused");
+    const auto [arguments, expected] = GENERATE(table<std::string, std::string>({
+        {"--mesher netgen", "--mesher: unknown value 'netgen'"},
+        {"--start fine", "--start: unknown value 'fine': give coarse, delaunay, hxt"},
+        {"--factor 0", "--factor: 0 is not positive"},
+        {"--optimize 1", "--optimize: 1 is out of range"},
+        {"--files stl", "--files: unknown kind of file 'stl'"},
+        {"--files msh,none", "--files: unknown kind of file 'none'"},
+        {"--rounds 0", "--rounds"},
+        {"--time-limit 0", "--time-limit"},
+        {"--exact maybe", "--exact: give yes or no"},
+        {"--mesh-threads 0", "--mesh-threads"},
+        {"--structures uniform-nearest --equal-delta 0.1", "equal_delta"},
+        {"--kd-depth 1000 --structures K_L", "depth"},
+        {"--structures K_X", "unknown structure 'K_X'"},
+        {"--access-points 3", "--access-points"},
+        {"no.toml", "no.toml"},
+        {"no.csv", "sampled surfaces"},
+        {"--s-n 0.25 --mmg ./none", "./none: no program"},
+        {"--s-n 0.25", "MMG is missing"},
+    }));
+    INFO(arguments);
+    check_refused(box.run(coarse + arguments, "export PATH=/nowhere; "), expected);
+    CHECK_FALSE(fs::exists(box / "out"));
+}
+
+TEST_CASE("Ctrl-C in the midst of a mesh leaves whole files and status 130") {
+    const Sandbox box("mesh-interrupt");
+    // A million tetrahedra, so that the signal comes before they are made.
+    const Outcome outcome =
+        box.run("mesh --h 0.01 --probe-grid 5 --output out",
+                "(for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do sleep 0.5; "
+                "[ -e out/meshes.json ] && break; done; kill -INT $(cat pid)) & "
+                "exec sh -c 'echo $$ >pid; exec \"$@\"' sh ");
+    INFO(outcome.err);
+    CHECK(outcome.status == 130);
+    CHECK_THAT(outcome.err, Contains("interrupted: 0 meshes are in out"));
+    const auto json = nlohmann::json::parse(file_text(box / "out" / "meshes.json"));
+    CHECK(json["complete"] == false);
+    CHECK(std::distance(fs::directory_iterator(box / "out"), fs::directory_iterator()) == 1);
+}
