@@ -10,7 +10,8 @@ from xml.etree import ElementTree
 import numpy as np
 from samples import ROOT, failed_row, json_row, results_of, run, with_fields, write_results
 
-from pages import compare_runs, fields, figures, report
+from pages import compare_runs, fields, figures
+from pages import report_command as report
 from pages.results import InputError, read_results
 from pages.table import Table
 
