@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "controlspace/error.h"
 #include "controlspace/fields/formula_field.h"
@@ -15,16 +14,10 @@ namespace controlspace {
 
 namespace {
 
-void require_length(std::string_view name, double value) {
-    if (!is_length(value)) {
-        throw InputError(fmt::format("{} {} of a field: give a positive number", name, value));
-    }
-}
-
 void require_valid(const SurfaceLengths& lengths) {
-    require_length("length across", lengths.across);
-    require_length("length along", lengths.along);
-    require_length("largest length", lengths.largest);
+    require_length("length across of a field", lengths.across);
+    require_length("length along of a field", lengths.along);
+    require_length("largest length of a field", lengths.largest);
     if (!(lengths.growth >= 0 && is_coordinate(lengths.growth))) {
         throw InputError(
             fmt::format("growth {} of a field: give 0 or a positive number", lengths.growth));
@@ -49,11 +42,8 @@ AnalyticField with_lengths(const SurfaceLengths& lengths, Formula formula) {
 
 AnalyticField sphere_field(const SphereField& sphere) {
     require_valid(sphere.lengths);
-    require_length("radius", sphere.radius);
-    if (!std::all_of(sphere.centre.begin(), sphere.centre.end(), is_coordinate)) {
-        throw InputError(fmt::format("centre ({}, {}, {}) of a field: give finite coordinates",
-                                     sphere.centre.x(), sphere.centre.y(), sphere.centre.z()));
-    }
+    require_length("radius of a field", sphere.radius);
+    require_coordinates("centre of a field", sphere.centre);
     return with_lengths(sphere.lengths, [sphere](const Point& p) {
         const Vector v = p - sphere.centre;
         const double r = v.norm();

@@ -1,5 +1,7 @@
 #include "controlspace/sources/point_source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -22,6 +24,17 @@ bool is_length(double h) { return h >= 1 / largest_magnitude && h <= largest_mag
 
 bool is_source_metric(const Metric& m) {
     return is_positive_definite(m) && is_length(mean_length(m));
+}
+
+void require_length(std::string_view name, double value) {
+    if (is_length(value)) return;
+    throw InputError(fmt::format("{} = {}: give a positive number", name, value));
+}
+
+void require_coordinates(std::string_view name, const Point& p) {
+    if (std::all_of(p.begin(), p.end(), is_coordinate)) return;
+    throw InputError(fmt::format("{} = ({}, {}, {}): give three finite coordinates", name, p.x(),
+                                 p.y(), p.z()));
 }
 
 }  // namespace controlspace

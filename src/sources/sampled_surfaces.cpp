@@ -13,12 +13,6 @@ namespace controlspace {
 
 namespace {
 
-void require_length(const char* name, double value) {
-    if (!is_length(value)) {
-        throw InputError(fmt::format("{} = {}: give a positive number", name, value));
-    }
-}
-
 void require_few(double samples, double h, double rho) {
     if (!(samples <= most_samples)) {
         throw InputError(fmt::format(
@@ -53,10 +47,7 @@ std::vector<double> steps_across(double step) {
 std::vector<PointSource> sample_sphere(const SphereSampling& s) {
     require_lengths(s);
     require_length("radius", s.radius);
-    if (!std::all_of(s.centre.begin(), s.centre.end(), is_coordinate)) {
-        throw InputError(fmt::format("centre = ({}, {}, {}): give three finite coordinates",
-                                     s.centre.x(), s.centre.y(), s.centre.z()));
-    }
+    require_coordinates("centre", s.centre);
     constexpr double quarter = std::numbers::pi / 2;
     const double a = quarter * s.radius / (s.h * s.rho);
     require_few(16 / std::numbers::pi * a * a, s.h, s.rho);

@@ -6,8 +6,8 @@
 
 namespace controlspace {
 
-/// Lengths beside a surface: `across` it and `along` it on the surface itself, each growing by
-/// `growth` times the distance from it, up to `largest`.
+/// Lengths near a surface: `across` and `along` the surface on the surface itself, each growing by
+/// `growth` times the distance from it, up to `largest`. In the unit of length of the domain.
 struct SurfaceLengths {
     double across = 0.03;
     double along = 0.03;
@@ -17,8 +17,8 @@ struct SurfaceLengths {
     bool operator==(const SurfaceLengths&) const = default;
 };
 
-/// Around a sphere: |p - centre| gives the distance, p - centre the direction across, and any
-/// direction will do at the centre itself (x). With equal lengths, isotropic and
+/// Around a sphere: the distance is ||p - centre| - radius|, the direction across is that of
+/// p - centre, and x at the centre itself. With equal lengths, isotropic and
 /// min(largest, h + growth ||p - centre| - radius|).
 struct SphereField {
     Point centre = Point::Zero();
@@ -26,15 +26,15 @@ struct SphereField {
     SurfaceLengths lengths = {};
 };
 
-/// Around the two planes of PlanesSampling, (-0.5, u, v) and (u, -0.2 + slope u, v) without end:
-/// the intersection of the fields of either.
+/// Around the two unbounded planes of PlanesSampling, (-0.5, u, v) and (u, -0.2 + slope u, v): the
+/// intersection of the fields of both.
 struct PlanesField {
     double slope = 0;
     SurfaceLengths lengths = {};
 };
 
-/// Both throw InputError for lengths and a radius that are not positive numbers, for a growth below
-/// 0, and for anything that is not finite.
+/// Defined everywhere. Both throw InputError for lengths and a radius that are not positive, for a
+/// growth below 0, and for anything that is not finite.
 AnalyticField sphere_field(const SphereField& sphere);
 AnalyticField planes_field(const PlanesField& planes);
 

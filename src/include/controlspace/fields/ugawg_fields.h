@@ -5,8 +5,9 @@
 namespace controlspace {
 
 /// The analytic metrics of the Unstructured Grid Adaptation Working Group's benchmarks
-/// (github.com/UGAWG/adapt-benchmarks), in the unit cube; 0.001 long at least and anisotropic up
-/// to 100:1. r, t and z are the directions of cylinder coordinates around the z axis.
+/// (github.com/UGAWG/adapt-benchmarks), in the unit cube; with lengths of at least 0.001 and
+/// anisotropy up to 100:1. r, t and z are the directions of cylindrical coordinates around the z
+/// axis.
 ///
 ///   linear   h_x = h_y = 0.1, h_z = 0.001 + 0.198 |z - 0.5|
 ///   polar-1  h_r = 0.001 + 0.198 |r - 0.5|, h_t = h_z = 0.1

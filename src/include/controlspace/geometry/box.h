@@ -7,7 +7,7 @@
 
 namespace controlspace {
 
-/// Axis-aligned box, closed: `low` and `high` belong to it.
+/// Axis-aligned box, closed: `low` and `high` belong to it. In the unit of length of the domain.
 struct Box {
     Point low = Point::Zero();
     Point high = Point::Zero();
@@ -28,12 +28,13 @@ inline Point corner(const Box& box, int i) {
 }
 
 /// Smallest box around `points`, each side moved outwards by `margin` times the longest edge.
-/// A set without extent along an axis (a plane, a line, one point) gets the extent of its longest
-/// edge there, or 1 where it has none, so that the box always has a volume.
+/// Where the points have no extent along an axis (a plane, a line, one point), the box gets that of
+/// its longest edge, or 1 if there is none, so that it always has a volume. Throws InputError for
+/// no points.
 Box bounding_box(std::span<const Point> points, double margin);
 
-/// `box` itself; throws InputError, naming the axis, where numbers cannot work in it: an edge that
-/// is zero, negative, not finite or shorter than 1 / largest_magnitude, coordinates beyond
+/// `box` itself. Throws InputError, naming the axis, if floating point cannot resolve it: an edge
+/// that is zero, negative, not finite or shorter than 1 / largest_magnitude, coordinates beyond
 /// largest_magnitude, or an edge shorter than 2e-10 of its distance from the origin.
 const Box& require_volume(const Box& box);
 

@@ -9,12 +9,12 @@ namespace controlspace {
 /// A box and the planes that cut it: one for a kd-tree, three for an octree. A tree of either kind
 /// is a box subdivided again and again.
 ///
-/// Children are numbered by one bit per cut axis, x lowest: 1 is the high side. A place on a plane
+/// Children are numbered by one bit per cut axis, x lowest: 1 is the high side. A point on a plane
 /// belongs to the low side. Children's faces are copies of the parent's and of `at`, never
 /// computed, so faces that coincide are equal to the bit.
 struct Subdivision {
     Box box;
-    Point at = Point::Zero();    ///< where the planes stand; only cut axes count
+    Point at = Point::Zero();    ///< positions of the planes; only cut axes count
     std::array<bool, 3> cuts{};  ///< which axes are cut
 
     int children() const { return 1 << (cuts[0] + cuts[1] + cuts[2]); }
@@ -35,7 +35,7 @@ struct Subdivision {
         return part;
     }
 
-    /// Whether every plane stands strictly inside the box: floating point ends somewhere.
+    /// Whether every plane lies strictly inside the box: false once floating point cannot halve it.
     bool is_proper() const {
         for (Axis a = 0; a < 3; ++a) {
             if (cuts[static_cast<std::size_t>(a)] && !(box.low[a] < at[a] && at[a] < box.high[a])) {
@@ -63,8 +63,9 @@ inline Subdivision longest_edge_halves(const Box& box) {
     return halves(box, axis, 0.5 * (box.low[axis] + box.high[axis]));
 }
 
-/// Across the middle of the axis with the largest of `along`, as long as no edge gets shorter than
-/// an eighth of the longest; the longest edge where `along` says nothing.
+/// Across the middle of the axis with the largest of `along` among those whose edge is at least a
+/// quarter of the longest, so that no edge gets shorter than an eighth of it; across the longest
+/// edge if no such entry is positive.
 inline Subdivision halves_across(const Box& box, const std::array<double, 3>& along) {
     const Vector e = box.edges();
     const double shortest = e.maxCoeff() / 4;

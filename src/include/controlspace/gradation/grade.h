@@ -13,7 +13,7 @@ namespace controlspace {
 
 /// In which order the law is applied to pairs of neighbours.
 enum class GradationSchedule {
-    /// Until nothing changes (paper §3.2): what is left is within the ratio asked for.
+    /// Until nothing changes (paper §3.2): no pair of neighbours exceeds the ratio.
     queue,
     /// At most ten passes over the nodes that are still too steep, in tree order: what the paper's
     /// tables were made with. May leave pairs above the ratio.
@@ -32,18 +32,18 @@ struct GradationOptions {
 };
 
 struct GradationReport {
-    /// Metrics made smaller, each counted as often as that happened to it; but once where those of
-    /// a NodeGraph are all isotropic, under the cone law and by the queue.
+    /// Metrics made smaller, each counted every time; but once for isotropic metrics of a NodeGraph
+    /// under the cone law and the queue schedule.
     std::uint64_t operations = 0;
-    /// Over all neighbours, under the law that was applied. Where only what had changed was graded
-    /// (gradation/regrade.h): over the nodes visited and all neighbours of the time before, so that
-    /// it may be more than is left.
+    /// Largest gradation ratio over all neighbours, under the law that was applied. After an
+    /// incremental gradation (gradation/regrade.h): an upper bound, over the nodes visited and all
+    /// neighbours of the gradation before.
     double largest_ratio_left = 1;
-    /// Where only what had changed was graded: how often a node's neighbours were looked at.
+    /// Only for incremental gradation: how often a node's neighbours were visited.
     std::optional<std::uint64_t> visits = std::nullopt;
 };
 
-/// The neighbours that are compared.
+/// The neighbours that are compared under these options.
 inline Neighbourhood neighbourhood_of(const GradationOptions& options) {
     if (options.neighbourhood == Neighbourhood::all) return Neighbourhood::all;
     return options.schedule == GradationSchedule::queue ? Neighbourhood::faces
@@ -53,12 +53,12 @@ inline Neighbourhood neighbourhood_of(const GradationOptions& options) {
 /// Throws InputError for a ratio below 1 or not finite.
 void require_valid(const GradationOptions& options);
 
-/// The largest gradation ratio that neighbours show under `law`; 1 where all are alike.
+/// The largest gradation ratio between neighbours under `law`; 1 if all metrics are alike.
 double largest_gradation(const ControlGraph& graph, std::span<const Metric> metrics,
                          GradationLaw law);
 
-/// Makes the metrics of the control nodes grow smoothly, in place; they only ever get smaller. On
-/// all of TBB's threads, with a result that does not depend on their number.
+/// Gradation (paper §3.2): limits the growth of the control nodes' metrics to the ratio, in place;
+/// no metric gets larger. Runs on all of TBB's threads; the result does not depend on their number.
 /// `metrics.size()` must be the graph's size; for the queue, neighbours must be mutual. Throws as
 /// require_valid does.
 GradationReport grade(const ControlGraph& graph, OrderedMetrics metrics,

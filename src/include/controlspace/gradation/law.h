@@ -8,13 +8,13 @@
 
 namespace controlspace {
 
-/// How fast metrics may grow from place to place, for a gradation ratio g >= 1.
+/// How fast metrics may grow with distance, for a gradation ratio g_r >= 1, here g.
 enum class GradationLaw {
     /// Seen from a node with metric M0, a metric at v may be at most M0 (1 + (g-1) |M0^-1 v|).
     /// Isotropic: h1 <= h0 + (g-1) |v|. The law of the exact reference.
     cone,
-    /// The paper's (§3.2): the ratio of the two along the eigenvectors of either is at most
-    /// 1 + (g-1) λ, λ the mean of v's two metric lengths.
+    /// The paper's (§3.2): the ratio of the two metrics along the eigenvectors of either is at most
+    /// 1 + (g-1) λ, where λ is the mean of v's two metric lengths.
     mean_length,
 };
 
@@ -25,15 +25,15 @@ double gradation_ratio_from_mmg(double hgrad);
 /// Gradation ratio g of refine's metric-space gradation β: 1 + ln(β).
 double gradation_ratio_from_refine(double beta);
 
-/// How a metric grows towards a neighbour, in the measures of one law.
+/// How a metric grows towards a neighbour, as one law measures it.
 struct Growth {
-    double ratio = 1;   ///< how many times larger the neighbour is, at most; 1 where it is not
+    double ratio = 1;   ///< by which factor the neighbour is larger, at most; 1 if it is not
     double length = 0;  ///< the law's distance between the two, in metric lengths (λ)
 
     /// The largest ratio that gradation ratio g allows at this distance.
     double allowed(double g) const { return 1 + (g - 1) * length; }
-    /// The gradation ratio that this growth shows (paper §3.2); at most g where `exceeds(g)` is
-    /// false, however close the two are.
+    /// The gradation ratio of this growth (paper §3.2), 1 or more; at most g if `exceeds(g)` is
+    /// false, however close the two nodes are.
     double gradation() const {
         const double growth = ratio / (1 + settled) - 1;
         return growth > 0 ? 1 + growth / length : 1;
@@ -44,12 +44,12 @@ struct Growth {
     static constexpr double settled = 1e-9;
 };
 
-/// Growth from metric `from` to metric `to`, which lie apart by `v`.
+/// Growth from metric `from` to metric `to`, the displacement between them being `v`.
 ///   cone:        ratio = least k with `to` within k `from`; length = |from^-1 v|
 ///   mean_length: ratio over the eigenvectors of both; length = (|from^-1 v| + |to^-1 v|) / 2
 Growth growth_between(GradationLaw law, const Metric& from, const Metric& to, const Vector& v);
 
-/// Which of two metrics a law made smaller.
+/// Which of two metrics was made smaller.
 struct Limited {
     bool first = false;
     bool second = false;
@@ -59,14 +59,15 @@ struct Limited {
 Limited limit_anisotropic_growth(GradationLaw law, double g, const Vector& v, Metric& m0,
                                  Metric& m1);
 
-/// The cone law for isotropic metrics: the largest size at `v` from a place of size h.
+/// The cone law for isotropic metrics: the largest size at displacement `v` from size h.
 inline double cone_limit(double h, double g, const Vector& v) { return h + (g - 1) * v.norm(); }
 
-/// Applies `law` to two metrics apart by `v`: makes either smaller where the other asks for it.
+/// Applies `law` to two metrics at displacement `v`: makes either smaller if it exceeds what the
+/// other allows.
 ///
 /// For isotropic metrics under the cone law the limit is h0 + (g-1)|v| in floating point, which is
-/// monotone in h0: so the fixed point of a whole graph is unique, to the bit, in whatever order its
-/// pairs are visited.
+/// monotone in h0: so the fixed point of a whole graph is unique, to the bit, whatever the order of
+/// its pairs.
 inline Limited limit_growth(GradationLaw law, double g, const Vector& v, Metric& m0, Metric& m1) {
     if (!is_isotropic(m0) || !is_isotropic(m1)) {
         return limit_anisotropic_growth(law, g, v, m0, m1);

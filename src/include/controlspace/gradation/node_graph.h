@@ -24,8 +24,8 @@ using NodeIndex = std::uint32_t;
 /// | all               | all leaves that touch, at edges and   | all vertices of a leaf    |
 /// |                   | corners too                           |                           |
 ///
-/// A node of a grid has six neighbours, or 26 with `all`. Values handed on along faces travel up to
-/// √3 times the straight line, through all neighbours of a grid up to 1.13 times.
+/// A node of a grid has six neighbours, or 26 with `all`. Paths across the faces of a grid are up
+/// to √3 times as long as the straight line, those through all neighbours up to 1.13 times.
 enum class Neighbourhood { faces, nearest_per_face, all };
 
 /// Control nodes and their neighbours as flat arrays: node i has the neighbours
@@ -42,7 +42,7 @@ struct NodeGraph {
     void for_each_neighbour(NodeIndex i, Visit&& visit) const {
         for (std::size_t k = first[i]; k < first[i + 1]; ++k) visit(neighbours[k]);
     }
-    /// visit(j, v) for the same, v the way from i to j.
+    /// visit(j, v) for the same; v is the displacement from i to j.
     template <class Visit>
     void for_each_link(NodeIndex i, Visit&& visit) const {
         const Point p = positions[i];
@@ -117,7 +117,7 @@ private:
 
 using ControlGraph = std::variant<NodeGraph, Lattice>;
 
-/// Where the nodes of `graph` are, in their order.
+/// The positions of the nodes, in their order.
 inline std::vector<Point> positions(const ControlGraph& graph) {
     return std::visit(
         [](const auto& nodes) {

@@ -9,7 +9,7 @@
 
 namespace controlspace {
 
-/// The metrics of a graph's nodes, where their owner has them.
+/// The metrics of a graph's nodes, in the memory and the order of their owner.
 class OrderedMetrics {
 public:
     OrderedMetrics(std::vector<Metric>& metrics) : metrics_(metrics) {}

@@ -15,32 +15,31 @@ namespace controlspace {
 /// Throws InputError unless 1 <= n <= 512.
 std::vector<Point> cell_centres(const Box& box, int n);
 
-/// Places where the reference is known; computed once and shared by all structures.
+/// Points with the reference metric there; computed once and shared by all structures.
 struct Probes {
     std::vector<Point> points;
     std::vector<Metric> reference;
 };
 Probes make_probes(const MetricField& field, std::vector<Point> points);
 
-/// A place counts as coarser where some length that the structure asks for is longer than the
-/// reference's by more than this part of it. Beyond rounding, and far below what the lengths of a
-/// mesh's edges scatter by.
+/// A point counts as coarser if a length of the structure's metric exceeds the reference's by more
+/// than this fraction. Beyond rounding, and far below the scatter of a mesh's edge lengths.
 constexpr double coarser_tolerance = 0.01;
 
-/// Non-conformity δ between a structure and its reference over a set of places; and apart from it,
-/// since δ is symmetric, the errors of the dangerous kind, larger elements than the reference asks
-/// for. Where the structure answers something that is no metric, all errors are infinite.
+/// Non-conformity δ between a structure and its reference over a set of points; and, since δ is
+/// symmetric, the dangerous errors separately: lengths larger than those of the reference. Where
+/// the structure's answer is not positive definite, all errors are infinite.
 struct Accuracy {
     double max = 0;
     double mean = 0;
     double p95 = 0;               ///< 95th percentile (nearest rank)
     double p99 = 0;               ///< 99th percentile (nearest rank)
     double riemannian_max = 0;    ///< maximum of δ on the Riemannian metrics
-    Point worst = Point::Zero();  ///< where max is; the first such place
-    /// Largest ratio, over all places and directions, of the length that the structure asks for to
-    /// the reference's; 1 or less where it is nowhere longer.
+    Point worst = Point::Zero();  ///< where max is attained first
+    /// Largest ratio, over all points and directions, of the structure's length to the
+    /// reference's; at most 1 if it is nowhere longer.
     double coarser_max = 0;
-    /// Share of the places where that ratio is above 1 + coarser_tolerance in some direction.
+    /// Fraction of the points where that ratio exceeds 1 + coarser_tolerance in some direction.
     double coarser_share = 0;
 };
 

@@ -9,7 +9,7 @@
 
 namespace controlspace {
 
-/// How metrics are interpolated. With weights that sum to 1, all of them reproduce a constant.
+/// How metrics are interpolated. With weights that sum to 1, all schemes reproduce a constant.
 ///
 /// | blend          | linear in | positive definite for | what it does badly                    |
 /// |----------------|-----------|-----------------------|---------------------------------------|
@@ -21,20 +21,19 @@ namespace controlspace {
 /// | log_euclidean  | log M     | any weights           | costs an eigen-decomposition a        |
 /// |                |           |                       | metric; otherwise the best behaved    |
 ///
-/// With other weights than those, "positive definite for" fails in the open: the result of the
-/// first three is then not positive definite, or not a number. M^-2 and M^2 keep half the digits of
-/// M: at an anisotropy of 1e6 the largest (riemannian) or smallest (inverse) length is good to
-/// 1e-3.
+/// With negative weights the result of the first three may not be positive definite, or not a
+/// number. M^-2 and M^2 keep half the digits of M: at an anisotropy of 1e6 the largest (riemannian)
+/// or smallest (inverse) length is accurate to 1e-3 only.
 ///
 /// `lengths` is the paper's (§3.1) and the default everywhere.
 enum class Blend { lengths, riemannian, inverse, log_euclidean };
 
-/// Weighted mean of `count` metrics, linear in M. `metric_at(i)` gives metric i, a Metric or a
-/// StoredMetric: structures blend straight from their arrays.
+/// Weighted mean of `count` metrics, linear in M. `metric_at(i)` returns metric i, a Metric or a
+/// StoredMetric, so that structures blend from their own arrays; `weight_at(i)` its weight.
 template <class WeightAt, class MetricAt>
 [[gnu::always_inline]] inline Metric blend_lengths(std::size_t count, WeightAt&& weight_at,
                                                    MetricAt&& metric_at) {
-    // In two vectors of numbers: left alone, the compiler mostly does one number after the other.
+    // In two vectors of numbers: otherwise the compiler mostly handles them one by one.
     Eigen::Array4d first = Eigen::Array4d::Zero();
     Eigen::Array2d rest = Eigen::Array2d::Zero();
     for (std::size_t i = 0; i < count; ++i) {

@@ -8,9 +8,11 @@
 
 namespace controlspace {
 
-/// Metric transformation tensor M of the paper (§2): symmetric, positive definite, its eigenvalues
-/// are the desired edge lengths, its eigenvectors the directions they hold in. The Riemannian
-/// metric of the meshing literature is M^-2. Six numbers in the unit of length of the domain.
+/// Metric M, the transformation tensor of the paper (§2): symmetric and positive definite; its
+/// eigenvalues are the requested edge lengths, in the unit of length of the domain, and its
+/// eigenvectors their directions. The Riemannian metric of the meshing literature is M^-2.
+///
+/// Functions of a metric expect a positive definite one, unless they say otherwise.
 struct Metric {
     double xx = 1, yy = 1, zz = 1, xy = 0, xz = 0, yz = 0;
 
@@ -46,7 +48,7 @@ inline bool is_isotropic(const Metric& m) {
     return is_axis_aligned(m) && m.xx == m.yy && m.xx == m.zz;
 }
 
-/// Whether all numbers are finite and all eigenvalues positive.
+/// Whether all numbers are finite and all eigenvalues positive; for any six numbers.
 bool is_positive_definite(const Metric& m);
 
 /// Metric with `lengths[i]` along `directions.col(i)`; the columns must be orthonormal.
@@ -74,18 +76,18 @@ inline double mean_length(const Metric& m) { return (m.xx + m.yy + m.zz) / 3; }
 /// The general case of `to_metric_space`.
 Vector to_metric_space_by_cholesky(const Metric& m, const Vector& v);
 
-/// M^-1 v: the displacement `v` seen in the metric.
+/// M^-1 v: the displacement `v` in metric space, where requested edges have length 1.
 inline Vector to_metric_space(const Metric& m, const Vector& v) {
     if (is_axis_aligned(m)) return {v.x() / m.xx, v.y() / m.yy, v.z() / m.zz};
     return to_metric_space_by_cholesky(m, v);
 }
 
-/// |M^-1 v|: how many desired edge lengths `v` is long (paper §2).
+/// Metric length |M^-1 v|: the length of `v` in units of the requested edge length (paper §2).
 inline double metric_length(const Metric& m, const Vector& v) {
     return to_metric_space(m, v).norm();
 }
 
-/// Metric lengths of displacements along x, y and z by `edges`: |M^-1 edges[a] e_a|.
+/// Metric lengths of the edges of a box: |M^-1 edges[a] e_a| for the axes a.
 std::array<double, 3> metric_edge_lengths(const Metric& m, const Vector& edges);
 
 /// "(xx yy zz xy xz yz)", for messages.

@@ -4,10 +4,10 @@
 
 namespace controlspace {
 
-/// Numbers that structures which are only read may keep their metrics in.
+/// Type of the numbers in the metrics of a compact form.
 enum class Precision { doubles, floats };
 
-/// A metric kept in six numbers of another type; floats round each by up to 6e-8 of itself.
+/// A metric in six numbers of another type; floats round each by a relative 6e-8 at most.
 template <class Number>
 struct StoredMetric {
     Number xx = 1, yy = 1, zz = 1, xy = 0, xz = 0, yz = 0;

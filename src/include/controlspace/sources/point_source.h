@@ -1,13 +1,14 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 
 #include "controlspace/geometry/point.h"
 #include "controlspace/metric/metric.h"
 
 namespace controlspace {
 
-/// A discrete source: the metric asked for at a place.
+/// A point source: the metric requested at a position (paper §2).
 struct PointSource {
     Point position = Point::Zero();
     Metric metric;
@@ -15,12 +16,19 @@ struct PointSource {
     bool operator==(const PointSource&) const = default;
 };
 
-/// Smallest length that any of the sources asks for, in any direction. Throws InputError for none.
+/// Smallest length that any of the sources requests in any direction. Throws InputError if there
+/// are none.
 double finest_length(std::span<const PointSource> sources);
 
-/// Whether a number can be a coordinate, a desired length, a metric of a source.
+/// Whether a number can be a coordinate (finite, up to largest_magnitude), a length (positive, and
+/// its inverse too); whether a metric can be that of a source (positive definite, its mean length a
+/// length).
 bool is_coordinate(double x);
 bool is_length(double h);
 bool is_source_metric(const Metric& m);
+
+/// Throw InputError, with the name, unless `value` is a length, all of `p` are coordinates.
+void require_length(std::string_view name, double value);
+void require_coordinates(std::string_view name, const Point& p);
 
 }  // namespace controlspace

@@ -29,7 +29,7 @@ struct PlanesSampling {
     double slope = 0;  ///< -0.8 to 0.8
 };
 
-/// Most sources that sampling makes; more is refused as a slip of the pen.
+/// Most sources that sampling makes; more is refused as a typing error.
 inline constexpr double most_samples = 1e8;
 
 /// Sources on a sphere, as published (there around the origin): the equator, then pairs of
