@@ -30,7 +30,7 @@ namespace {
 /// A structure of the table and how it is made for a work.
 struct Row {
     std::string name;
-    std::function<std::unique_ptr<ControlSpace>(const Work&)> make = {};
+    std::function<std::unique_ptr<ControlSpaceBuilder>(const Work&)> make = {};
     bool has_limit = false;
     std::optional<Precision> frozen = {};  ///< the row before it that is not, in that form
 };
@@ -41,8 +41,9 @@ const CatalogueEntry& entry_named(const std::string& id) {
 }
 
 // As long as an edge of the octree's smallest leaf.
-std::unique_ptr<ControlSpace> as_fine_as_octree(const CatalogueEntry& grid, const Work& work) {
-    const int depth = graded(entry_named("K_oL"), work)->footprint().depth;
+std::unique_ptr<ControlSpaceBuilder> as_fine_as_octree(const CatalogueEntry& grid,
+                                                       const Work& work) {
+    const int depth = graded(entry_named("K_oL"), work)->build()->footprint().depth;
     const double voxel = bench_domain().edges().x() / static_cast<double>(1 << (depth - 1));
     return graded(grid, work, SplitRule::middle, voxel);
 }
@@ -55,7 +56,7 @@ std::vector<Row> rows_of(const Work& work) {
     const bool first = work.name == works().front().name;
     std::vector<Row> rows;
     for (const CatalogueEntry& entry : structures()) {
-        const bool is_tree = entry.group == "trees";
+        const bool is_tree = entry.family == "trees";
         const bool is_plain_grid =
             entry.id.starts_with("uniform-") || entry.id.starts_with("openvdb-uniform-");
         const bool is_soon_made = work.tau == 1 && work.sampling.s_n == 1;
@@ -112,7 +113,7 @@ Governing governing(const ControlSpace& space, const NodesAt& at, const std::vec
                     bool blended) {
     Governing found;
     for (const Point& p : x) {
-        const Box box = space.element_at(p);
+        const Box box = *space.cell_at(p);
         if (!blended) {
             found.one.push_back(at(box.centre()));
             continue;
@@ -132,11 +133,10 @@ public:
     const std::vector<Row>& rows() const { return rows_; }
     void make() {
         if (!spaces_.empty()) return;
-        const ControlSpace* unfrozen = nullptr;
+        std::unique_ptr<ControlSpaceBuilder> builder;
         for (const Row& row : rows_) {
-            auto& space = spaces_[row.name];
-            space = row.frozen ? unfrozen->freeze(*row.frozen) : row.make(work_);
-            if (!row.frozen) unfrozen = space.get();
+            if (!row.frozen) builder = row.make(work_);
+            spaces_[row.name] = builder->build({.precision = row.frozen});
         }
         for (const auto& [order, name] : orders()) {
             places_[name] = places(order, *spaces_.at("K_oV"));
@@ -144,7 +144,7 @@ public:
         for (const Row& row : rows_) {
             if (!row.has_limit) continue;
             const ControlSpace& space = *spaces_.at(row.name);
-            ControlNodes nodes = space.control_nodes(Neighbourhood::faces);
+            ControlNodes nodes = control_nodes(space, Neighbourhood::faces).value();
             const NodesAt at(nodes);
             for (const auto& [name, x] : places_) {
                 governing_[row.name + name] = governing(space, at, x, is_blended(row.name));

@@ -31,15 +31,17 @@ double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC
 // Reports what `fill` takes, on a structure that was made for it.
 std::unique_ptr<ControlSpace> timed(benchmark::State& state, const CatalogueEntry& entry,
                                     const std::vector<PointSource>& sources,
-                                    const std::function<void(ControlSpace&)>& fill) {
+                                    const std::function<void(ControlSpaceBuilder&)>& fill) {
     using Clock = std::chrono::steady_clock;
     std::unique_ptr<ControlSpace> space;
     double cpu = 0;
     for (auto _ : state) {
         const double cpu_before = cpu_seconds();
         const auto start = Clock::now();
-        space = entry.make({.domain = domain, .finest_length = finest_length(sources)});
-        fill(*space);
+        const auto builder =
+            entry.make({.domain = domain, .finest_length = finest_length(sources)});
+        fill(*builder);
+        space = builder->build();
         state.SetIterationTime(std::chrono::duration<double>(Clock::now() - start).count());
         cpu += cpu_seconds() - cpu_before;
     }
@@ -67,7 +69,7 @@ int main(int argc, char** argv) {
     for (const auto& entries : {tree_catalogue(), anchored_catalogue()}) {
         for (const CatalogueEntry& entry : entries) {
             enter("ordinary/" + entry.id, [&](benchmark::State& state) {
-                timed(state, entry, sources, [&](ControlSpace& space) {
+                timed(state, entry, sources, [&](ControlSpaceBuilder& space) {
                     space.insert(sources);
                     space.grade({.ratio = ratio});
                 });
@@ -76,9 +78,10 @@ int main(int argc, char** argv) {
                 enter(fmt::format("adapted/{}/{}", entry.id, target),
                       [&, target](benchmark::State& state) {
                           AdaptationReport report;
-                          const auto space = timed(state, entry, sources, [&](ControlSpace& s) {
-                              report = s.adapt({sources, nullptr, ratio, target});
-                          });
+                          const auto space =
+                              timed(state, entry, sources, [&](ControlSpaceBuilder& s) {
+                                  report = s.adapt({sources, nullptr, ratio, target});
+                              });
                           state.counters["reached"] = report.reached;
                           state.counters["delta_101"] = accuracy(*space, probes).max;
                       });

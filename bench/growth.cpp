@@ -38,9 +38,10 @@ void grow(benchmark::State& state, const CatalogueEntry& entry, double n, bool f
     for (auto _ : state) {
         space.reset();
         const auto start = Clock::now();
-        space = entry.make(options);
-        space->insert(sources);
-        space->grade({.ratio = options.ratio});
+        const auto builder = entry.make(options);
+        builder->insert(sources);
+        builder->grade({.ratio = options.ratio});
+        space = builder->build();
         state.SetIterationTime(std::chrono::duration<double>(Clock::now() - start).count());
     }
     const auto ns = [&](Order order) {

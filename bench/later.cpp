@@ -65,7 +65,7 @@ Work inside(double rho) {
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-std::unique_ptr<ControlSpace> make(const CatalogueEntry& entry, const Work& work) {
+std::unique_ptr<ControlSpaceBuilder> make(const CatalogueEntry& entry, const Work& work) {
     return entry.make({.domain = domain,
                        .finest_length = finest_length(work.early),
                        .takes_later_sources = true});
@@ -92,7 +92,7 @@ void later(benchmark::State& state, const CatalogueEntry& entry, const Work& wor
         const double seconds = cpu_seconds() - start;
         late += seconds;
         state.SetIterationTime(seconds);
-        state.counters["nodes"] = static_cast<double>(space->footprint().control_nodes);
+        state.counters["nodes"] = static_cast<double>(space->build()->footprint().control_nodes);
     }
     if (report.visits) state.counters["visits"] = static_cast<double>(*report.visits);
     state.counters["later_sources"] = static_cast<double>(work.late.size());

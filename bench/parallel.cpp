@@ -24,7 +24,7 @@ namespace {
 const ControlSpace& space_of(const CatalogueEntry& entry) {
     static std::map<std::string, std::unique_ptr<ControlSpace>> made;
     auto& space = made[entry.id];
-    if (!space) space = graded(entry, works().front());
+    if (!space) space = graded(entry, works().front())->build();
     return *space;
 }
 

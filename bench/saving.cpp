@@ -19,8 +19,8 @@ namespace {
 
 const char* const file = "bench_saving.ctrl";
 
-const ControlSpace& graded(const CatalogueEntry& entry) {
-    static std::map<std::string, std::unique_ptr<ControlSpace>> made;
+const ControlSpaceBuilder& graded(const CatalogueEntry& entry) {
+    static std::map<std::string, std::unique_ptr<ControlSpaceBuilder>> made;
     auto& space = made[entry.id];
     if (!space) {
         space = entry.make({.domain = {Point::Constant(-1), Point::Constant(1)}, .l_min = 0.2});
@@ -30,23 +30,24 @@ const ControlSpace& graded(const CatalogueEntry& entry) {
     return *space;
 }
 
-void count(benchmark::State& state, const ControlSpace& space) {
-    state.counters["leaves"] = static_cast<double>(space.footprint().leaves);
+void count(benchmark::State& state) {
+    const auto space = load_control_space(file, tree_catalogue());
+    state.counters["leaves"] = static_cast<double>(space->footprint().leaves);
     state.counters["file_MB"] = static_cast<double>(std::filesystem::file_size(file)) / 1e6;
     std::filesystem::remove(file);
 }
 
 void save(benchmark::State& state, const CatalogueEntry& entry) {
-    const ControlSpace& space = graded(entry);
+    const ControlSpaceBuilder& space = graded(entry);
     for (auto _ : state) save_control_space(file, space);
-    count(state, space);
+    count(state);
 }
 
 void load(benchmark::State& state, const CatalogueEntry& entry) {
-    const ControlSpace& space = graded(entry);
+    const ControlSpaceBuilder& space = graded(entry);
     save_control_space(file, space);
-    for (auto _ : state) benchmark::DoNotOptimize(load_control_space(file, tree_catalogue()));
-    count(state, space);
+    for (auto _ : state) benchmark::DoNotOptimize(load_builder(file, tree_catalogue()));
+    count(state);
 }
 
 }  // namespace

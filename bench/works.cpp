@@ -79,18 +79,18 @@ const Box& bench_domain() {
     return domain;
 }
 
-std::unique_ptr<ControlSpace> graded(const CatalogueEntry& entry, const Work& work, SplitRule split,
-                                     double voxel) {
+std::unique_ptr<ControlSpaceBuilder> graded(const CatalogueEntry& entry, const Work& work,
+                                            SplitRule split, double voxel) {
     const std::vector<PointSource> sources = sample_sphere(work.sampling);
     const SpaceOptions options{.domain = bench_domain(),
                                .split = split,
                                .l_min = work.tau,
                                .finest_length = finest_length(sources),
                                .voxel = voxel};
-    auto space = entry.make(options);
-    space->insert(sources);
-    space->grade({.ratio = options.ratio});
-    return space;
+    auto builder = entry.make(options);
+    builder->insert(sources);
+    builder->grade({.ratio = options.ratio});
+    return builder;
 }
 
 std::span<const NamedOrder> orders() {
@@ -103,7 +103,7 @@ std::span<const NamedOrder> orders() {
 }
 
 std::vector<Point> places(Order order, const ControlSpace& field) {
-    const Box& box = field.domain();
+    const Box box = field.domain();
     if (order == Order::random) return random_points(box, queries, 1);
     if (order == Order::grid) return cell_centres(box, grid_edge);
     if (order == Order::walk) return walk(field);

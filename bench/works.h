@@ -23,8 +23,8 @@ const Box& bench_domain();
 
 /// A structure with the work's sources, inserted and graded. Kd-trees cut as `split` says; grids
 /// have the given `voxel`, 0 as SpaceOptions has it.
-std::unique_ptr<ControlSpace> graded(const CatalogueEntry& entry, const Work& work,
-                                     SplitRule split = SplitRule::middle, double voxel = 0);
+std::unique_ptr<ControlSpaceBuilder> graded(const CatalogueEntry& entry, const Work& work,
+                                            SplitRule split = SplitRule::middle, double voxel = 0);
 
 /// Orders in which places are asked for: uniformly random; those of a grid; where elements are
 /// (drawn with density 1 / det M), random or along a Morton curve; walks of half an element's

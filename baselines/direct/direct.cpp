@@ -8,14 +8,14 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <stdexcept>
 #include <vector>
 
 #include "cones/cone_field.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
+#include "space/goal_field.h"
+#include "space/shared_builder.h"
 #include "space/state.h"
-#include "trees/adaptation/goal_field.h"
 
 namespace controlspace {
 
@@ -29,12 +29,18 @@ double require_ratio(double ratio) {
     return ratio;
 }
 
-class Direct final : public ControlSpace {
+class Direct {
 public:
     explicit Direct(const SpaceOptions& options)
         : domain_(require_volume(options.domain)), ratio_(require_ratio(options.ratio)) {}
 
-    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+    Direct(const Direct& other)
+        : domain_(other.domain_),
+          ratio_(other.ratio_),
+          sources_(other.sources_),
+          continuous_(other.continuous_) {}
+
+    void sample(std::span<const Point> x, std::span<Metric> out) const {
         const ConeField& cones = field();
         std::vector<Point> moved;
         const auto is_inside = [this](const Point& p) { return domain_.contains(p); };
@@ -50,20 +56,17 @@ public:
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = intersection(out[i], own[i]);
     }
 
-    Insertion insert(const PointSource& source) override {
-        append(source, 0);
-        return Insertion::inserted;
-    }
-
-    InsertionReport insert(std::span<const PointSource> sources) override {
+    InsertionReport insert(std::span<const PointSource> sources) {
         // A source that is refused leaves those before it.
         for (std::size_t i = 0; i < sources.size(); ++i) append(sources[i], i);
-        sources_.shrink_to_fit();
-        field();
+        if (sources.size() > 1) {
+            sources_.shrink_to_fit();
+            field();
+        }
         return {sources.size(), sources.size()};
     }
 
-    ControlNodes control_nodes(Neighbourhood) const override {
+    ControlNodes control_nodes(Neighbourhood) const {
         ControlNodes nodes;
         NodeGraph graph;
         graph.first.assign(sources_.size() + 1, 0);
@@ -75,15 +78,7 @@ public:
         return nodes;
     }
 
-    void assign(std::span<const Metric> metrics) override {
-        if (metrics.size() != sources_.size()) {
-            throw std::invalid_argument("assign() takes one metric for each control node");
-        }
-        for (std::size_t i = 0; i < metrics.size(); ++i) sources_[i].metric = metrics[i];
-        built_ = false;
-    }
-
-    GradationReport grade(const GradationOptions& options) override {
+    GradationReport grade(const GradationOptions& options) {
         const double before = ratio_;
         ratio_ = require_ratio(options.ratio);
         if (ratio_ != before) built_ = false;
@@ -91,19 +86,20 @@ public:
         return {};
     }
 
-    AdaptationReport adapt(const AdaptationGoal& goal) override {
+    AdaptationReport adapt(const AdaptationGoal& goal) {
         const GoalField wanted(goal, domain_);
         ratio_ = goal.ratio;
         sources_.assign(goal.sources.begin(), goal.sources.end());
         continuous_ = goal.continuous;
         built_ = false;
         AdaptationReport report;
-        report.reached = wanted.largest_departure(*this);
+        report.reached =
+            wanted.largest_departure(domain_, [this](auto x, auto metrics) { sample(x, metrics); });
         report.met = report.reached <= goal.target;
         return report;
     }
 
-    void save(StateWriter& state) const override {
+    void save(StateWriter& state) const {
         if (continuous_) {
             throw InputError(
                 "`direct` cannot be saved with a continuous field: save a structure that holds "
@@ -120,7 +116,7 @@ public:
         state("sources.ratio", ratio_);
     }
 
-    void load(const StateReader& state) override {
+    void load(const StateReader& state) {
         std::vector<Point> positions;
         std::vector<Metric> metrics;
         double ratio = 1;
@@ -135,10 +131,10 @@ public:
         built_ = false;
     }
 
-    const Box& domain() const override { return domain_; }
-    Box element_at(const Point&) const override { return domain_; }
+    const Box& domain() const { return domain_; }
+    Box cell_at(const Point&) const { return domain_; }
 
-    Footprint footprint() const override {
+    Footprint footprint() const {
         const ConeField& cones = field();
         Footprint footprint;
         footprint.elements = 1;
@@ -190,16 +186,15 @@ private:
 
 }  // namespace
 
-std::unique_ptr<ControlSpace> make_direct(const SpaceOptions& options) {
-    return std::make_unique<Direct>(options);
+std::unique_ptr<ControlSpaceBuilder> make_direct(const SpaceOptions& options) {
+    return std::make_unique<SharedBuilder<Direct>>(options);
 }
 
 std::vector<CatalogueEntry> direct_rows() {
     return {{.id = "direct",
              .description = "no structure: the sources, searched; exact everywhere",
-             .exact_at_nodes = false,
              .construct = make_direct,
-             .graded_from_start = true}};
+             .capabilities = {KeptSources()}}};
 }
 
 }  // namespace controlspace

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "controlspace/space/catalogue.h"
-#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/space_options.h"
 
 namespace controlspace {
 
@@ -20,7 +20,7 @@ namespace controlspace {
 /// The search is built at the end of a batch; after a single insertion or `assign`, by the next
 /// reading, on all of TBB's threads. That takes time in proportion to the number of all sources.
 /// Throws InputError for an invalid domain or ratio, and where there are 2^31 sources.
-std::unique_ptr<ControlSpace> make_direct(const SpaceOptions& options);
+std::unique_ptr<ControlSpaceBuilder> make_direct(const SpaceOptions& options);
 
 /// Its row of the catalogue.
 std::vector<CatalogueEntry> direct_rows();

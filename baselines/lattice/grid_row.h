@@ -14,7 +14,7 @@ CatalogueEntry grid_row(std::string id, std::string description) {
     row.id = std::move(id);
     row.description = std::move(description);
     row.order = interpolation == Interpolation::nearest ? 0 : 1;
-    row.has_voxels = true;
+    row.capabilities = {MetricNodes(), VoxelSize()};
     row.construct = [](const SpaceOptions& options) { return make(options, interpolation); };
     return row;
 }

@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <utility>
 
 #include "baselines/lattice/lattice_nodes.h"
@@ -15,16 +14,16 @@
 #include "baselines/lattice/voxels.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
-#include "controlspace/space/catalogue.h"
-#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_space_builder.h"
 #include "gradation/regrade.h"
+#include "space/shared_builder.h"
 #include "space/state.h"
 #include "trees/regradation/past_state.h"
 
 namespace controlspace {
 
-/// A control space on a regular lattice of nodes: all that does not depend on how their metrics
-/// are stored. The contract of a `Storage`:
+/// A field on a regular lattice of nodes, as SharedBuilder wants it: all that does not depend on
+/// how their metrics are stored. The contract of a `Storage`:
 ///
 ///   Storage(const Lattice& lattice, const Metric& initial)
 ///   static double bytes_for(const Vector& nodes)  what a storage of so many nodes will allocate
@@ -37,7 +36,7 @@ namespace controlspace {
 ///
 /// For `Stencil` see baselines/lattice/stencil.h.
 template <class Storage, class Stencil>
-class LatticeSpace final : public ControlSpace {
+class LatticeSpace {
 public:
     /// Cells as fine as the options ask and allow. Throws InputError as choose_voxels does, and
     /// where later sources are to come to a grid that prunes what they would need.
@@ -48,19 +47,13 @@ public:
                            return copies * Storage::bytes_for(nodes);
                        })) {}
 
-    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+    void sample(std::span<const Point> x, std::span<Metric> out) const {
         assert(x.size() == out.size());
         const auto read = storage_.reader();
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = stencil_.value(x[i], read);
     }
 
-    Insertion insert(const PointSource& source) override {
-        require_valid(source, 0, domain());
-        return with_writers(
-            [&](auto& field, auto& asked) { return insert_through(field, asked, source); });
-    }
-
-    InsertionReport insert(std::span<const PointSource> sources) override {
+    InsertionReport insert(std::span<const PointSource> sources) {
         InsertionReport report;
         with_writers([&](auto& field, auto& asked) {
             for (std::size_t i = 0; i < sources.size(); ++i) {
@@ -74,14 +67,12 @@ public:
         return report;
     }
 
-    ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
+    ControlNodes control_nodes(Neighbourhood neighbourhood) const {
         return {lattice(neighbourhood), metrics_of(storage_)};
     }
 
-    void assign(std::span<const Metric> metrics) override {
-        if (metrics.size() != stencil_.lattice().size()) {
-            throw std::invalid_argument("assign() takes one metric for each control node");
-        }
+    void assign(std::span<const Metric> metrics) {
+        require_one_each(metrics.size(), stencil_.lattice().size());
         set_field(metrics);
         if constexpr (joins_nodes) {
             if (prune_delta_ > 0) storage_.prune(prune_delta_);
@@ -91,17 +82,22 @@ public:
         past_.reset();
     }
 
-    GradationReport grade(const GradationOptions& options) override {
-        if (!takes_later_sources_) return ControlSpace::grade(options);
+    GradationReport grade(const GradationOptions& options) {
         require_valid(options);
         GradationReport report;
+        if (!takes_later_sources_) {
+            std::vector<Metric> metrics = metrics_of(storage_);
+            report = controlspace::grade(lattice(neighbourhood_of(options)), metrics, options);
+            assign(metrics);
+            return report;
+        }
         if (may_regrade(past_, options) && asks_isotropic_ &&
             !are_many(lowered_.size(), stencil_.lattice().size())) {
             report = regrade();
         } else {
             std::vector<Metric> metrics = metrics_of(asked_ ? *asked_ : storage_);
             report = controlspace::grade(lattice(neighbourhood_of(options)), metrics, options);
-            if (!asked_) asked_ = std::make_unique<Storage>(storage_);
+            if (!asked_) asked_.emplace(storage_);
             set_field(metrics);
         }
         lowered_.clear();
@@ -109,13 +105,13 @@ public:
         return report;
     }
 
-    void save(StateWriter& state) const override {
+    void save(StateWriter& state) const {
         state("grid.field", metrics_of(storage_));
         state("grid.asked", asked_ ? metrics_of(*asked_) : std::vector<Metric>());
         exchange_changes(*this, state);
         if constexpr (joins_nodes) storage_.save_tiles(state);
     }
-    void load(const StateReader& state) override {
+    void load(const StateReader& state) {
         const auto metrics_named = [&](const char* name) {
             std::vector<Metric> metrics;
             state(name, metrics);
@@ -132,7 +128,7 @@ public:
         asked_.reset();
         if (const std::vector<Metric> asked = metrics_named("grid.asked"); !asked.empty()) {
             state.require(fits(asked), "grid.asked", misfit);
-            asked_ = std::make_unique<Storage>(storage_);
+            asked_.emplace(storage_);
             set_metrics(*asked_, asked);
         }
         exchange_changes(*this, state);
@@ -140,10 +136,10 @@ public:
         if constexpr (joins_nodes) storage_.load_tiles(stencil_.lattice(), state);
     }
 
-    const Box& domain() const override { return stencil_.domain(); }
-    Box element_at(const Point& x) const override { return stencil_.cell_at(x); }
+    const Box& domain() const { return stencil_.domain(); }
+    Box cell_at(const Point& x) const { return stencil_.cell_at(x); }
 
-    Footprint footprint() const override {
+    Footprint footprint() const {
         Footprint footprint;
         footprint.elements = static_cast<std::size_t>(stencil_.cells().prod());
         footprint.control_nodes = stencil_.lattice().size();
@@ -258,19 +254,19 @@ private:
     std::string remark_;
 
     // Where sources may come after gradation: what they ask for, and what has changed since.
-    std::unique_ptr<Storage> asked_;
+    std::optional<Storage> asked_;
     std::optional<PastGradation> past_;
     std::vector<NodeIndex> lowered_;
     bool asks_isotropic_ = true;
 };
 
 template <class Storage>
-std::unique_ptr<ControlSpace> make_lattice_space(const SpaceOptions& options,
-                                                 Interpolation interpolation) {
+std::unique_ptr<ControlSpaceBuilder> make_lattice_space(const SpaceOptions& options,
+                                                        Interpolation interpolation) {
     if (interpolation == Interpolation::nearest) {
-        return std::make_unique<LatticeSpace<Storage, NearestStencil>>(options);
+        return std::make_unique<SharedBuilder<LatticeSpace<Storage, NearestStencil>>>(options);
     }
-    return std::make_unique<LatticeSpace<Storage, TrilinearStencil>>(options);
+    return std::make_unique<SharedBuilder<LatticeSpace<Storage, TrilinearStencil>>>(options);
 }
 
 }  // namespace controlspace

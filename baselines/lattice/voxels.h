@@ -4,7 +4,7 @@
 #include <string>
 
 #include "controlspace/geometry/point.h"
-#include "controlspace/space/catalogue.h"
+#include "controlspace/space/space_options.h"
 
 namespace controlspace {
 

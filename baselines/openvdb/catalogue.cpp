@@ -22,14 +22,14 @@ std::vector<CatalogueEntry> openvdb_rows() {
             "OpenVDB 3-3-2 trees, a stack of grids, a metric per voxel, trilinear")};
     rows[0].former_id = "openvdb-nearest";
     rows[1].former_id = "openvdb-trilinear";
-    rows[2].has_levels = rows[3].has_levels = true;
-    for (CatalogueEntry& row : rows) row.can_prune = true;
+    rows[2].capabilities.push_back(VoxelLevels());
+    rows[3].capabilities.push_back(VoxelLevels());
+    for (CatalogueEntry& row : rows) row.capabilities.push_back(Pruning());
     rows.push_back({.id = "openvdb-vec3s-trilinear",
                     .description = "two of OpenVDB's Vec3S trees, dense, in floats, trilinear",
                     .order = 1,
                     .construct = make_openvdb_vec3s,
-                    .has_voxels = true,
-                    .rounding = 1e-6});
+                    .capabilities = {MetricNodes{.rounding = 1e-6}, VoxelSize()}});
     return rows;
 }
 

@@ -78,8 +78,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<ControlSpace> make_openvdb_grid(const SpaceOptions& options,
-                                                Interpolation interpolation) {
+std::unique_ptr<ControlSpaceBuilder> make_openvdb_grid(const SpaceOptions& options,
+                                                       Interpolation interpolation) {
     return make_lattice_space<VdbTree>(options, interpolation);
 }
 

@@ -18,7 +18,7 @@ namespace controlspace {
 /// topology is the inner nodes and the rest of the leaves, as OpenVDB's own memUsage counts them.
 /// Voxels as `choose_voxels` has them, which throws InputError; 1.8 MB is the least that any grid
 /// takes.
-std::unique_ptr<ControlSpace> make_openvdb_grid(const SpaceOptions& options,
+std::unique_ptr<ControlSpaceBuilder> make_openvdb_grid(const SpaceOptions& options,
                                                 Interpolation interpolation);
 
 }  // namespace controlspace

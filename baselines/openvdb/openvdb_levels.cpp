@@ -12,6 +12,7 @@
 #include "baselines/openvdb/vdb_prune.h"
 #include "controlspace/error.h"
 #include "gradation/regrade.h"
+#include "space/shared_builder.h"
 #include "trees/regradation/past_state.h"
 
 namespace controlspace {
@@ -36,7 +37,7 @@ struct Stack {
 
 // `Values` is CellMetrics or VertexMetrics.
 template <class Values>
-class LevelSpace final : public ControlSpace {
+class LevelSpace {
 public:
     explicit LevelSpace(const SpaceOptions& options)
         : options_(options), cells_(choose_levels(options)), field_(cells_.levels()) {
@@ -45,17 +46,12 @@ public:
         field_.voxels = field_.trees.back().activeVoxelCount();
     }
 
-    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+    void sample(std::span<const Point> x, std::span<Metric> out) const {
         const LevelReader at(field_.trees);
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = value(at, cells_.place(x[i]));
     }
 
-    Insertion insert(const PointSource& source) override {
-        return insert(std::span(&source, 1)).inserted == 1 ? Insertion::inserted
-                                                           : Insertion::already_met;
-    }
-
-    InsertionReport insert(std::span<const PointSource> sources) override {
+    InsertionReport insert(std::span<const PointSource> sources) {
         InsertionReport report;
         Stack& asked = asked_ ? *asked_ : field_;
         LevelWriter to_asked(asked.trees);
@@ -74,19 +70,20 @@ public:
         return report;
     }
 
-    ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
+    ControlNodes control_nodes(Neighbourhood neighbourhood) const {
         const LevelNodes nodes = numbered();
         return {nodes.graph(neighbourhood), nodes.metrics()};
     }
 
-    void assign(std::span<const Metric> metrics) override {
+    void assign(std::span<const Metric> metrics) {
+        require_one_each(metrics.size(), numbered().size());
         set_field(metrics);
         prune({.delta = options_.prune_delta});
         asked_.reset();
         past_.reset();
     }
 
-    GradationReport grade(const GradationOptions& options) override {
+    GradationReport grade(const GradationOptions& options) {
         require_valid(options);
         if (options_.takes_later_sources) {
             if (past_ && past_->options == options) {
@@ -120,13 +117,13 @@ public:
         return report;
     }
 
-    void save(StateWriter& state) const override {
+    void save(StateWriter& state) const {
         save_levels(field_.trees, field_name, state);
         state("levels.keeps_asked", asked_.has_value());
         if (asked_) save_levels(asked_->trees, asked_name, state);
         exchange_past(past_, state);
     }
-    void load(const StateReader& state) override {
+    void load(const StateReader& state) {
         field_ = loaded(field_name, state);
         bool keeps_asked = false;
         state("levels.keeps_asked", keeps_asked);
@@ -135,15 +132,15 @@ public:
         exchange_past(past_, state);
     }
 
-    const Box& domain() const override { return cells_.domain(); }
+    const Box& domain() const { return cells_.domain(); }
 
-    Box element_at(const Point& x) const override {
+    Box cell_at(const Point& x) const {
         const Coord finest = cells_.place(x).finest;
         const int level = LevelReader(field_.trees).level_at(finest);
         return cells_.box(level, finest >> static_cast<std::size_t>(level));
     }
 
-    Footprint footprint() const override {
+    Footprint footprint() const {
         Footprint footprint;
         footprint.elements = field_.voxels;
         footprint.control_nodes = numbered().size();
@@ -262,12 +259,12 @@ private:
 
 }  // namespace
 
-std::unique_ptr<ControlSpace> make_openvdb_levels(const SpaceOptions& options,
-                                                  Interpolation interpolation) {
+std::unique_ptr<ControlSpaceBuilder> make_openvdb_levels(const SpaceOptions& options,
+                                                         Interpolation interpolation) {
     if (interpolation == Interpolation::nearest) {
-        return std::make_unique<LevelSpace<CellMetrics>>(options);
+        return std::make_unique<SharedBuilder<LevelSpace<CellMetrics>>>(options);
     }
-    return std::make_unique<LevelSpace<VertexMetrics>>(options);
+    return std::make_unique<SharedBuilder<LevelSpace<VertexMetrics>>>(options);
 }
 
 }  // namespace controlspace

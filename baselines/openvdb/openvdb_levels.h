@@ -31,7 +31,7 @@ namespace controlspace {
 ///
 /// Footprint: payload is the leaves' values, those that mean nothing included. Throws InputError
 /// where options are invalid, and where a structure outgrows `max_bytes`, gradation included.
-std::unique_ptr<ControlSpace> make_openvdb_levels(const SpaceOptions& options,
+std::unique_ptr<ControlSpaceBuilder> make_openvdb_levels(const SpaceOptions& options,
                                                   Interpolation interpolation);
 
 }  // namespace controlspace

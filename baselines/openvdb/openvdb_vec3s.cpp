@@ -71,11 +71,11 @@ private:
 
 }  // namespace
 
-std::unique_ptr<ControlSpace> make_openvdb_vec3s(const SpaceOptions& options) {
+std::unique_ptr<ControlSpaceBuilder> make_openvdb_vec3s(const SpaceOptions& options) {
     if (options.takes_later_sources) {
         throw InputError("a grid of floats takes no later sources: use one of doubles");
     }
-    return std::make_unique<LatticeSpace<Vec3sPair, TrilinearStencil>>(options);
+    return std::make_unique<SharedBuilder<LatticeSpace<Vec3sPair, TrilinearStencil>>>(options);
 }
 
 }  // namespace controlspace

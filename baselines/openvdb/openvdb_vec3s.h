@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "controlspace/space/catalogue.h"
-#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/space_options.h"
 
 namespace controlspace {
 
@@ -15,6 +15,6 @@ namespace controlspace {
 ///
 /// Footprint as make_openvdb_grid has it. Voxels as `choose_voxels` has them, which throws
 /// InputError, as this does where later sources are to come: their field would hang on rounding.
-std::unique_ptr<ControlSpace> make_openvdb_vec3s(const SpaceOptions& options);
+std::unique_ptr<ControlSpaceBuilder> make_openvdb_vec3s(const SpaceOptions& options);
 
 }  // namespace controlspace

@@ -53,8 +53,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<ControlSpace> make_uniform_grid(const SpaceOptions& options,
-                                                Interpolation interpolation) {
+std::unique_ptr<ControlSpaceBuilder> make_uniform_grid(const SpaceOptions& options,
+                                                       Interpolation interpolation) {
     return make_lattice_space<FlatArray>(options, interpolation);
 }
 

@@ -11,7 +11,7 @@ namespace controlspace {
 
 /// Uniform Cartesian grid over the domain, its metrics in one flat array, x fastest: what a user
 /// writes who wants no tree. Voxels as `choose_voxels` has them; throws InputError as it does.
-std::unique_ptr<ControlSpace> make_uniform_grid(const SpaceOptions& options,
+std::unique_ptr<ControlSpaceBuilder> make_uniform_grid(const SpaceOptions& options,
                                                 Interpolation interpolation);
 
 /// It with either interpolation.

@@ -9,7 +9,9 @@
 #include <new>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "c/option_text.h"
@@ -20,7 +22,8 @@
 #include "controlspace/version.h"
 
 struct cspace {
-    std::unique_ptr<controlspace::ControlSpace> space;
+    std::unique_ptr<controlspace::ControlSpaceBuilder> builder;  // none of a compact form
+    std::unique_ptr<controlspace::ControlSpace> space;           // what it has built last
 };
 
 namespace {
@@ -60,9 +63,27 @@ void require(const void* argument, const char* name) {
     if (argument == nullptr) throw InputError(fmt::format("{} is NULL", name));
 }
 
-ControlSpace& space_of(const cspace* handle) {
+const ControlSpace& space_of(const cspace* handle) {
     require(handle, "space");
+    if (!handle->space) throw std::runtime_error("the space could not be finished: free it");
     return *handle->space;
+}
+
+// Changes what the handle holds by `edit(builder)`, and builds it again.
+template <class Edit>
+void change(cspace* handle, Edit&& edit) {
+    require(handle, "space");
+    if (!handle->builder) {
+        throw InputError("a compact form is only read: insert, grade and adapt before it is made");
+    }
+    handle->space.reset();  // so that nothing has to be copied
+    try {
+        edit(*handle->builder);
+    } catch (...) {
+        handle->space = handle->builder->build();
+        throw;
+    }
+    handle->space = handle->builder->build();
 }
 
 Point point_at(const double* positions, std::size_t i) {
@@ -124,7 +145,9 @@ cspace_status cspace_create(const char* structure, const double* domain, const c
         require(domain, "domain");
         const SpaceOptions given = options_from_text({point_at(domain, 0), point_at(domain, 1)},
                                                      options == nullptr ? "" : options);
-        *space = new cspace{entry_named(structure).make(given)};
+        auto builder = entry_named(structure).make(given);
+        auto built = builder->build();
+        *space = new cspace{std::move(builder), std::move(built)};
     });
 }
 
@@ -136,7 +159,10 @@ void cspace_free(cspace* space) { delete space; }
 
 cspace_status cspace_insert(cspace* space, size_t n, const double* positions,
                             const double* metrics) {
-    return guarded([&] { space_of(space).insert(sources_of(n, positions, metrics)); });
+    return guarded([&] {
+        const std::vector<PointSource> sources = sources_of(n, positions, metrics);
+        change(space, [&](auto& builder) { builder.insert(sources); });
+    });
 }
 
 cspace_status cspace_insert_lengths(cspace* space, size_t n, const double* positions,
@@ -144,20 +170,24 @@ cspace_status cspace_insert_lengths(cspace* space, size_t n, const double* posit
     return guarded([&] {
         if (n > 0) require(positions, "positions");
         if (n > 0) require(lengths, "lengths");
-        space_of(space).insert(
-            sources_at(n, positions, [&](std::size_t i) { return Metric::isotropic(lengths[i]); }));
+        const std::vector<PointSource> sources =
+            sources_at(n, positions, [&](std::size_t i) { return Metric::isotropic(lengths[i]); });
+        change(space, [&](auto& builder) { builder.insert(sources); });
     });
 }
 
 cspace_status cspace_grade(cspace* space, double ratio) {
-    return guarded([&] { space_of(space).grade({.ratio = ratio}); });
+    return guarded([&] { change(space, [&](auto& builder) { builder.grade({.ratio = ratio}); }); });
 }
 
 cspace_status cspace_adapt(cspace* space, size_t n, const double* positions, const double* metrics,
                            double ratio, double target, double* reached) {
     return guarded([&] {
         const std::vector<PointSource> sources = sources_of(n, positions, metrics);
-        const AdaptationReport report = space_of(space).adapt({sources, nullptr, ratio, target});
+        AdaptationReport report;
+        change(space, [&](auto& builder) {
+            report = builder.adapt({sources, nullptr, ratio, target});
+        });
         if (reached != nullptr) *reached = report.reached;
     });
 }
@@ -198,7 +228,7 @@ cspace_status cspace_from_riemannian(size_t n, const double* riemannian, double*
 cspace_status cspace_domain(const cspace* space, double* domain) {
     return guarded([&] {
         require(domain, "domain");
-        const Box& box = space_of(space).domain();
+        const Box box = space_of(space).domain();
         for (Axis a = 0; a < 3; ++a) {
             domain[a] = box.low[a];
             domain[3 + a] = box.high[a];
@@ -209,7 +239,11 @@ cspace_status cspace_domain(const cspace* space, double* domain) {
 cspace_status cspace_save(const cspace* space, const char* file) {
     return guarded([&] {
         require(file, "file");
-        save_control_space(file, space_of(space));
+        if (space_of(space); space->builder) {
+            save_control_space(file, *space->builder);
+        } else {
+            save_control_space(file, *space->space);
+        }
     });
 }
 
@@ -218,6 +252,7 @@ cspace_status cspace_load(const char* file, cspace** space) {
         require(space, "space");
         *space = nullptr;
         require(file, "file");
-        *space = new cspace{load_control_space(file, structures())};
+        SavedControlSpace saved = open_control_space(file, structures());
+        *space = new cspace{std::move(saved.builder), std::move(saved.space)};
     });
 }

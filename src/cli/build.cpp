@@ -32,11 +32,15 @@ int build(const Build& job) {
         StepProgress progress(job.quiet, output);
         filled = filled_space(job.input, given_settings(job.given), progress.observer());
         progress.started("writing");
-        save_control_space(output, *filled.space);
+        if (filled.origin && filled.origin->c.frozen == Frozen::no) {
+            save_control_space(output, *filled.builder);
+        } else {
+            save_control_space(output, *filled.space);
+        }
     }
     const Footprint footprint = filled.space->footprint();
     print(fmt::format("{}: {} with {} control nodes, {:.3g} MB in memory, {:.3g} MB in the file\n",
-                      output.string(), filled.space->making()->structure, footprint.control_nodes,
+                      output.string(), filled.structure, footprint.control_nodes,
                       static_cast<double>(footprint.bytes_total()) / 1e6,
                       static_cast<double>(std::filesystem::file_size(output)) / 1e6));
     return 0;

@@ -22,11 +22,12 @@ std::string write_solution(const Export& e, const std::filesystem::path& mesh) {
 }
 
 std::string write_node_table(const Export& e) {
-    const ControlNodes nodes = e.filled.space->control_nodes(Neighbourhood::faces);
-    const std::vector<Point> places = positions(nodes.graph);
+    const auto nodes = control_nodes(*e.filled.space, Neighbourhood::faces);
+    if (!nodes) throw InputError("this structure has no control nodes: name a .vti");
+    const std::vector<Point> places = positions(nodes->graph);
     std::vector<PointSource> sources;
     for (std::size_t i = 0; i < places.size(); ++i)
-        sources.push_back({places[i], nodes.metrics[i]});
+        sources.push_back({places[i], nodes->metrics[i]});
     write_sources(e.output, sources);
     return written(e, fmt::format("{} control nodes", sources.size()));
 }

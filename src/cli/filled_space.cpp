@@ -28,7 +28,10 @@ FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings
     if (observer.phase_started) observer.phase_started("reading");
     if (is_control_space(input)) {
         require_no_settings(input, given);
-        filled.space = load_control_space(input, structures());
+        SavedControlSpace saved = open_control_space(input, structures());
+        filled.builder = std::move(saved.builder);
+        filled.space = std::move(saved.space);
+        filled.structure = std::move(saved.recipe.structure);
         return filled;
     }
     Study study = study_of_input(input, given);
@@ -36,7 +39,9 @@ FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings
     const Case c = only_case(study);
     Workload workload = make_workload(study, c.sources, file_readers());
     Measures unused;
-    filled.space = make_and_fill(study, c, entry_of(c, structures()), workload, unused, observer);
+    filled.builder = make_and_fill(study, c, entry_of(c, structures()), workload, unused, observer);
+    filled.space = finish(*filled.builder, c);
+    filled.structure = c.structure;
     filled.origin = Origin{std::move(study), c, std::move(workload)};
     return filled;
 }

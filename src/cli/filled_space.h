@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "cli/given_settings.h"
 #include "controlspace/space/control_space.h"
+#include "controlspace/space/control_space_builder.h"
 #include "study/case.h"
 #include "study/run.h"
 #include "study/study.h"
@@ -23,7 +25,9 @@ struct Origin {
 };
 
 struct FilledSpace {
+    std::unique_ptr<ControlSpaceBuilder> builder;  ///< none of a compact form that was loaded
     std::unique_ptr<ControlSpace> space;
+    std::string structure;                         ///< id in the catalogue
     std::optional<Origin> origin;                  ///< none of a control space that was loaded
     std::unique_ptr<tbb::global_control> threads;  ///< the study's limit, as long as this lives
 };

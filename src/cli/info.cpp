@@ -65,37 +65,37 @@ double mb(std::size_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
 /// The options that this structure uses, under the names that `build` has for them.
 std::string options_text(const CatalogueEntry& entry, const SpaceOptions& o) {
-    const bool is_tree = entry.group == "trees" || entry.group == "anchored";
+    const bool is_tree = entry.has<SourceLeaves>();
     std::string text;
     const auto add = [&](std::string_view name, const auto& value) {
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);
     };
-    if (entry.has_split_rules) add("split", name_of(o.split));
-    if (is_tree || entry.has_levels || o.voxel == 0) add("tau", o.l_min);
+    if (entry.has<SplitRules>()) add("split", name_of(o.split));
+    if (is_tree || entry.has<VoxelLevels>() || o.voxel == 0) add("tau", o.l_min);
     add("epsilon", o.tolerance);
-    if (is_tree) add("depth at most", entry.has_split_rules ? o.kd_depth : o.octree_depth);
-    if (!entry.takes_metrics) add("g_r", o.ratio);
-    if (entry.has_voxels && o.voxel > 0) add("voxel", o.voxel);
-    if (entry.has_levels) add("voxel_factor", o.voxel_factor);
-    if (entry.can_prune) add("prune_delta", o.prune_delta);
+    if (is_tree) add("depth at most", entry.has<SplitRules>() ? o.kd_depth : o.octree_depth);
+    if (entry.has<KeptSources>()) add("g_r", o.ratio);
+    if (entry.has<VoxelSize>() && o.voxel > 0) add("voxel", o.voxel);
+    if (entry.has<VoxelLevels>()) add("voxel_factor", o.voxel_factor);
+    if (entry.has<Pruning>()) add("prune_delta", o.prune_delta);
     if (o.takes_later_sources) text += ", takes later sources";
     return text;
 }
 
 /// Structure and options, parts and memory, and the range of the control nodes' metrics.
 std::string space_info(const std::filesystem::path& file) {
-    const auto space = load_control_space(file, structures());
-    const Making& making = *space->making();
-    const CatalogueEntry& entry = *find_entry(structures(), making.structure);
-    const Footprint footprint = space->footprint();
+    const SavedControlSpace saved = open_control_space(file, structures());
+    const Recipe& recipe = saved.recipe;
+    const CatalogueEntry& entry = *find_entry(structures(), recipe.structure);
+    const Footprint footprint = saved.space->footprint();
     std::string text = fmt::format("  structure    {}: {}\n", entry.id, entry.description);
-    if (making.frozen) {
+    if (recipe.precision) {
         text += fmt::format("  frozen       in {}: it is only read\n",
-                            *making.frozen == Precision::floats ? "floats" : "doubles");
+                            *recipe.precision == Precision::floats ? "floats" : "doubles");
     }
     text +=
-        fmt::format("  saved by     {}\n  domain       {}\n  options      {}\n", making.saved_by,
-                    to_string(space->domain()), options_text(entry, making.options));
+        fmt::format("  saved by     {}\n  domain       {}\n  options      {}\n", saved.saved_by,
+                    to_string(saved.space->domain()), options_text(entry, recipe.options));
     text += fmt::format("  elements     {}", footprint.elements);
     if (footprint.leaves > 0) {
         text += fmt::format(", {} of them leaves, in {} levels", footprint.leaves, footprint.depth);
@@ -106,12 +106,13 @@ std::string space_info(const std::filesystem::path& file) {
         "MB in the file\n",
         mb(footprint.bytes_total()), mb(footprint.bytes_payload), mb(footprint.bytes_topology),
         mb(footprint.bytes_auxiliary), mb(std::filesystem::file_size(file)));
-    const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
-    const LengthSummary lengths = summarise_lengths(nodes.metrics);
+    const auto nodes = control_nodes(*saved.space, Neighbourhood::faces);
+    if (!nodes) return text;
+    const LengthSummary lengths = summarise_lengths(nodes->metrics);
     text += fmt::format("  nodes        {} that carry metrics\n", lengths.count);
     return text + lengths_text(lengths) +
            fmt::format("  gradation    {:.4g} at most, between neighbours (g_r of the cone law)\n",
-                       largest_gradation(nodes.graph, nodes.metrics, GradationLaw::cone));
+                       largest_gradation(nodes->graph, nodes->metrics, GradationLaw::cone));
 }
 
 std::string info_text(const std::filesystem::path& input, const GivenSettings& settings) {

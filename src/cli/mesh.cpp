@@ -113,8 +113,9 @@ private:
         const auto make = [&](MeshRow& made) -> const MetricField& {
             Measures measures;
             load_module_of(c.structure);  // before its creation is timed
-            space = make_and_fill(study_, c, entry_of(c, structures()), reference.workload,
-                                  measures, {});
+            space = finish(*make_and_fill(study_, c, entry_of(c, structures()),
+                                          reference.workload, measures, {}),
+                           c);
             made.creation_s = measures.insert_s + measures.gradation_s;
             const Accuracy delta_r = accuracy(*space, reference.probes);
             made.delta_r_max = delta_r.max;
@@ -138,7 +139,7 @@ void mesh_saved(const std::filesystem::path& file, const ControlSpace& space, in
     const SpaceAsField field(space);
     MeshRow row;
     row.saved = file;
-    row.setting.structure = space.making()->structure;
+    row.setting.structure = recipe_of(space)->structure;
     const auto probes = make_probes(field, cell_centres(space.domain(), probe_grid));
     row.mesher = chosen_mesher(folder.settings().mesher, probes.reference);
     if (row.mesher == Mesher::mmg) require_mmg(mmg_options(folder.settings(), folder.path()));

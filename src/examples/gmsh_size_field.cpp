@@ -7,10 +7,11 @@ using namespace controlspace;
 
 int main() {
     const CatalogueEntry& octree = *find_entry(tree_catalogue(), "K_oV");
-    const auto space = octree.make({.domain = {Point(-1, -1, -1), Point(1, 1, 1)}});
-    space->insert(PointSource{Point(0.3, 0.2, 0), Metric::isotropic(0.02)});
-    space->insert(PointSource{Point(-1, -1, -1), Metric::isotropic(0.05)});
-    space->grade({.ratio = 1.25});
+    const auto builder = octree.make({.domain = {Point(-1, -1, -1), Point(1, 1, 1)}});
+    builder->insert(PointSource{Point(0.3, 0.2, 0), Metric::isotropic(0.02)});
+    builder->insert(PointSource{Point(-1, -1, -1), Metric::isotropic(0.05)});
+    builder->grade({.ratio = 1.25});
+    const auto space = builder->build();
 
     gmsh::initialize();
     gmsh::model::occ::addBox(-1, -1, -1, 2, 2, 2);

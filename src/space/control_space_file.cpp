@@ -14,8 +14,8 @@
 #include "controlspace/version.h"
 #include "io/text/output_file.h"
 #include "io/text/text_file.h"
+#include "space/saved.h"
 #include "space/state.h"
-#include "trees/packing/frozen_state.h"
 
 namespace controlspace {
 
@@ -73,29 +73,29 @@ void exchange(Self& options, State& state) {
 }
 
 // A grid takes its memory when it is made: no more than a file of so many bytes can fill, at 256
-// equal bytes for one and at most 8 bytes of memory for one of its field.
-std::unique_ptr<ControlSpace> make_new(const CatalogueEntry& entry, SpaceOptions options,
-                                       std::size_t file_bytes) {
-    if (!entry.has_voxels || entry.has_levels) return entry.make(options);
-    const SpaceOptions given = options;
-    options.max_bytes = std::min(options.max_bytes, 8 * 256 * file_bytes);
-    auto space = entry.make(options);
-    space->set_making({entry.id, given});
-    return space;
+// equal bytes for one and at most 8 bytes of memory for one of its field; but for small ones.
+SpaceOptions capped(const CatalogueEntry& entry, SpaceOptions options, std::size_t file_bytes) {
+    if (!entry.has<VoxelSize>() || entry.has<VoxelLevels>()) return options;
+    constexpr std::size_t small = std::size_t{64} << 20;
+    options.max_bytes = std::min(options.max_bytes, std::max(small, 8 * 256 * file_bytes));
+    return options;
 }
 
-std::unique_ptr<ControlSpace> load_space(const CatalogueEntry& entry, const SpaceOptions& options,
-                                         const StateReader& state, std::size_t file_bytes) {
-    auto space = make_new(entry, options, file_bytes);
-    if (!state.has("frozen.precision")) {
-        space->load(state);
-        return space;
+void fill(const CatalogueEntry& entry, const StateReader& state, std::size_t file_bytes,
+          SavedControlSpace& saved) {
+    auto builder = entry.make(capped(entry, saved.recipe.options, file_bytes));
+    auto* const own = dynamic_cast<SavedBuilder*>(builder.get());
+    if (own == nullptr) {
+        throw InputError("structure " + entry.id + " cannot be loaded: choose another");
     }
-    Precision precision{};
-    state("frozen.precision", precision, Precision::floats);
-    space = load_frozen(options.domain, precision, state);
-    space->set_making({entry.id, options, precision});
-    return space;
+    own->set_recipe(saved.recipe);
+    if (saved.recipe.precision) {
+        saved.space = own->load_compact(*saved.recipe.precision, state);
+        return;
+    }
+    own->load(state);
+    saved.space = builder->build();
+    saved.builder = std::move(builder);
 }
 
 // What lies between the header and the checksum.
@@ -134,21 +134,18 @@ std::string_view checked_body(std::string_view bytes, const std::string& name) {
     return bytes.substr(header_size, bytes.size() - header_size - checksum_size);
 }
 
-}  // namespace
-
-void save_control_space(const std::filesystem::path& file, const ControlSpace& space) {
+void save(const std::filesystem::path& file, const Saved* saved) {
     require_little_endian();
-    if (!space.making()) {
+    if (saved == nullptr || !saved->recipe()) {
         throw InputError("a control space can be saved if an entry of the catalogue has made it");
     }
+    const Recipe& recipe = *saved->recipe();
     StateWriter state;
     state("written_by", "controlspace " + std::string(version()));
-    state("structure", space.making()->structure);
-    exchange(space.making()->options, state);
-    if (space.making()->frozen) {
-        state("frozen.precision", *space.making()->frozen, Precision::floats);
-    }
-    space.save(state);
+    state("structure", recipe.structure);
+    exchange(recipe.options, state);
+    if (recipe.precision) state("compact.precision", *recipe.precision, Precision::floats);
+    saved->save(state);
 
     const Header header{.size = header_size + state.bytes().size() + checksum_size};
     Checksum checksum;
@@ -162,28 +159,59 @@ void save_control_space(const std::filesystem::path& file, const ControlSpace& s
     out.commit();
 }
 
-std::unique_ptr<ControlSpace> load_control_space(const std::filesystem::path& file,
-                                                 std::span<const CatalogueEntry> structures) {
+}  // namespace
+
+std::optional<Recipe> recipe_of(const ControlSpace& space) {
+    const auto* saved = dynamic_cast<const Saved*>(&space);
+    return saved == nullptr ? std::nullopt : saved->recipe();
+}
+
+void save_control_space(const std::filesystem::path& file, const ControlSpace& space) {
+    save(file, dynamic_cast<const Saved*>(&space));
+}
+void save_control_space(const std::filesystem::path& file, const ControlSpaceBuilder& builder) {
+    save(file, dynamic_cast<const Saved*>(&builder));
+}
+
+SavedControlSpace open_control_space(const std::filesystem::path& file,
+                                     std::span<const CatalogueEntry> structures) {
     require_little_endian();
     const std::string name = file.string();
     const std::string bytes = read_binary_file(file);
     const StateReader state(checked_body(bytes, name), name);
+    SavedControlSpace saved;
     std::string structure;
-    SpaceOptions options;
     state("structure", structure);
-    exchange(options, state);
+    exchange(saved.recipe.options, state);
     const CatalogueEntry* entry = find_entry(structures, structure);
     if (entry == nullptr) {
         throw InputError(fmt::format(
             "{} holds the structure {}, which is not known here: take a build that has it", name,
             quote(structure)));
     }
-    auto space = load_space(*entry, options, state, bytes.size());
-    Making making = *space->making();
-    state("written_by", making.saved_by);
-    making.saved_by += fmt::format(", format {}", control_space_file_version);
-    space->set_making(std::move(making));
-    return space;
+    saved.recipe.structure = entry->id;
+    if (state.has("compact.precision")) {
+        state("compact.precision", saved.recipe.precision.emplace(), Precision::floats);
+    }
+    state("written_by", saved.saved_by);
+    saved.saved_by += fmt::format(", format {}", control_space_file_version);
+    fill(*entry, state, bytes.size(), saved);
+    return saved;
+}
+
+std::unique_ptr<ControlSpace> load_control_space(const std::filesystem::path& file,
+                                                 std::span<const CatalogueEntry> structures) {
+    return open_control_space(file, structures).space;
+}
+
+std::unique_ptr<ControlSpaceBuilder> load_builder(const std::filesystem::path& file,
+                                                  std::span<const CatalogueEntry> structures) {
+    auto builder = open_control_space(file, structures).builder;
+    if (!builder) {
+        throw InputError(file.string() +
+                         " holds a compact form, which is only read: save its builder");
+    }
+    return builder;
 }
 
 }  // namespace controlspace

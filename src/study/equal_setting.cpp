@@ -116,7 +116,7 @@ EqualSetting find_equal_setting(const Case& c, const CatalogueEntry& entry, doub
                                 double finest_length,
                                 const std::function<Trial(const Case&)>& attempt) {
     const Goal goal(c);
-    const auto levels_unit = entry.has_levels ? std::optional(finest_length) : std::nullopt;
+    const auto levels_unit = entry.has<VoxelLevels>() ? std::optional(finest_length) : std::nullopt;
     std::optional<EqualSetting> best;
     std::string refusal;
     const auto search = [&](const Case& variant, double coarsest, double too_many_bytes) {
@@ -128,7 +128,7 @@ EqualSetting find_equal_setting(const Case& c, const CatalogueEntry& entry, doub
         }
     };
     search(c, longest_edge / 4, std::numeric_limits<double>::infinity());
-    if (goal.in_delta && goal.is_kept(best->trial) && entry.can_prune && !c.prune_delta) {
+    if (goal.in_delta && goal.is_kept(best->trial) && entry.has<Pruning>() && !c.prune_delta) {
         // Pruned voxels err more, as a rule: hardly larger ones will do, and must save memory.
         Case pruned = c;
         pruned.prune_delta = 0.5 * goal.value;

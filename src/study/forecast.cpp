@@ -37,7 +37,8 @@ struct Trial {
 Trial try_case(const PreparedStudy& prepared, const Case& c, const Workload& workload) {
     Measures ignored;
     const auto start = std::chrono::steady_clock::now();
-    const auto space = make_and_fill(prepared.study(), c, prepared.entry(c), workload, ignored, {});
+    const auto space =
+        finish(*make_and_fill(prepared.study(), c, prepared.entry(c), workload, ignored, {}), c);
     Trial trial{seconds_since(start), static_cast<double>(space->footprint().bytes_total()), 0};
     const auto places = random_points(workload.domain, 1000, 1);
     trial.query_seconds = 1e-9 * access_time(*space, places, 3).median_ns();
@@ -109,7 +110,7 @@ std::vector<std::optional<Forecast>> forecast(const PreparedStudy& prepared) {
         if (!only_running_tells) {
             try {
                 const CatalogueEntry& entry = prepared.entry(c);
-                const Trial trial = entry.has_voxels && !entry.has_levels
+                const Trial trial = entry.has<VoxelSize>() && !entry.has<VoxelLevels>()
                                         ? forecast_grid(prepared, c, workload)
                                         : forecast_patches(prepared, c, workload);
                 forecast = {trial.seconds + trial.query_seconds * (timed + probes), trial.bytes};

@@ -60,16 +60,16 @@ private:
 
 /// A field is followed by adaptation; without a target for it only what keeps its elements can be.
 void require_follows(const Case& c, const CatalogueEntry& entry) {
-    if (c.target_delta || entry.graded_from_start || entry.has_voxels) {
+    if (c.target_delta || !entry.has<SourceLeaves>()) {
         return;
     }
     throw InputError("an analytic field is followed by adaptation: set target_delta, for trees");
 }
 
-void follow_at_nodes(ControlSpace& space, const MetricField& field) {
-    ControlNodes nodes = space.control_nodes(Neighbourhood::faces);
+void follow_at_nodes(NodeBuilder& builder, const MetricField& field) {
+    ControlNodes nodes = builder.control_nodes(Neighbourhood::faces);
     field.evaluate(positions(nodes.graph), nodes.metrics);
-    space.assign(nodes.metrics);
+    builder.assign(nodes.metrics);
 }
 
 }  // namespace
@@ -82,55 +82,51 @@ const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> ca
     return *find_entry(catalogue, c.structure);
 }
 
-namespace {
-
-std::unique_ptr<ControlSpace> make_unfrozen(const Study& study, const Case& c,
-                                            const CatalogueEntry& entry, const Workload& workload,
-                                            Measures& m, const StudyObserver& observer) {
+std::unique_ptr<ControlSpaceBuilder> make_and_fill(const Study& study, const Case& c,
+                                                   const CatalogueEntry& entry,
+                                                   const Workload& workload, Measures& m,
+                                                   const StudyObserver& observer) {
     if (c.target_delta || has_field(c.sources)) {
         require_follows(c, entry);
         tell(observer.phase_started, "adaptation");
         AdaptationGoal goal{workload.sources, workload.field.field, c.g_r};
         if (c.target_delta) goal.target = *c.target_delta;
         const auto start = std::chrono::steady_clock::now();
-        auto space = entry.make(space_options(study, c, workload));
-        const AdaptationReport report = space->adapt(goal);
+        auto builder = entry.make(space_options(study, c, workload));
+        const AdaptationReport report = builder->adapt(goal);
         m.insert_s = seconds_since(start);
-        const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
-        m.gradation.largest_ratio_left =
-            largest_gradation(nodes.graph, nodes.metrics, GradationLaw::cone);
+        if (const auto nodes = control_nodes(*builder->build(), Neighbourhood::faces)) {
+            m.gradation.largest_ratio_left =
+                largest_gradation(nodes->graph, nodes->metrics, GradationLaw::cone);
+        }
         if (c.target_delta) {
             m.footprint.remark =
                 fmt::format("δ {:.4g} reached{}{}", report.reached,
                             report.shortfall.empty() ? "" : "; ", report.shortfall);
         }
-        return space;
+        return builder;
     }
     tell(observer.phase_started, "insertion");
     auto start = std::chrono::steady_clock::now();
-    auto space = entry.make(space_options(study, c, workload));
-    m.sources_inserted = space->insert(std::span<const PointSource>(workload.sources)).inserted;
+    auto builder = entry.make(space_options(study, c, workload));
+    m.sources_inserted = builder->insert(std::span<const PointSource>(workload.sources)).inserted;
     m.insert_s = seconds_since(start);
 
     tell(observer.phase_started, "gradation");
     start = std::chrono::steady_clock::now();
-    m.gradation = space->grade(
+    m.gradation = builder->grade(
         {.law = c.law, .schedule = c.schedule, .ratio = c.g_r, .neighbourhood = c.neighbourhood});
     m.gradation_s = seconds_since(start);
     if (c.node_values == NodeValues::exact) {
-        follow_at_nodes(*space, *make_reference(study, c, workload));
+        follow_at_nodes(dynamic_cast<NodeBuilder&>(*builder), *make_reference(study, c, workload));
     }
-    return space;
+    return builder;
 }
 
-}  // namespace
-
-std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
-                                            const CatalogueEntry& entry, const Workload& workload,
-                                            Measures& m, const StudyObserver& observer) {
-    auto space = make_unfrozen(study, c, entry, workload, m, observer);
-    if (c.frozen == Frozen::no) return space;
-    return space->freeze(c.frozen == Frozen::floats ? Precision::floats : Precision::doubles);
+std::unique_ptr<ControlSpace> finish(ControlSpaceBuilder& builder, const Case& c) {
+    if (c.frozen == Frozen::no) return builder.build();
+    return builder.build(
+        {.precision = c.frozen == Frozen::floats ? Precision::floats : Precision::doubles});
 }
 
 /// Chooses the voxels of a case that asks for it, and says in the row if they fall short.
@@ -141,7 +137,8 @@ std::string choose_equal_setting(const Study& study, Case& c, const CatalogueEnt
     const EqualSetting found =
         find_equal_setting(c, entry, longest_edge, workload.finest_length, [&](const Case& trial) {
             Measures ignored;
-            const auto space = make_and_fill(study, trial, entry, workload, ignored, {});
+            const auto space =
+                finish(*make_and_fill(study, trial, entry, workload, ignored, {}), trial);
             return Trial{accuracy(*space, probes.coarse).max,
                          static_cast<double>(space->footprint().bytes_total())};
         });
@@ -153,7 +150,7 @@ Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry
                   const Workload& workload, const ReferenceProbes& probes,
                   const StudyObserver& observer) {
     Measures m;
-    const auto space = make_and_fill(study, c, entry, workload, m, observer);
+    const auto space = finish(*make_and_fill(study, c, entry, workload, m, observer), c);
     const std::string remark = std::move(m.footprint.remark);
     m.footprint = space->footprint();
     if (!remark.empty()) m.footprint.remark = remark;

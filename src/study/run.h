@@ -65,11 +65,15 @@ bool share_probes(const Case& a, const Case& b);
 /// The entry of the structure of `c`, which `expand` has found in `catalogue`.
 const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> catalogue);
 
-/// A structure that has learnt what case `c` asks for, and is graded; what that took goes into `m`.
-/// Exceptions pass through.
-std::unique_ptr<ControlSpace> make_and_fill(const Study& study, const Case& c,
-                                            const CatalogueEntry& entry, const Workload& workload,
-                                            Measures& m, const StudyObserver& observer);
+/// The builder of a structure that has got what case `c` asks for, and is graded; what that took
+/// goes into `m`. Exceptions pass through.
+std::unique_ptr<ControlSpaceBuilder> make_and_fill(const Study& study, const Case& c,
+                                                   const CatalogueEntry& entry,
+                                                   const Workload& workload, Measures& m,
+                                                   const StudyObserver& observer);
+
+/// What it builds for case `c`: the compact form where the case asks for one.
+std::unique_ptr<ControlSpace> finish(ControlSpaceBuilder& builder, const Case& c);
 
 /// Makes, grades and measures one structure. Exceptions pass through.
 Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry,

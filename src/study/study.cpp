@@ -23,7 +23,7 @@ std::vector<const CatalogueEntry*> chosen(const std::vector<std::string>& names,
     for (const std::string& name : names) {
         bool known = name == "all" || name == "trees" || name == "anchored" || name == "baselines";
         for (const CatalogueEntry& entry : catalogue) {
-            if (entry.id == name || entry.group == name || name == "all" ||
+            if (entry.id == name || entry.family == name || name == "all" ||
                 (!name.empty() && entry.former_id == name)) {
                 add(entry);
                 known = true;
@@ -183,33 +183,33 @@ std::optional<double> unless_zero(double x) {
 /// One structure under one setting: what a structure does not have does not multiply it.
 std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const Case& setting) {
     // Nothing but sources makes grids in levels finer.
-    if (entry.has_levels && has_field(setting.sources)) return {};
+    if (entry.has<VoxelLevels>() && has_field(setting.sources)) return {};
     std::vector<Case> cases{setting};
     cases.front().structure = entry.id;
-    if (entry.has_split_rules) {
+    if (entry.has<SplitRules>()) {
         multiply(cases, run.splits, [](Case& c, SplitRule split) { c.split = split; });
         multiply(cases, run.kd_depth, [](Case& c, int depth) { c.max_depth = depth; });
-    } else if (entry.group != "baselines") {
+    } else if (entry.has<SourceLeaves>()) {
         multiply(cases, run.octree_depth, [](Case& c, int depth) { c.max_depth = depth; });
     }
-    if (entry.group != "baselines") {
+    if (entry.has<SourceLeaves>()) {
         multiply(cases, run.target_delta, [&](Case& c, double delta) {
             c.target_delta = unless_zero(delta);
             // Adapted trees heed no rule: one of the rules stands for all.
             if (c.target_delta && c.split) c.split = run.splits.front();
         });
     }
-    if (entry.has_voxels) {
+    if (entry.has<VoxelSize>()) {
         multiply(cases, run.equal_delta,
                  [](Case& c, double delta) { c.equal_delta = unless_zero(delta); });
         multiply(cases, run.equal_memory,
                  [](Case& c, double mb) { c.equal_memory = unless_zero(mb); });
         multiply(cases, run.voxel, [](Case& c, double edge) { c.voxel = unless_zero(edge); });
     }
-    if (entry.has_levels) {
+    if (entry.has<VoxelLevels>()) {
         multiply(cases, run.voxel_factor, [](Case& c, double factor) { c.voxel_factor = factor; });
     }
-    if (entry.takes_metrics && !entry.graded_from_start) {
+    if (entry.has<MetricNodes>()) {
         multiply(cases, run.neighbourhood, [](Case& c, Neighbourhood n) {
             if (!c.target_delta) c.neighbourhood = n;  // an adapted tree is not graded
         });
@@ -217,10 +217,10 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
             if (!c.target_delta) c.node_values = v;  // an adapted tree is exact at nodes
         });
     }
-    if (entry.can_freeze) {
+    if (entry.has<CompactForm>()) {
         multiply(cases, run.frozen, [](Case& c, Frozen frozen) { c.frozen = frozen; });
     }
-    if (entry.can_prune) {
+    if (entry.has<Pruning>()) {
         multiply(cases, run.prune_delta,
                  [](Case& c, double delta) { c.prune_delta = unless_zero(delta); });
     }

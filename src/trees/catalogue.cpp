@@ -1,10 +1,10 @@
 #include "controlspace/space/catalogue.h"
 
-#include <algorithm>
 #include <array>
 
+#include "space/shared_builder.h"
 #include "trees/topology/topology.h"
-#include "trees/tree.h"
+#include "trees/tree_data.h"
 #include "trees/values/anchored_values.h"
 #include "trees/values/leaf_values.h"
 #include "trees/values/quadratic_values.h"
@@ -15,41 +15,31 @@ namespace controlspace {
 namespace {
 
 template <class Node, class Storage, bool balanced = false>
-std::unique_ptr<ControlSpace> make(const SpaceOptions& options) {
+std::unique_ptr<ControlSpaceBuilder> construct(const SpaceOptions& options) {
     require_valid(options);
-    return std::make_unique<Tree<Node, Storage>>(options, balanced);
+    return std::make_unique<SharedBuilder<TreeData<Node, Storage>>>(options, balanced);
 }
 
 template <class Node, class Storage, bool balanced = false>
 CatalogueEntry entry(const char* id, const char* description) {
-    CatalogueEntry entry;
-    entry.id = id;
-    entry.description = description;
-    entry.has_split_rules = std::is_same_v<Node, KdNode>;
-    entry.exact_at_nodes = Storage::exact_at_nodes;
-    entry.order = Storage::order;
-    entry.construct = make<Node, Storage, balanced>;
-    entry.takes_metrics = !std::is_same_v<Storage, AnchoredValues>;
-    entry.can_freeze = entry.takes_metrics;
-    entry.group = entry.takes_metrics ? "trees" : "anchored";
+    CatalogueEntry entry{.id = id,
+                         .description = description,
+                         .family = "trees",
+                         .order = Storage::order,
+                         .construct = construct<Node, Storage, balanced>,
+                         .capabilities = {SourceLeaves()}};
+    if (std::is_same_v<Node, KdNode>) entry.capabilities.push_back(SplitRules());
+    if (std::is_same_v<Storage, AnchoredValues>) {
+        entry.family = "anchored";
+        entry.capabilities.push_back(KeptSources());
+    } else {
+        entry.capabilities.push_back(MetricNodes());
+        entry.capabilities.push_back(CompactForm());
+    }
     return entry;
 }
 
 }  // namespace
-
-std::unique_ptr<ControlSpace> CatalogueEntry::make(const SpaceOptions& options) const {
-    auto space = construct(options);
-    space->set_making({id, options});
-    return space;
-}
-
-const CatalogueEntry* find_entry(std::span<const CatalogueEntry> entries, std::string_view id) {
-    const auto named = [&](const CatalogueEntry& entry) {
-        return entry.id == id || (!id.empty() && entry.former_id == id);
-    };
-    const auto found = std::find_if(entries.begin(), entries.end(), named);
-    return found == entries.end() ? nullptr : &*found;
-}
 
 std::span<const CatalogueEntry> tree_catalogue() {
     static const std::array<CatalogueEntry, 6> trees{

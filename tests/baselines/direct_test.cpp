@@ -9,6 +9,7 @@
 #include "controlspace/error.h"
 #include "controlspace/measure/reference.h"
 #include "counting_allocator.h"
+#include "editable_space.h"
 
 using Catch::Matchers::Contains;
 
@@ -60,7 +61,7 @@ TEST_CASE("direct answers the exact field, for the ratio it is graded with") {
     const SpaceOptions options = with_ratio(1.25);
     const auto sources = sources_for(options, 300, isotropic);
     const auto x = places(options, 300);
-    const auto space = make_direct(options);
+    const auto space = editable(make_direct(options));
     CHECK(space->insert(sources).inserted == sources.size());
     CHECK(largest_difference(sample(*space, x), by_definition(options, sources, 1.25, x)) < 1e-12);
     space->grade(
@@ -76,10 +77,10 @@ TEST_CASE("sources that come later, between readings, count as all others do") {
     const SpaceOptions options = with_ratio(1.25);
     const auto sources = sources_for(options, 200, isotropic);
     const auto x = places(options, 100);
-    const auto at_once = make_direct(options);
+    const auto at_once = editable(make_direct(options));
     at_once->insert(sources);
 
-    const auto in_turn = make_direct(options);
+    const auto in_turn = editable(make_direct(options));
     const std::span<const PointSource> all = sources;
     in_turn->insert(all.first(150));
     const std::vector<Metric> before = sample(*in_turn, x);
@@ -95,7 +96,7 @@ TEST_CASE("many readers at once build the search once, in tasks and in tasks of 
     const SpaceOptions options = with_ratio(1.25);
     const auto sources = sources_for(options, 20000, true);
     const auto x = places(options, 64);
-    const auto space = make_direct(options);
+    const auto space = editable(make_direct(options));
     space->insert(sources);
     const auto expected = sample(*space, x);
     for (int repeat = 0; repeat < 3; ++repeat) {
@@ -110,7 +111,7 @@ TEST_CASE("many readers at once build the search once, in tasks and in tasks of 
 TEST_CASE("the nodes of direct are its sources, and can be changed") {
     const SpaceOptions options = with_ratio(1.25);
     auto sources = sources_for(options, 50, false);
-    const auto space = make_direct(options);
+    const auto space = editable(make_direct(options));
     space->insert(sources);
     ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
     REQUIRE(nodes.metrics.size() == sources.size());
@@ -130,9 +131,9 @@ TEST_CASE("the footprint of direct is what it has allocated") {
     const bool isotropic = GENERATE(true, false);
     const SpaceOptions options = with_ratio(1.25);
     const auto sources = sources_for(options, 3000, isotropic);
-    make_direct(options)->insert(sources);  // whatever the task scheduler keeps to itself
+    editable(make_direct(options))->insert(sources);  // whatever the task scheduler keeps to itself
     const std::size_t before = live_bytes();
-    auto space = make_direct(options);
+    auto space = editable(make_direct(options));
     space->insert(sources);
     const std::size_t allocated = live_bytes() - before;
     const std::size_t counted = space->footprint().bytes_total();
@@ -144,7 +145,7 @@ TEST_CASE("the footprint of direct is what it has allocated") {
 
 TEST_CASE("direct says how many of its sources can matter") {
     const SpaceOptions options = with_ratio(1.25);
-    const auto space = make_direct(options);
+    const auto space = editable(make_direct(options));
     const PointSource governs{options.domain.centre(), Metric::isotropic(0.1)};
     space->insert(governs);
     space->insert(governs);

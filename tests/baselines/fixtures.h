@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "controlspace/baselines/catalogue.h"
+#include "editable_space.h"
 
 namespace controlspace {
 
@@ -18,7 +19,8 @@ inline std::span<const CatalogueEntry> grids() {
         std::vector<CatalogueEntry> lattices;
         std::copy_if(structures().begin(), structures().end(), std::back_inserter(lattices),
                      [](const CatalogueEntry& entry) {
-                         return entry.has_voxels && !entry.has_levels && entry.rounding <= 1e-12;
+                         return entry.has<VoxelSize>() && !entry.has<VoxelLevels>() &&
+                                !is_rounding(entry);
                      });
         return lattices;
     }();

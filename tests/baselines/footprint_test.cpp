@@ -2,6 +2,7 @@
 
 #include "baselines/fixtures.h"
 #include "counting_allocator.h"
+#include "editable_space.h"
 
 namespace controlspace {
 namespace {
@@ -17,7 +18,7 @@ TEST_CASE("a grid's footprint is what it has allocated") {
     INFO(entry.id);
     const SpaceOptions options = small_grid();
     const std::size_t before = live_bytes();
-    const auto space = entry.make(options);
+    const auto space = editable(entry.make(options));
     space->insert(random_sources(100, options));
     const std::size_t allocated = live_bytes() - before;
     const Footprint footprint = space->footprint();
@@ -37,7 +38,7 @@ TEST_CASE("a grid and its gradation stay below the memory cap") {
     options.max_bytes = 4'000'000;
     const std::size_t before = live_bytes();
     reset_peak_bytes();
-    const auto space = entry.make(options);
+    const auto space = editable(entry.make(options));
     space->insert(PointSource{options.domain.centre(), Metric::isotropic(0.1)});
     space->grade(GradationOptions{});
     const Footprint footprint = space->footprint();

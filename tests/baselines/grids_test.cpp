@@ -12,6 +12,7 @@
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/sampled_surfaces.h"
+#include "editable_space.h"
 
 // The laws of every grid, whatever stores it.
 
@@ -21,7 +22,7 @@ namespace {
 struct Grid {
     const CatalogueEntry* entry;
     SpaceOptions options = small_grid();
-    std::unique_ptr<ControlSpace> space;
+    std::unique_ptr<EditableSpace> space;
     Lattice lattice;
     std::vector<Metric> metrics;
 
@@ -229,7 +230,7 @@ TEST_CASE("inserting a batch is inserting its sources in order, by the rule of t
     // Brute force on the control nodes of a new grid.
     std::vector<Metric> expected = grid.metrics;
     std::uint64_t inserted = 0;
-    const auto one_by_one = grid.entry->make(grid.options);
+    const auto one_by_one = editable(grid.entry->make(grid.options));
     for (const PointSource& source : sources) {
         const Metric held = sample_at(*one_by_one, source.position);
         const bool changes = calls_for_change(source.metric, held, grid.options.tolerance);
@@ -308,7 +309,7 @@ TEST_CASE("on the paper's sphere sizes are 63 % too large over faces, 11 % with 
                                .finest_length = finest_length(sources)};
     const auto exact = exact_reference(sources, options.ratio, largest_metric(options.domain));
     const auto excess = [&](Neighbourhood neighbourhood) {
-        const auto grid = make_uniform_grid(options, Interpolation::nearest);
+        const auto grid = editable(make_uniform_grid(options, Interpolation::nearest));
         grid->insert(sources);
         grid->grade({.neighbourhood = neighbourhood});
         const ControlNodes nodes = grid->control_nodes(neighbourhood);

@@ -12,6 +12,7 @@
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "counting_allocator.h"
+#include "editable_space.h"
 
 // The laws of grids in levels.
 
@@ -78,14 +79,14 @@ TEST_CASE("before gradation, a grid in levels answers as the octree does, to the
     // of leaves that no source has touched.
     const SpaceOptions options = cube();
     const std::vector<PointSource> sources = random_sources(400, options);
-    const auto octree = tree_catalogue()[3].make(options);
-    const auto levels = make_openvdb_levels(options, Interpolation::nearest);
+    const auto octree = editable(tree_catalogue()[3].make(options));
+    const auto levels = editable(make_openvdb_levels(options, Interpolation::nearest));
     CHECK(octree->insert(sources).inserted == levels->insert(sources).inserted);
     const std::vector<Point> x = random_points(20000, options.domain);
     CHECK(sample(*octree, x) == sample(*levels, x));
     for (const Point& p : x) {
-        const Box element = octree->element_at(p);
-        if (element.edges().x() < 0.25) CHECK(levels->element_at(p) == element);
+        const Box element = octree->cell_at(p).value();
+        if (element.edges().x() < 0.25) CHECK(levels->cell_at(p).value() == element);
     }
 }
 
@@ -96,8 +97,8 @@ TEST_CASE("with all voxels as small as the finest, a grid in levels is the unifo
     options.voxel_factor = 1e-3;
     const std::vector<PointSource> sources{{Point(0.3, 0.2, 0.1), Metric::isotropic(0.1)},
                                            {Point(-0.7, 0.8, -0.1), Metric::isotropic(0.12)}};
-    const auto uniform = structure_with_id("uniform-nearest").make(options);
-    const auto levels = make_openvdb_levels(options, Interpolation::nearest);
+    const auto uniform = editable(structure_with_id("uniform-nearest").make(options));
+    const auto levels = editable(make_openvdb_levels(options, Interpolation::nearest));
     for (ControlSpace* space : {uniform.get(), levels.get()}) {
         space->insert(sources);
         space->grade({});
@@ -114,16 +115,16 @@ TEST_CASE("with all voxels as small as the finest, a grid in levels is the unifo
 TEST_CASE("voxels of all levels fill the domain once, whatever its shape") {
     const auto interpolation = GENERATE(values(any));
     const SpaceOptions options = small_grid();
-    const auto space = make_openvdb_levels(options, interpolation);
+    const auto space = editable(make_openvdb_levels(options, interpolation));
     space->insert(random_sources(20, options));
     space->grade({});
     // An element's share of random places is its volume: so the mean of 1 / volume is their number.
     const std::vector<Point> x = random_points(40000, options.domain);
     double elements = 0;
     for (const Point& p : x) {
-        const Box element = space->element_at(p);
+        const Box element = space->cell_at(p).value();
         REQUIRE(element.contains(p));
-        REQUIRE(space->element_at(element.centre()) == element);
+        REQUIRE(space->cell_at(element.centre()).value() == element);
         elements += volume(options.domain) / volume(element) / static_cast<double>(x.size());
     }
     CHECK(elements == Approx(static_cast<double>(space->footprint().elements)).epsilon(0.05));
@@ -134,14 +135,14 @@ TEST_CASE(
     "nodes are where they should be, each place once, and voxels blend those at their corners") {
     const auto interpolation = GENERATE(values(any));
     const SpaceOptions options = cube();
-    const auto space = make_openvdb_levels(options, interpolation);
+    const auto space = editable(make_openvdb_levels(options, interpolation));
     const bool graded = GENERATE(false, true);
     space->insert(graded ? isotropic_sources(options) : random_sources(100, options));
     if (graded) space->grade({});
     const NodesByPlace nodes(*space);
     CHECK(nodes.unique());
     for (const Point& x : random_points(3000, options.domain)) {
-        const Box element = space->element_at(x);
+        const Box element = space->cell_at(x).value();
         if (interpolation == Interpolation::nearest) {
             REQUIRE(sample_at(*space, x) == nodes.at(element.centre()));
             continue;
@@ -162,14 +163,14 @@ TEST_CASE("after gradation no voxel is longer than its factor times the size it 
     const auto interpolation = GENERATE(values(any));
     SpaceOptions options = cube();
     options.voxel_factor = GENERATE(2.0, 1.0, 0.5);
-    const auto space = make_openvdb_levels(options, interpolation);
+    const auto space = editable(make_openvdb_levels(options, interpolation));
     space->insert(isotropic_sources(options));
     space->grade({});
     const double finest = std::min(options.voxel_factor, 1.0) * options.finest_length;
     double longest = 0;
     double largest_allowed = 0;
     for (const Point& x : random_points(3000, options.domain)) {
-        const Box element = space->element_at(x);
+        const Box element = space->cell_at(x).value();
         if (element.edges().maxCoeff() <= finest) continue;
         for (int i = 0; i < 8; ++i) {
             // Just inside the corner, since a corner belongs to the voxel above it.
@@ -193,7 +194,7 @@ TEST_CASE("threads do not show in a grid in levels") {
     options.finest_length = 1.0 / 16;
     options.prune_delta = 0.3;
     const auto make = [&] {
-        auto space = make_openvdb_levels(options, interpolation);
+        auto space = editable(make_openvdb_levels(options, interpolation));
         space->insert(isotropic_sources(options));
         space->grade({.schedule = schedule, .neighbourhood = neighbourhood});
         return space;
@@ -216,9 +217,9 @@ TEST_CASE("pruning never makes a metric larger, nor smaller by more than its tol
     const std::string id = GENERATE("openvdb-uniform-nearest", "openvdb-uniform-trilinear",
                                     "openvdb-levels-nearest", "openvdb-levels-trilinear");
     INFO(id);
-    const auto plain = structure_with_id(id).make(options);
+    const auto plain = editable(structure_with_id(id).make(options));
     options.prune_delta = 0.2;
-    const auto pruned = structure_with_id(id).make(options);
+    const auto pruned = editable(structure_with_id(id).make(options));
     for (ControlSpace* space : {plain.get(), pruned.get()}) {
         space->insert(isotropic_sources(options));
         space->grade({.ratio = 1.05});
@@ -297,7 +298,7 @@ TEST_CASE("the footprint of a grid in levels is what it has allocated") {
     SpaceOptions options = cube();
     options.prune_delta = GENERATE(0.0, 0.3);
     const std::size_t before = live_bytes();
-    const auto space = make_openvdb_levels(options, interpolation);
+    const auto space = editable(make_openvdb_levels(options, interpolation));
     space->insert(isotropic_sources(options));
     space->grade({});
     const std::size_t allocated = live_bytes() - before;
@@ -319,7 +320,7 @@ TEST_CASE("a grid in levels stays below the memory cap, or says that it cannot")
     reset_peak_bytes();
     bool refused = false;
     try {
-        const auto space = make_openvdb_levels(options, interpolation);
+        const auto space = editable(make_openvdb_levels(options, interpolation));
         space->insert(isotropic_sources(options));
         space->grade({.neighbourhood = neighbourhood});
     } catch (const InputError& error) {

@@ -10,14 +10,15 @@
 #include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
 #include "counting_allocator.h"
+#include "editable_space.h"
 
 namespace controlspace {
 
 TEST_CASE("OpenVDB and the uniform grid agree to the bit") {
     const auto interpolation = GENERATE(Interpolation::nearest, Interpolation::trilinear);
     const SpaceOptions options = small_grid();
-    const auto uniform = make_uniform_grid(options, interpolation);
-    const auto vdb = make_openvdb_grid(options, interpolation);
+    const auto uniform = editable(make_uniform_grid(options, interpolation));
+    const auto vdb = editable(make_openvdb_grid(options, interpolation));
     const std::vector<PointSource> sources = random_sources(3000, options);
     CHECK(uniform->insert(sources).inserted == vdb->insert(sources).inserted);
 
@@ -34,7 +35,7 @@ TEST_CASE("OpenVDB and the uniform grid agree to the bit") {
 
 TEST_CASE("the trilinear grids answer as OpenVDB's own BoxSampler does") {
     const SpaceOptions options = small_grid();
-    const auto grid = make_openvdb_grid(options, Interpolation::trilinear);
+    const auto grid = editable(make_openvdb_grid(options, Interpolation::trilinear));
     grid->insert(random_sources(3000, options));
     const ControlNodes nodes = grid->control_nodes(Neighbourhood::faces);
     const auto& lattice = std::get<Lattice>(nodes.graph);
@@ -57,8 +58,8 @@ TEST_CASE("the trilinear grids answer as OpenVDB's own BoxSampler does") {
 
 TEST_CASE("two Vec3S trees answer as the grid of doubles does, up to the rounding of floats") {
     const SpaceOptions options = small_grid();
-    const auto doubles = make_openvdb_grid(options, Interpolation::trilinear);
-    const auto floats = make_openvdb_vec3s(options);
+    const auto doubles = editable(make_openvdb_grid(options, Interpolation::trilinear));
+    const auto floats = editable(make_openvdb_vec3s(options));
     const std::vector<PointSource> sources = random_sources(300, options);
     CHECK(doubles->insert(sources).inserted == floats->insert(sources).inserted);
     doubles->grade({});
@@ -80,7 +81,7 @@ TEST_CASE("two Vec3S trees answer as the grid of doubles does, up to the roundin
 
 TEST_CASE("the footprint of two Vec3S trees is what they have allocated") {
     const std::size_t before = live_bytes();
-    const auto space = make_openvdb_vec3s(small_grid());
+    const auto space = editable(make_openvdb_vec3s(small_grid()));
     const std::size_t allocated = live_bytes() - before;
     CHECK(space->footprint().bytes_total() <= allocated);
     CHECK(space->footprint().bytes_total() + 2048 >= allocated);

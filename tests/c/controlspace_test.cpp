@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "controlspace/baselines/catalogue.h"
+#include "editable_space.h"
 #include "measure/access_time.h"
 #include "scratch_directory.h"
 
@@ -53,8 +54,8 @@ TEST_CASE("C: every structure answers as from C++, also after saving and loading
         CHECK(cspace_insert_lengths(space, 1, centre, &length) == CSPACE_OK);
         CHECK(cspace_grade(space, 1.5) == CSPACE_OK);
 
-        const auto own = entry.make(
-            {.domain = domain, .split = SplitRule::golden, .l_min = 0.5, .finest_length = 0.1});
+        const auto own = editable(entry.make(
+            {.domain = domain, .split = SplitRule::golden, .l_min = 0.5, .finest_length = 0.1}));
         own->insert({Point(0.3, 0.2, 0.1), {0.1, 0.2, 0.3, 0.01, 0.02, 0.03}});
         own->insert({Point::Zero(), Metric::isotropic(0.2)});
         own->grade({.ratio = 1.5});
@@ -70,7 +71,7 @@ TEST_CASE("C: every structure answers as from C++, also after saving and loading
         std::array<double, 6> box{};
         CHECK(cspace_domain(space, box.data()) == CSPACE_OK);
         CHECK(box == corners);
-        if (!entry.has_levels) {
+        if (!entry.has<VoxelLevels>()) {
             REQUIRE(cspace_save(space, file.c_str()) == CSPACE_OK);
             cspace* loaded = nullptr;
             REQUIRE(cspace_load(file.c_str(), &loaded) == CSPACE_OK);
@@ -127,7 +128,8 @@ TEST_CASE("C: a tree that is given a target is that of C++") {
     cspace* space = made("K_oLA");
     double reached = -1;
     REQUIRE(cspace_adapt(space, 1, place.data(), tensor.data(), 1.5, 0.05, &reached) == CSPACE_OK);
-    const auto own = find_entry(structures(), "K_oLA")->make({.domain = domain, .l_min = 0.5});
+    const auto own =
+        editable(find_entry(structures(), "K_oLA")->make({.domain = domain, .l_min = 0.5}));
     const PointSource source{Point(0.3, 0.2, 0.1), {0.1, 0.2, 0.3, 0.01, 0.02, 0.03}};
     CHECK(reached == own->adapt({{&source, 1}, nullptr, 1.5, 0.05}).reached);
     CHECK(reached <= 0.05);

@@ -26,14 +26,15 @@ int main(int argc, char** argv) {
     const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
     const PointSource source{Point(0.3, 0.2, 0.1), Metric::isotropic(0.05)};
     for (const CatalogueEntry& entry : structures()) {
-        const auto space = entry.make({.domain = domain, .finest_length = 0.05});
-        space->insert(source);
-        space->grade({.ratio = 1.25});
+        const auto builder = entry.make({.domain = domain, .finest_length = 0.05});
+        builder->insert(source);
+        builder->grade({.ratio = 1.25});
+        const auto space = builder->build();
         const double here = sample_at(*space, source.position).xx;
         const double there = sample_at(*space, Point(-0.9, -0.9, -0.9)).xx;
         check(here < 0.08 && there > 0.2, entry.id);
         try {
-            space->insert(PointSource{Point(2, 0, 0), Metric::isotropic(0.05)});
+            builder->insert(PointSource{Point(2, 0, 0), Metric::isotropic(0.05)});
             check(false, "a source outside is refused");
         } catch (const InputError&) {
         }

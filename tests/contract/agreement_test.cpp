@@ -7,6 +7,7 @@
 #include "controlspace/measure/reference.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
+#include "editable_space.h"
 #include "measure/access_time.h"
 
 using namespace controlspace;
@@ -28,7 +29,7 @@ Field field_of(const Structure& structure, const Work& work, std::span<const Poi
     Field field{structure.name(), {}, {}};
     for (std::size_t i = 0; i < x.size(); ++i) {
         field.h.push_back(m[i].xx);
-        field.element.push_back(space->element_at(x[i]).edges().maxCoeff());
+        field.element.push_back(space->cell_at(x[i]).value().edges().maxCoeff());
     }
     return field;
 }
@@ -100,7 +101,7 @@ TEST_CASE("where elements are small against the size asked for, agreement is clo
         CAPTURE(structure.name());
         SpaceOptions options = work.options(structure.split);
         options.l_min = 0.25;
-        const auto space = structure.entry->make(options);
+        const auto space = editable(structure.entry->make(options));
         space->insert(work.sources);
         space->grade({});
         std::vector<Metric> m(x.size());

@@ -8,6 +8,7 @@
 #include "contract/structures_under_test.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
+#include "editable_space.h"
 #include "measure/access_time.h"
 
 using namespace controlspace;
@@ -53,7 +54,7 @@ void for_each_structure(const Work& work, Check&& check) {
 TEST_CASE("a new control space holds H I everywhere, H half of the domain's diagonal") {
     const Work work = isotropic_sphere();
     for_each_structure(work, [&](const Structure& structure) {
-        const auto space = structure.entry->make(work.options(structure.split));
+        const auto space = editable(structure.entry->make(work.options(structure.split)));
         for (const Metric& m : answers(*space, random_points(work.domain, 100, 1))) {
             CHECK(nonconformity(m, Metric::isotropic(std::sqrt(3))) < 1e-12);
         }
@@ -98,7 +99,7 @@ TEST_CASE("gradation only makes smaller, and holds afterwards") {
         const std::vector<Metric> before = answers(*space, x);
         const GradationReport report = space->grade({.law = law, .ratio = g});
         // Three sources cannot stand for all tensors that cut a leaf.
-        const bool holds = structure.entry->takes_metrics || work.name == "isotropic";
+        const bool holds = keeps_values(*structure.entry) || work.name == "isotropic";
         if (holds) CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
         const std::vector<Metric> after = answers(*space, x);
         std::size_t larger = 0;
@@ -109,7 +110,7 @@ TEST_CASE("gradation only makes smaller, and holds afterwards") {
         // blends of smaller tensors are smaller as matrices, not always along each direction.
         const int order = structure.entry->order;
         if (holds && (order == 0 || (order == 1 && work.name == "isotropic"))) CHECK(larger == 0);
-        CHECK((after != before) != structure.entry->graded_from_start);
+        CHECK((after != before) != is_direct(*structure.entry));
     });
 }
 
@@ -119,7 +120,7 @@ TEST_CASE("with all neighbours, no node is larger than with those across faces a
         SpaceOptions options = work.options(structure.split);
         options.voxel_factor = 1000;  // no voxel is refined because its neighbours are smaller
         const auto graded = [&](Neighbourhood neighbourhood) {
-            auto space = structure.entry->make(options);
+            auto space = editable(structure.entry->make(options));
             space->insert(work.sources);
             const auto report = space->grade({.ratio = g, .neighbourhood = neighbourhood});
             CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
@@ -128,7 +129,7 @@ TEST_CASE("with all neighbours, no node is larger than with those across faces a
         const ControlNodes few = graded(Neighbourhood::faces)->control_nodes(Neighbourhood::all);
         const ControlNodes all = graded(Neighbourhood::all)->control_nodes(Neighbourhood::all);
         REQUIRE(few.metrics.size() == all.metrics.size());
-        if (!structure.entry->takes_metrics || structure.entry->graded_from_start) {
+        if (structure.entry->has<KeptSources>()) {
             CHECK(few.metrics == all.metrics);
             return;
         }
@@ -151,7 +152,7 @@ TEST_CASE("under the cone law, no larger than the cones of the sources allow alo
     const Work work = isotropic_sphere();
     const std::vector<Point> x = random_points(work.domain, 400, 3);
     for_each_structure(work, [&](const Structure& structure) {
-        const auto space = structure.entry->make(work.options(structure.split));
+        const auto space = editable(structure.entry->make(work.options(structure.split)));
         std::vector<PointSource> inserted;
         for (const PointSource& source : work.sources) {
             if (space->insert(source) == Insertion::inserted) inserted.push_back(source);
@@ -160,10 +161,10 @@ TEST_CASE("under the cone law, no larger than the cones of the sources allow alo
         const std::vector<Metric> m = answers(*space, x);
         double worst = 0;
         for (std::size_t k = 0; k < x.size(); ++k) {
-            const Vector here = space->element_at(x[k]).edges();
+            const Vector here = space->cell_at(x[k]).value().edges();
             for (std::size_t i = 0; i < inserted.size(); i += 5) {
                 const PointSource& source = inserted[i];
-                const Vector there = space->element_at(source.position).edges();
+                const Vector there = space->cell_at(source.position).value().edges();
                 // From the source to a control node of its element, along a path of control nodes
                 // that may stray by a part of the elements it passes, to one of the element here.
                 const double path = axis_path_length(source.metric, x[k] - source.position) +
@@ -179,7 +180,7 @@ TEST_CASE("under the cone law, no larger than the cones of the sources allow alo
 TEST_CASE("a control node's own metric at its own place") {
     const Work work = isotropic_sphere();
     for_each_structure(work, [&](const Structure& structure) {
-        if (!structure.entry->exact_at_nodes) return;
+        if (is_direct(*structure.entry)) return;
         const auto space = work.graded(structure);
         const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
         std::visit(
@@ -189,7 +190,7 @@ TEST_CASE("a control node's own metric at its own place") {
                 for (NodeIndex i = 0; i < graph.size(); i += 5) {
                     const Point p = graph.position(i);
                     // A hanging vertex counts in the finer elements at it only.
-                    if (structure.entry->order == 1 && !is_corner(space->element_at(p), p))
+                    if (structure.entry->order == 1 && !is_corner(space->cell_at(p).value(), p))
                         continue;
                     const double delta = nonconformity(sample_at(*space, p), nodes.metrics[i]);
                     worst = std::max(worst, delta);
@@ -210,13 +211,18 @@ TEST_CASE("a constant is answered as such; assigning what was read changes nothi
         const auto space = work.graded(structure);
         const std::vector<Metric> before = answers(*space, x);
         ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
-        if (!structure.entry->takes_metrics) {
-            CHECK_THROWS_AS(space->assign(nodes.metrics), std::logic_error);
-            return;
-        }
+        const bool has_nodes = dynamic_cast<NodeBuilder*>(&space->builder()) != nullptr;
+        REQUIRE(has_nodes == structure.entry->has<MetricNodes>());
+        if (!has_nodes) return;
         space->assign(nodes.metrics);
         CHECK(answers(*space, x) == before);
-        if (structure.entry->graded_from_start) return;  // a constant at the sources only
+        nodes.metrics.push_back(constant);
+        CHECK_THROWS_WITH(space->assign(nodes.metrics), Contains("give one for each"));
+        nodes.metrics.resize(nodes.metrics.size() - 2);
+        CHECK_THROWS_AS(space->assign(nodes.metrics), InputError);
+        CHECK_THROWS_AS(space->assign({}), InputError);
+        CHECK(answers(*space, x) == before);
+        nodes.metrics.push_back(constant);
         std::fill(nodes.metrics.begin(), nodes.metrics.end(), constant);
         space->assign(nodes.metrics);
         for (const Metric& m : answers(*space, x)) CHECK(nonconformity(m, constant) < 1e-12);
@@ -265,7 +271,7 @@ TEST_CASE("the same run gives the same bits, one by one as well as in a batch") 
     const std::vector<Point> x = random_points(work.domain, 2000, 8);
     for_each_structure(work, [&](const Structure& structure) {
         const auto first = work.graded(structure);
-        const auto second = structure.entry->make(work.options(structure.split));
+        const auto second = editable(structure.entry->make(work.options(structure.split)));
         for (const PointSource& source : work.sources) second->insert(source);
         second->grade({});
         CHECK(checksum(answers(*first, x)) == checksum(answers(*second, x)));
@@ -277,7 +283,7 @@ TEST_CASE("elements hold the places that they answer for, and lie in the domain"
     for_each_structure(work, [&](const Structure& structure) {
         const auto space = work.inserted(structure);
         for (const Point& x : random_points(work.domain, 300, 9)) {
-            const Box element = space->element_at(x);
+            const Box element = space->cell_at(x).value();
             CHECK((x.array() >= element.low.array() - 1e-12).all());
             CHECK((x.array() <= element.high.array() + 1e-12).all());
             CHECK((element.edges().array() > 0).all());
@@ -290,12 +296,12 @@ TEST_CASE("elements hold the places that they answer for, and lie in the domain"
 TEST_CASE("sources of no use are not sources: refused by every structure") {
     const Work work = isotropic_sphere();
     for_each_structure(work, [&](const Structure& structure) {
-        const auto space = structure.entry->make(work.options(structure.split));
+        const auto space = editable(structure.entry->make(work.options(structure.split)));
         CHECK_THROWS_WITH(space->insert({Point(1.5, 0, 0), {}}), Catch::Contains("outside"));
         CHECK_THROWS_WITH(space->insert({Point::Zero(), {1, 1, 1, 3, 0, 0}}),
                           Catch::Contains("not positive definite"));
         CHECK(answers(*space, random_points(work.domain, 10, 1)) ==
-              answers(*structure.entry->make(work.options(structure.split)),
+              answers(*editable(structure.entry->make(work.options(structure.split))),
                       random_points(work.domain, 10, 1)));
     });
 }

@@ -6,6 +6,7 @@
 #include "contract/structures_under_test.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
+#include "editable_space.h"
 #include "measure/access_time.h"
 #include "metric/draw.h"
 
@@ -89,11 +90,11 @@ double least_length(const Work& work) {
 }
 
 /// Deep enough for lengths of 1e-12 (2^42 of them in the domain), and grids of 17^3 cells.
-std::unique_ptr<ControlSpace> inserted(const Work& work, const Structure& structure) {
+std::unique_ptr<EditableSpace> inserted(const Work& work, const Structure& structure) {
     SpaceOptions options = work.options(structure.split);
     options.octree_depth = 44;
-    if (structure.entry->has_voxels) options.voxel = 0.12;
-    auto space = structure.entry->make(options);
+    if (structure.entry->has<VoxelSize>()) options.voxel = 0.12;
+    auto space = editable(structure.entry->make(options));
     space->insert(work.sources);
     return space;
 }
@@ -137,7 +138,7 @@ double worst_at_sources(const ControlSpace& space, const std::vector<PointSource
     double worst = 0;
     for (const PointSource& s : sources) {
         const Metric held = sample_at(space, s.position);
-        const Vector to_centre = s.position - space.element_at(s.position).centre();
+        const Vector to_centre = s.position - space.cell_at(s.position).value().centre();
         const double growth = order == 2 ? 1 + (g - 1) * metric_length(s.metric, to_centre) : 1;
         worst = std::max(worst, nonconformity(held, intersection(held, growth * s.metric)));
     }
@@ -162,7 +163,7 @@ TEST_CASE("bad sources: answers stay metrics, sources are met, gradation holds")
         CHECK(bad_answers(*space, x, smallest, largest, order) == 0);
         CHECK(worst_at_sources(*space, work.sources, order) < 0.2);
         // Three sources cannot stand for all tensors that cut a leaf.
-        if (structure.entry->takes_metrics || is_isotropic_work(work)) {
+        if (keeps_values(*structure.entry) || is_isotropic_work(work)) {
             CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
         }
     }

@@ -4,6 +4,7 @@
 #include "contract/structures_under_test.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/sources/scattered_surfaces.h"
+#include "editable_space.h"
 #include "measure/access_time.h"
 
 using namespace controlspace;
@@ -11,10 +12,10 @@ using namespace controlspace;
 namespace {
 
 // A grid as fine as 50:1 asks for would take gigabytes.
-std::unique_ptr<ControlSpace> made(const Structure& structure, const Work& work) {
+std::unique_ptr<EditableSpace> made(const Structure& structure, const Work& work) {
     SpaceOptions options = work.options(structure.split);
     options.voxel = 0.2;
-    return structure.entry->make(options);
+    return editable(structure.entry->make(options));
 }
 
 // Largest ratio of a length that `space` answers at a source to what the source asks for.
@@ -49,7 +50,7 @@ TEST_CASE("irregular sources of 50:1 give metrics everywhere, and are met at the
         // A δ of 0.2, which insertion lets pass, is a length 1.56 times as long in one direction.
         // Quadratic interpolation may leave the range of its nodes, and leaves that keep three
         // sources may hold more: they have no such bound at this anisotropy.
-        if (structure.entry->order < 2 && structure.entry->takes_metrics) {
+        if (structure.entry->order < 2 && keeps_values(*structure.entry)) {
             CHECK(largest_growth(*space, work.sources) <= 1.56);
         }
     }

@@ -6,6 +6,7 @@
 
 #include "contract/structures_under_test.h"
 #include "controlspace/metric/nonconformity.h"
+#include "editable_space.h"
 #include "measure/access_time.h"
 
 using namespace controlspace;
@@ -61,10 +62,10 @@ std::vector<Metric> node_metrics(const ControlSpace& space) {
     return space.control_nodes(Neighbourhood::faces).metrics;
 }
 
-std::unique_ptr<ControlSpace> all_at_once(const Structure& structure,
-                                          const std::vector<Batch>& batches,
-                                          const GradationOptions& gradation) {
-    auto space = structure.entry->make(later(structure.split));
+std::unique_ptr<EditableSpace> all_at_once(const Structure& structure,
+                                           const std::vector<Batch>& batches,
+                                           const GradationOptions& gradation) {
+    auto space = editable(structure.entry->make(later(structure.split)));
     for (const Batch& batch : batches) space->insert(batch);
     space->grade(gradation);
     return space;
@@ -74,16 +75,17 @@ std::unique_ptr<ControlSpace> all_at_once(const Structure& structure,
 template <class Check>
 void for_each_exact_structure(Check&& check) {
     for (const Structure& structure : all_structures()) {
-        if (!structure.entry->takes_metrics) continue;
+        if (!keeps_values(*structure.entry)) continue;
         CAPTURE(structure.name());
         check(structure);
     }
 }
 
 // Batch after batch, graded each time.
-std::unique_ptr<ControlSpace> in_turn(const Structure& structure, const std::vector<Batch>& batches,
-                                      const GradationOptions& gradation) {
-    auto space = structure.entry->make(later(structure.split));
+std::unique_ptr<EditableSpace> in_turn(const Structure& structure,
+                                       const std::vector<Batch>& batches,
+                                       const GradationOptions& gradation) {
+    auto space = editable(structure.entry->make(later(structure.split)));
     for (const Batch& batch : batches) {
         space->insert(batch);
         space->grade(gradation);
@@ -136,8 +138,8 @@ TEST_CASE("what makes no difference is not followed; what does is followed alone
     const Batch fine = scattered(100, 5);
     const Batch near = scattered(3, 6);
     for_each_exact_structure([&](const Structure& structure) {
-        if (structure.entry->graded_from_start) return;
-        const auto space = structure.entry->make(later(structure.split));
+        if (is_direct(*structure.entry)) return;
+        const auto space = editable(structure.entry->make(later(structure.split)));
         space->insert(fine);
         CHECK_FALSE(space->grade({}).visits.has_value());
         const std::vector<Metric> before = answers(*space);
@@ -150,7 +152,8 @@ TEST_CASE("what makes no difference is not followed; what does is followed alone
         CHECK(space->grade({}).visits == 0u);
         CHECK(answers(*space) == before);
 
-        if (structure.entry->has_levels) return;  // graded anew, as other voxels may be wanted
+        if (structure.entry->has<VoxelLevels>())
+            return;  // graded anew, as other voxels may be wanted
         space->insert(near);
         const GradationReport report = space->grade({});
         const std::size_t nodes = space->footprint().control_nodes;
@@ -218,7 +221,7 @@ TEST_CASE("between insertion and gradation: the source is met, and nothing grows
 
 TEST_CASE("an assigned field is what is asked for from then on") {
     for_each_exact_structure([&](const Structure& structure) {
-        if (structure.entry->graded_from_start) return;
+        if (is_direct(*structure.entry)) return;
         const auto space = all_at_once(structure, {scattered(100, 15)}, {});
         std::vector<Metric> metrics = node_metrics(*space);
         std::fill(metrics.begin(), metrics.end(), Metric::isotropic(0.5));
@@ -236,7 +239,7 @@ TEST_CASE("an assigned field is what is asked for from then on") {
 TEST_CASE("structures that keep sources: close to all at once") {
     const std::vector<Batch> batches{scattered(150, 1), scattered(8, 11), scattered(60, 31)};
     for (const Structure& structure : all_structures()) {
-        if (structure.entry->takes_metrics) continue;
+        if (keeps_values(*structure.entry)) continue;
         CAPTURE(structure.name());
         const std::vector<Metric> once = answers(*all_at_once(structure, batches, {}));
         const std::vector<Metric> turns = answers(*in_turn(structure, batches, {}));

@@ -4,6 +4,7 @@
 #include "contract/structures_under_test.h"
 #include "controlspace/error.h"
 #include "controlspace/space/control_space_file.h"
+#include "editable_space.h"
 #include "measure/access_time.h"
 #include "sources/files.h"
 
@@ -22,7 +23,7 @@ std::vector<Metric> answers(const ControlSpace& space) {
 std::vector<Structure> whole_catalogue() {
     std::vector<Structure> all = all_structures();
     for (const CatalogueEntry& entry : structures()) {
-        if (entry.rounding > 1e-12) all.push_back({&entry, SplitRule::middle});
+        if (is_rounding(entry)) all.push_back({&entry, SplitRule::middle});
     }
     return all;
 }
@@ -38,10 +39,11 @@ void check_alike(const Footprint& loaded, const Footprint& saved) {
 }
 
 // Saves, loads, and checks that both are alike, and stay so with another source.
-void check_saving(ControlSpace& space, const ScratchDirectory& scratch) {
+void check_saving(EditableSpace& space, const ScratchDirectory& scratch) {
     save_control_space(scratch / "field.ctrl", space);
-    const auto loaded = load_control_space(scratch / "field.ctrl", structures());
-    CHECK(loaded->making()->structure == space.making()->structure);
+    const auto loaded = load_editable(scratch / "field.ctrl", structures());
+    CHECK(recipe_of(loaded->built())->structure == recipe_of(space.built())->structure);
+    CHECK(answers(*load_control_space(scratch / "field.ctrl", structures())) == answers(space));
     CHECK(checksum(answers(*loaded)) == checksum(answers(space)));
     check_alike(loaded->footprint(), space.footprint());
     save_control_space(scratch / "again.ctrl", *loaded);
@@ -75,7 +77,7 @@ TEST_CASE("saved between a later source and the gradation that it waits for") {
         CAPTURE(structure.name());
         SpaceOptions options = work.options(structure.split);
         options.takes_later_sources = true;
-        const auto space = structure.entry->make(options);
+        const auto space = editable(structure.entry->make(options));
         space->insert(work.sources);
         space->grade({});
         space->insert({Point(-0.3, 0.5, 0.2), Metric::isotropic(0.05)});
@@ -88,21 +90,21 @@ TEST_CASE("a frozen control space is frozen again after loading, with the same b
     const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
     const Precision precision = GENERATE(Precision::doubles, Precision::floats);
     for (const Structure& structure : whole_catalogue()) {
-        if (!structure.entry->can_freeze) continue;
+        if (!structure.entry->has<CompactForm>()) continue;
         CAPTURE(structure.name(), work.name, static_cast<int>(precision));
-        const auto frozen = work.graded(structure)->freeze(precision);
+        const auto frozen = work.graded(structure)->compact(precision);
         save_control_space(scratch / "frozen.ctrl", *frozen);
         const auto loaded = load_control_space(scratch / "frozen.ctrl", structures());
-        CHECK(loaded->making()->frozen == precision);
+        CHECK(recipe_of(*loaded)->precision == precision);
         CHECK(answers(*loaded) == answers(*frozen));
         const auto nodes = [](const ControlSpace& space) {
-            return space.control_nodes(Neighbourhood::faces);
+            return control_nodes(space, Neighbourhood::faces).value();
         };
         CHECK(positions(nodes(*loaded).graph) == positions(nodes(*frozen).graph));
         CHECK(nodes(*loaded).metrics == nodes(*frozen).metrics);
         check_alike(loaded->footprint(), frozen->footprint());
         CHECK(loaded->footprint().bytes_total() == frozen->footprint().bytes_total());
-        CHECK_THROWS_AS(loaded->insert(later), InputError);
+        CHECK_THROWS_AS(load_builder(scratch / "frozen.ctrl", structures()), InputError);
         save_control_space(scratch / "again.ctrl", *loaded);
         CHECK(file_text(scratch / "again.ctrl") == file_text(scratch / "frozen.ctrl"));
     }
@@ -114,8 +116,8 @@ TEST_CASE("a new control space, an adapted and a pruned one can be saved too") {
     for (const Structure& structure : whole_catalogue()) {
         CAPTURE(structure.name());
         SpaceOptions options = work.options(structure.split);
-        if (structure.entry->can_prune) options.prune_delta = 0.05;
-        const auto space = structure.entry->make(options);
+        if (structure.entry->has<Pruning>()) options.prune_delta = 0.05;
+        const auto space = editable(structure.entry->make(options));
         save_control_space(scratch / "new.ctrl", *space);
         const auto loaded = load_control_space(scratch / "new.ctrl", structures());
         CHECK(answers(*loaded) == answers(*space));

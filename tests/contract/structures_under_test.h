@@ -8,6 +8,7 @@
 #include "controlspace/gradation/grade.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
+#include "editable_space.h"
 
 namespace controlspace {
 
@@ -18,7 +19,7 @@ struct Structure {
 
     std::string name() const {
         static const char* const rules[] = {" s_L", " s_G", " s_M"};
-        return entry->id + (entry->has_split_rules ? rules[static_cast<int>(split)] : "");
+        return entry->id + (entry->has<SplitRules>() ? rules[static_cast<int>(split)] : "");
     }
 };
 
@@ -26,9 +27,9 @@ struct Structure {
 inline std::vector<Structure> all_structures() {
     std::vector<Structure> all;
     for (const CatalogueEntry& entry : structures()) {
-        if (entry.rounding > 1e-12) continue;
+        if (is_rounding(entry)) continue;
         all.push_back({&entry, SplitRule::middle});
-        if (!entry.has_split_rules) continue;
+        if (!entry.has<SplitRules>()) continue;
         all.push_back({&entry, SplitRule::golden});
         all.push_back({&entry, SplitRule::metric});
     }
@@ -48,13 +49,13 @@ struct Work {
                 .kd_depth = 200,
                 .finest_length = finest_length(sources)};
     }
-    std::unique_ptr<ControlSpace> inserted(const Structure& structure) const {
-        auto space = structure.entry->make(options(structure.split));
+    std::unique_ptr<EditableSpace> inserted(const Structure& structure) const {
+        auto space = editable(structure.entry->make(options(structure.split)));
         space->insert(sources);
         return space;
     }
-    std::unique_ptr<ControlSpace> graded(const Structure& structure,
-                                         const GradationOptions& gradation = {}) const {
+    std::unique_ptr<EditableSpace> graded(const Structure& structure,
+                                          const GradationOptions& gradation = {}) const {
         auto space = inserted(structure);
         space->grade(gradation);
         return space;

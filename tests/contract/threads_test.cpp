@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "contract/structures_under_test.h"
+#include "editable_space.h"
 #include "measure/access_time.h"
 
 using namespace controlspace;
@@ -23,7 +24,7 @@ Answers answers(const Structure& structure, const Work& work, const GradationOpt
                                     static_cast<std::size_t>(threads));
     Answers a;
     tbb::task_arena(threads).execute([&] {
-        const auto space = structure.entry->make(work.options(structure.split));
+        const auto space = editable(structure.entry->make(work.options(structure.split)));
         a.insertion = space->insert(work.sources);
         a.gradation = space->grade(options);
         a.nodes = space->control_nodes(Neighbourhood::faces).metrics;

@@ -25,7 +25,7 @@ TEST_CASE("the elements of every structure fill its domain, each once") {
     double volume = 0;
     for (const Box& element : elements) {
         volume += volume_of(element);
-        REQUIRE(space->element_at(element.centre()) == element);
+        REQUIRE(space->cell_at(element.centre()).value() == element);
     }
     // Cells of a grid may reach beyond the domain.
     CHECK(volume >= Approx(volume_of(work.domain)));

@@ -5,6 +5,7 @@
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/io/write_vdb.h"
 #include "controlspace/metric/nonconformity.h"
+#include "editable_space.h"
 #include "export/fixtures.h"
 
 using namespace controlspace;
@@ -84,7 +85,7 @@ TEST_CASE("every structure comes back as it answered") {
     std::vector<Metric> wanted(points.size());
     for (const CatalogueEntry& entry : structures()) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = two_cube, .finest_length = 0.1});
+        const auto space = editable(entry.make({.domain = two_cube, .finest_length = 0.1}));
         space->insert(std::span<const PointSource>(sources));
         space->grade({});
         space->sample(points, wanted);

@@ -25,6 +25,7 @@
 #include "controlspace/sources/riemannian.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
+#include "editable_space.h"
 #include "io/vtk/elements.h"
 #include "io/vtk/vtk_fields.h"
 #include "sources/files.h"
@@ -44,13 +45,13 @@ const CatalogueEntry& tree_named(const std::string& id) {
 }
 
 /// Filled with tensors whose numbers all differ.
-std::unique_ptr<ControlSpace> filled(const std::string& id) {
+std::unique_ptr<EditableSpace> filled(const std::string& id) {
     std::vector<PointSource> sources = sample_sphere({.h = 0.2, .rho = 2});
     for (PointSource& s : sources) {
         const Point& p = s.position;
         s.metric = {0.3 + 0.1 * p.x(), 0.4 + 0.1 * p.y(), 0.5, 0.02 + 0.01 * p.x(), -0.03, 0.05};
     }
-    auto space = tree_named(id).make({.domain = domain, .finest_length = 0.15});
+    auto space = editable(tree_named(id).make({.domain = domain, .finest_length = 0.15}));
     space->insert(sources);
     return space;
 }
@@ -180,7 +181,7 @@ TEST_CASE("an octree is a hyper tree grid with the same leaves") {
         ++leaves;
         Point centre;
         cursor->GetPoint(centre.data());
-        REQUIRE(space->element_at(centre).centre().isApprox(centre, 1e-12));
+        REQUIRE(space->cell_at(centre).value().centre().isApprox(centre, 1e-12));
         REQUIRE(is_riemannian_of(tensor_at(*grid.GetCellData(), cursor->GetGlobalNodeIndex()),
                                  sample_at(*space, centre)));
     };

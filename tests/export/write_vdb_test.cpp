@@ -12,6 +12,7 @@
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/io/metric_grids.h"
 #include "controlspace/metric/nonconformity.h"
+#include "editable_space.h"
 #include "export/fixtures.h"
 
 using namespace controlspace;
@@ -199,7 +200,7 @@ TEST_CASE("every structure can be written") {
                                    {{-0.5, 0, 0.3}, Metric{0.2, 0.3, 0.4, 0.01, 0.02, 0.03}}};
     for (const CatalogueEntry& entry : structures()) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = two_cube, .finest_length = 0.1});
+        const auto space = editable(entry.make({.domain = two_cube, .finest_length = 0.1}));
         space->insert(std::span<const PointSource>(sources));
         space->grade({});
         const fs::path path = folder.path() / "space.vdb";

@@ -16,13 +16,7 @@ public:
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = f_(x[i]);
     }
-    Insertion insert(const PointSource&) override { return Insertion::already_met; }
-    InsertionReport insert(std::span<const PointSource>) override { return {}; }
-    ControlNodes control_nodes(Neighbourhood) const override { return {}; }
-    void assign(std::span<const Metric>) override {}
-    const Box& domain() const override { return domain_; }
-    Box element_at(const Point&) const override { return domain_; }
-    Footprint footprint() const override { return {}; }
+    Box domain() const override { return domain_; }
 
 private:
     Function f_;

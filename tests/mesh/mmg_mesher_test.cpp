@@ -8,6 +8,7 @@
 
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/mesh/conformity.h"
+#include "editable_space.h"
 #include "mesh/fixtures.h"
 #include "sources/files.h"
 

@@ -11,6 +11,7 @@
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/sampled_surfaces.h"
+#include "editable_space.h"
 #include "measure/access_time.h"
 
 using namespace controlspace;
@@ -75,7 +76,7 @@ TEST_CASE("trees keep the target at places they have not seen; a closer one take
             CAPTURE(entry.id, sources.size());
             std::size_t leaves = 0;
             for (const double target : {1.0, 0.3}) {
-                const auto space = entry.make({.domain = domain});
+                const auto space = editable(entry.make({.domain = domain}));
                 const AdaptationReport report = space->adapt({sources, nullptr, g, target});
                 CHECK(report.met);
                 CHECK(report.reached <= target);
@@ -95,7 +96,7 @@ TEST_CASE("sphere at a tenth: the paper's trees and the anchored ones, on 101^3 
     const auto adapted = [&](const CatalogueEntry& entry, double most_megabytes,
                              double target = 0.1) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = domain});
+        const auto space = editable(entry.make({.domain = domain}));
         const AdaptationReport report = space->adapt({sources, nullptr, g, target});
         CHECK(report.met);
         CHECK(space->footprint().bytes_total() <= static_cast<std::size_t>(most_megabytes * 1e6));
@@ -119,11 +120,11 @@ TEST_CASE("leaves of constants and of sources keep the target everywhere, as bou
         const auto field = exact_reference(sources, g, largest_metric(domain));
         const Probes probes = make_probes(*field, random_points(domain, 200000, 19));
         for (const CatalogueEntry& entry : trees()) {
-            const bool is_anchored = entry.group == "anchored";
+            const bool is_anchored = entry.family == "anchored";
             const bool is_constant = entry.id == "K_L" || entry.id == "K_oL" || entry.id == "K_oLB";
             if (!is_constant && !is_anchored) continue;
             CAPTURE(entry.id);
-            const auto space = entry.make({.domain = domain});
+            const auto space = editable(entry.make({.domain = domain}));
             const AdaptationReport report = space->adapt({sources, nullptr, g, 0.2});
             CHECK(report.met);
             const double seen = accuracy(*space, probes).max;
@@ -142,7 +143,7 @@ TEST_CASE("the same tree, whatever the number of threads") {
         std::vector<Metric> many(x.size());
         const auto fill = [&](std::size_t threads, std::span<Metric> out) {
             const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-            const auto space = entry.make({.domain = domain});
+            const auto space = editable(entry.make({.domain = domain}));
             const double reached = space->adapt({sources, nullptr, g, 0.2}).reached;
             space->sample(x, out);
             return reached;
@@ -156,7 +157,7 @@ TEST_CASE("a source too small to be seen from a leaf's own places is found") {
     const PointSource source{Point(0.31, 0.17, -0.43), Metric::isotropic(1e-4)};
     for (const CatalogueEntry& entry : trees()) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = domain});
+        const auto space = editable(entry.make({.domain = domain}));
         CHECK(space->adapt({{&source, 1}, nullptr, g, 0.1}).met);
         CHECK(nonconformity(sample_at(*space, source.position), source.metric) <= 0.1);
     }
@@ -165,7 +166,7 @@ TEST_CASE("a source too small to be seen from a leaf's own places is found") {
 TEST_CASE("without sources the root is enough") {
     for (const CatalogueEntry& entry : trees()) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = domain});
+        const auto space = editable(entry.make({.domain = domain}));
         CHECK(space->adapt({{}, nullptr, g, 0.1}).reached < 1e-12);
         CHECK(space->footprint().leaves == 1);
     }
@@ -175,13 +176,13 @@ TEST_CASE("a continuous source: vertices carry a linear field, anchored trees th
     const auto ramp = std::make_shared<Ramp>();
     for (const CatalogueEntry& entry : structures()) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = domain, .finest_length = 0.05});
+        const auto space = editable(entry.make({.domain = domain, .finest_length = 0.05}));
         const AdaptationReport report = space->adapt({{}, ramp, g, 0.05});
         const bool keeps_it = share_beyond(0.05, *space, *ramp) == 0;
         CHECK(report.met == keeps_it);
         // Sources alone make grids in levels finer.
-        CHECK((keeps_it || entry.has_levels));
-        if (entry.id == "K_V" || entry.id == "K_oV" || entry.group == "anchored") {
+        CHECK((keeps_it || entry.has<VoxelLevels>()));
+        if (entry.id == "K_V" || entry.id == "K_oV" || entry.family == "anchored") {
             CHECK(space->footprint().leaves == 1);
             CHECK(report.reached < 1e-12);
         }
@@ -194,7 +195,7 @@ TEST_CASE("mixture: sources and a continuous one, each where it is smaller; inse
     const PointSource later{Point(-0.4, -0.3, 0.6), Metric::isotropic(0.03)};
     for (const CatalogueEntry& entry : trees()) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = domain});
+        const auto space = editable(entry.make({.domain = domain}));
         CHECK(space->adapt({{&source, 1}, ramp, g, 0.1}).met);
         for (const Point& x : random_points(domain, 500, 5)) {
             const double cone = 0.02 + (g - 1) * (x - source.position).norm();
@@ -211,7 +212,8 @@ TEST_CASE("a target out of reach is told, with what was reached") {
     const std::vector<PointSource> sources = sample_sphere({.h = 0.06});
     for (const CatalogueEntry& entry : {tree_catalogue()[0], tree_catalogue()[3]}) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = domain, .kd_depth = 6, .octree_depth = 2});
+        const auto space =
+            editable(entry.make({.domain = domain, .kd_depth = 6, .octree_depth = 2}));
         const AdaptationReport report = space->adapt({sources, nullptr, g, 0.1});
         CHECK_FALSE(report.met);
         CHECK(report.reached > 0.1);
@@ -220,17 +222,17 @@ TEST_CASE("a target out of reach is told, with what was reached") {
     }
     for (const CatalogueEntry& entry : structures()) {
         if (entry.id != "uniform-nearest") continue;
-        const auto space = entry.make({.domain = domain, .finest_length = 0.5});
+        const auto space = editable(entry.make({.domain = domain, .finest_length = 0.5}));
         const AdaptationReport report = space->adapt({sources, nullptr, g, 0.1});
         CHECK_FALSE(report.met);
         CHECK(report.shortfall.find("voxels") != std::string::npos);
     }
-    const auto small = tree_catalogue()[3].make({.domain = domain, .max_bytes = 1000000});
+    const auto small = editable(tree_catalogue()[3].make({.domain = domain, .max_bytes = 1000000}));
     CHECK_THROWS_AS(small->adapt({sources, nullptr, g, 0.01}), InputError);
 }
 
 TEST_CASE("bad goals are refused") {
-    const auto space = tree_catalogue()[0].make({.domain = domain});
+    const auto space = editable(tree_catalogue()[0].make({.domain = domain}));
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const double target : {0.0, -1.0, nan}) {
         CHECK_THROWS_AS(space->adapt({{}, nullptr, g, target}), InputError);

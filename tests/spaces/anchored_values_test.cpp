@@ -6,6 +6,7 @@
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
+#include "editable_space.h"
 
 using namespace controlspace;
 
@@ -20,7 +21,7 @@ TEST_CASE("one source: its cone everywhere, to rounding, where leaf values give 
     const PointSource source{Point(0.3, -0.2, 0.1), Metric::isotropic(0.05)};
     for (const CatalogueEntry& entry : anchored_catalogue()) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = domain});
+        const auto space = editable(entry.make({.domain = domain}));
         space->insert(source);
         space->grade({});
         for (const Point& x : cell_centres(domain, 9)) {
@@ -34,7 +35,7 @@ TEST_CASE("one tensor: its cone everywhere") {
     const PointSource source{Point(0.3, -0.2, 0.1), {0.1, 0.3, 0.2, 0.02, -0.03, 0.05}};
     for (const CatalogueEntry& entry : anchored_catalogue()) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = domain});
+        const auto space = editable(entry.make({.domain = domain}));
         space->insert(source);
         space->grade({});
         const Metric largest = largest_metric(domain);
@@ -51,11 +52,11 @@ TEST_CASE("sphere: nearer to the exact field than the other trees, with fewer by
     const auto field = exact_reference(sources, g, largest_metric(domain));
     const Probes coarse = make_probes(*field, cell_centres(domain, 30));
     const Probes fine = make_probes(*field, cell_centres(domain, 101));
-    const auto k_l = tree_catalogue()[0].make({.domain = domain});
+    const auto k_l = editable(tree_catalogue()[0].make({.domain = domain}));
     k_l->insert(sources);
     for (const CatalogueEntry& entry : anchored_catalogue()) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = domain});
+        const auto space = editable(entry.make({.domain = domain}));
         space->insert(sources);
         const GradationReport report = space->grade({});
         CHECK(accuracy(*space, coarse).max <= 0.10);
@@ -78,7 +79,7 @@ TEST_CASE("more sources than anchors at one place: all are met") {
     }
     for (const CatalogueEntry& entry : anchored_catalogue()) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = domain});
+        const auto space = editable(entry.make({.domain = domain}));
         space->insert(sources);
         for (const PointSource& s : sources) {
             const Metric held = sample_at(*space, s.position);

@@ -13,6 +13,7 @@
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "damaged_files.h"
+#include "editable_space.h"
 #include "sources/files.h"
 
 using namespace controlspace;
@@ -22,10 +23,10 @@ namespace {
 
 const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
 
-std::unique_ptr<ControlSpace> small_tree(std::string_view id) {
+std::unique_ptr<EditableSpace> small_tree(std::string_view id) {
     for (const CatalogueEntry& entry : structures()) {
         if (entry.id != id) continue;
-        auto space = entry.make({.domain = domain, .finest_length = 0.1});
+        auto space = editable(entry.make({.domain = domain, .finest_length = 0.1}));
         space->insert({Point(0.3, 0.2, 0.1), Metric::isotropic(0.1)});
         space->insert({Point(-0.3, 0.2, 0.1), {0.1, 0.2, 0.3, 0.01, 0.02, 0.03}});
         space->grade({});
@@ -104,7 +105,7 @@ TEST_CASE("files of control spaces: what is refused, and why") {
     std::vector<CatalogueEntry> octrees(structures().begin() + 3, structures().begin() + 6);
     CHECK_THAT(error_of([&] { load_control_space(scratch / "field.ctrl", octrees); }),
                Contains("'K_V', which is not known"));
-    const auto bare = structures()[0].construct({.domain = domain});
+    const auto bare = editable(structures()[0].construct({.domain = domain}));
     CHECK_THAT(error_of([&] { save_control_space(scratch / "bare.ctrl", *bare); }),
                Contains("an entry of the catalogue"));
 }
@@ -117,7 +118,7 @@ TEST_CASE("forged files end in an error or in metrics, never in a crash or in mu
         std::ofstream(file, std::ios::binary) << bytes;
         sample_at(*load_control_space(file, structures()), Point(0.1, 0.2, 0.3));
     };
-    const auto check = [&](const ControlSpace& space) {
+    const auto check = [&](const auto& space) {
         save_control_space(scratch / "field.ctrl", space);
         // LZ4 takes 256 equal bytes for one.
         check_damaged_files(scratch.path(), "forged.ctrl", file_text(scratch / "field.ctrl"), 2000,
@@ -127,19 +128,19 @@ TEST_CASE("forged files end in an error or in metrics, never in a crash or in mu
         CAPTURE(entry.id);
         const auto space = small_tree(entry.id);
         check(*space);
-        if (entry.can_freeze) check(*space->freeze(Precision::floats));
+        if (entry.has<CompactForm>()) check(*space->compact(Precision::floats));
     }
 }
 
 TEST_CASE("files are the same to the bit however many threads there are, and read by any number") {
     const ScratchDirectory scratch("ctrl");
-    const auto space = structures()[3].make({.domain = domain, .l_min = 1});
+    const auto space = editable(structures()[3].make({.domain = domain, .l_min = 1}));
     space->insert(sample_sphere({.rho = 0.5}));
     REQUIRE(space->control_nodes(Neighbourhood::faces).metrics.size() > 50'000);  // some ten chunks
     const auto all_threads = [](std::size_t threads) {
         return tbb::global_control(tbb::global_control::max_allowed_parallelism, threads);
     };
-    const auto saved_by = [&](const ControlSpace& saved, const char* name) {
+    const auto saved_by = [&](const auto& saved, const char* name) {
         save_control_space(scratch / name, saved);
         return file_text(scratch / name);
     };

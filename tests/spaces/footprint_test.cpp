@@ -6,13 +6,14 @@
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
 #include "counting_allocator.h"
+#include "editable_space.h"
 
 using namespace controlspace;
 
 TEST_CASE("the footprint of a tree is what it has allocated") {
     const std::vector<PointSource> sources = sample_sphere({.h = 0.05, .rho = 2});
     const auto filled = [&](const CatalogueEntry& entry) {
-        auto space = entry.make({.domain = {Point::Constant(-1), Point::Constant(1)}});
+        auto space = editable(entry.make({.domain = {Point::Constant(-1), Point::Constant(1)}}));
         space->insert(sources);
         space->grade({});
         return space;
@@ -41,7 +42,7 @@ TEST_CASE("creation takes at most two and a half times the memory that a tree en
         CAPTURE(entry.id);
         const std::size_t before = live_bytes();
         reset_peak_bytes();
-        auto space = entry.make({.domain = {Point::Constant(-1), Point::Constant(1)}});
+        auto space = editable(entry.make({.domain = {Point::Constant(-1), Point::Constant(1)}}));
         space->insert(sources);
         const std::size_t inserting = peak_bytes() - before;
         reset_peak_bytes();
@@ -58,8 +59,8 @@ TEST_CASE("a tree that outgrows the memory cap stops below it, with what would h
     constexpr std::size_t cap = 8'000'000;
     for (const CatalogueEntry& entry : tree_catalogue()) {
         CAPTURE(entry.id);
-        const auto space = entry.make(
-            {.domain = {Point::Constant(-1), Point::Constant(1)}, .l_min = 0.1, .max_bytes = cap});
+        const auto space = editable(entry.make(
+            {.domain = {Point::Constant(-1), Point::Constant(1)}, .l_min = 0.1, .max_bytes = cap}));
         const std::size_t before = live_bytes();
         reset_peak_bytes();
         CHECK_THROWS_WITH(space->insert(sources),
@@ -77,14 +78,14 @@ TEST_CASE("the memory cap holds for gradation too") {
     for (const CatalogueEntry& entry : tree_catalogue()) {
         CAPTURE(entry.id);
         // The smallest cap, in steps of 10 %, that takes the sources and their gradation.
-        std::unique_ptr<ControlSpace> space;
+        std::unique_ptr<EditableSpace> space;
         std::size_t cap = 1'000'000;
         std::size_t before = 0;
         while (!space) {
             cap += cap / 10;
             before = live_bytes();
-            space =
-                entry.make({.domain = {Point::Constant(-1), Point::Constant(1)}, .max_bytes = cap});
+            space = editable(entry.make(
+                {.domain = {Point::Constant(-1), Point::Constant(1)}, .max_bytes = cap}));
             try {
                 space->insert(sources);
                 reset_peak_bytes();

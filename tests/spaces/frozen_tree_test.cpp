@@ -11,6 +11,7 @@
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
 #include "counting_allocator.h"
+#include "editable_space.h"
 #include "geometry/random_fractions.h"
 #include "measure/access_time.h"
 
@@ -25,8 +26,8 @@ struct TreeUnderTest {
     const CatalogueEntry* entry;
     SplitRule split;
 
-    std::unique_ptr<ControlSpace> graded(const std::vector<PointSource>& sources) const {
-        auto space = entry->make({.domain = domain, .split = split});
+    std::unique_ptr<EditableSpace> graded(const std::vector<PointSource>& sources) const {
+        auto space = editable(entry->make({.domain = domain, .split = split}));
         space->insert(sources);
         space->grade({});
         return space;
@@ -37,7 +38,7 @@ std::vector<TreeUnderTest> trees() {
     std::vector<TreeUnderTest> all;
     for (const CatalogueEntry& entry : tree_catalogue()) {
         all.push_back({&entry, SplitRule::middle});
-        if (!entry.has_split_rules) continue;
+        if (!entry.has<SplitRules>()) continue;
         all.push_back({&entry, SplitRule::golden});
         all.push_back({&entry, SplitRule::metric});
     }
@@ -74,8 +75,8 @@ TEST_CASE("frozen with doubles, a tree answers the same bits; with floats, to 1e
         for (const TreeUnderTest& tree : trees()) {
             CAPTURE(tree.entry->id, static_cast<int>(tree.split), s_n);
             const auto space = tree.graded(sources);
-            const auto doubles = space->freeze(Precision::doubles);
-            const auto floats = space->freeze(Precision::floats);
+            const auto doubles = space->compact(Precision::doubles);
+            const auto floats = space->compact(Precision::floats);
             const std::vector<Metric> expected = answers(*space, x);
             CHECK(checksum(answers(*doubles, x)) == checksum(expected));
             double most = 0;
@@ -87,8 +88,8 @@ TEST_CASE("frozen with doubles, a tree answers the same bits; with floats, to 1e
                 const Metric& b = expected[i];
                 most = std::max({most, apart(a.xx, b.xx), apart(a.yy, b.yy), apart(a.zz, b.zz),
                                  apart(a.xy, b.xy), apart(a.xz, b.xz), apart(a.yz, b.yz)});
-                REQUIRE(doubles->element_at(x[i]) == space->element_at(x[i]));
-                REQUIRE(floats->element_at(x[i]) == space->element_at(x[i]));
+                REQUIRE(doubles->cell_at(x[i]).value() == space->cell_at(x[i]).value());
+                REQUIRE(floats->cell_at(x[i]).value() == space->cell_at(x[i]).value());
             }
             CHECK(most > 0);
             // A metric is rounded by 6e-8; the quadratic's weights reach beyond 1.
@@ -116,7 +117,7 @@ TEST_CASE("frozen trees have the same control nodes and links as before") {
     for (const TreeUnderTest& tree : trees()) {
         CAPTURE(tree.entry->id, static_cast<int>(tree.split));
         const auto space = tree.graded(sources);
-        const auto frozen = space->freeze(Precision::doubles);
+        const auto frozen = space->compact(Precision::doubles);
         for (const auto neighbourhood : {Neighbourhood::faces, Neighbourhood::all}) {
             CHECK(entered(*frozen, neighbourhood) == entered(*space, neighbourhood));
         }
@@ -131,7 +132,7 @@ TEST_CASE("frozen trees are small, and their footprint is what they have allocat
         const Footprint full = space->footprint();
         for (const Precision precision : {Precision::doubles, Precision::floats}) {
             const std::size_t before = live_bytes();
-            const auto frozen = space->freeze(precision);
+            const auto frozen = space->compact(precision);
             const std::size_t allocated = live_bytes() - before;
             const Footprint footprint = frozen->footprint();
             CHECK(footprint.bytes_total() <= allocated);
@@ -149,7 +150,7 @@ TEST_CASE("frozen trees are small, and their footprint is what they have allocat
 
 TEST_CASE("a tree of one leaf is frozen like any other") {
     for (const CatalogueEntry& entry : tree_catalogue()) {
-        const auto frozen = entry.make({.domain = domain})->freeze(Precision::floats);
+        const auto frozen = editable(entry.make({.domain = domain}))->compact(Precision::floats);
         const double all = largest_metric(domain).xx;
         CHECK(sample_at(*frozen, Point(0.3, 0.1, 0.2)).xx == Approx(all).epsilon(1e-7));
     }
@@ -165,42 +166,28 @@ TEST_CASE("trees with more planes than 16 bits can number are frozen too") {
     }
     const CatalogueEntry& kd_vertices = tree_catalogue()[2];
     REQUIRE(kd_vertices.id == "K_V");
-    const auto space = kd_vertices.make({.domain = domain, .split = SplitRule::golden});
+    const auto space = editable(kd_vertices.make({.domain = domain, .split = SplitRule::golden}));
     space->insert(sources);
     // Hardly two cuts stand on one plane.
     REQUIRE(space->footprint().leaves > 3 * 80000);
-    const auto frozen = space->freeze(Precision::doubles);
+    const auto frozen = space->compact(Precision::doubles);
     const std::vector<Point> x = places();
     CHECK(checksum(answers(*frozen, x)) == checksum(answers(*space, x)));
 }
 
-TEST_CASE("a frozen tree refuses to be changed, and says what to do") {
-    for (const CatalogueEntry& entry : tree_catalogue()) {
-        const auto frozen = entry.make({.domain = domain})->freeze(Precision::doubles);
-        const PointSource source{Point::Zero(), Metric::isotropic(0.1)};
-        const auto hint = Contains("before freezing");
-        CHECK_THROWS_WITH(frozen->insert(source), hint);
-        CHECK_THROWS_WITH(frozen->insert({&source, 1}), hint);
-        CHECK_THROWS_WITH(frozen->grade({}), hint);
-        CHECK_THROWS_WITH(frozen->assign({}), hint);
-        CHECK_THROWS_WITH(frozen->adapt({{&source, 1}, nullptr, 1.25, 0.1}), hint);
-        CHECK_THROWS_AS(frozen->freeze(Precision::doubles), InputError);
-    }
-}
-
 TEST_CASE("what cannot be frozen is refused, with what would help") {
     const auto with = [](const Metric& metric) {
-        auto space = tree_catalogue()[3].make({.domain = domain, .octree_depth = 2});
+        auto space = editable(tree_catalogue()[3].make({.domain = domain, .octree_depth = 2}));
         space->insert(PointSource{Point::Zero(), metric});
         return space;
     };
     const Vector slanted = Vector(1, 2, 3).normalized();
     for (const Metric& bad : {layer_metric(slanted, 1e-6, 1), Metric::isotropic(1e-40)}) {
         const auto space = with(bad);
-        CHECK_THROWS_WITH(space->freeze(Precision::floats), Contains("freeze with doubles"));
-        CHECK_NOTHROW(space->freeze(Precision::doubles));
+        CHECK_THROWS_WITH(space->compact(Precision::floats), Contains("use doubles"));
+        CHECK_NOTHROW(space->compact(Precision::doubles));
     }
-    CHECK_NOTHROW(with(layer_metric(slanted, 1e-3, 1))->freeze(Precision::floats));
-    const auto anchored = anchored_catalogue()[0].make({.domain = domain});
-    CHECK_THROWS_WITH(anchored->freeze(Precision::doubles), Contains("choose a tree"));
+    CHECK_NOTHROW(with(layer_metric(slanted, 1e-3, 1))->compact(Precision::floats));
+    const auto anchored = editable(anchored_catalogue()[0].make({.domain = domain}));
+    CHECK_THROWS_WITH(anchored->compact(Precision::doubles), Contains("choose a tree"));
 }

@@ -10,6 +10,7 @@
 #include "controlspace/error.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
+#include "editable_space.h"
 #include "space/state.h"
 
 using namespace controlspace;
@@ -30,7 +31,7 @@ std::string at_once(const CatalogueEntry& entry, const SpaceOptions& options,
                                     static_cast<std::size_t>(threads));
     std::string state;
     tbb::task_arena(threads).execute([&] {
-        const auto space = entry.make(options);
+        const auto space = editable(entry.make(options));
         space->insert(sources);
         state = state_of(*space);
     });
@@ -70,15 +71,15 @@ TEST_CASE("many sources at once make the tree of one by one, whatever the number
         shuffled(sample_sphere({.h = 0.05, .s_a = 4, .s_n = 0.25, .rho = 2})), on_planes());
     const SplitRule split = GENERATE(SplitRule::middle, SplitRule::metric);
     for (const CatalogueEntry& entry : tree_catalogue()) {
-        if (split != SplitRule::middle && !entry.has_split_rules) continue;
+        if (split != SplitRule::middle && !entry.has<SplitRules>()) continue;
         CAPTURE(entry.id, sources.size(), static_cast<int>(split));
         const SpaceOptions options{.domain = domain, .split = split, .l_min = 0.7};
-        const auto one_by_one = entry.make(options);
+        const auto one_by_one = editable(entry.make(options));
         std::uint64_t inserted = 0;
         for (const PointSource& source : sources) {
             inserted += one_by_one->insert(source) == Insertion::inserted ? 1 : 0;
         }
-        const auto all = entry.make(options);
+        const auto all = editable(entry.make(options));
         CHECK(all->insert(sources).inserted == inserted);
         CHECK(all->footprint().depth == one_by_one->footprint().depth);
         for (const int threads : {1, 2, 3, 7}) {
@@ -98,7 +99,7 @@ TEST_CASE("a source that is not valid stops those after it alone, whatever their
     for (const CatalogueEntry& entry : tree_catalogue()) {
         CAPTURE(entry.id);
         const SpaceOptions options{.domain = domain};
-        const auto space = entry.make(options);
+        const auto space = editable(entry.make(options));
         CHECK_THROWS_WITH(space->insert(sources),
                           Catch::Contains("source " + std::to_string(bad) + " "));
         CHECK((state_of(*space) == at_once(entry, options, before, 1)));

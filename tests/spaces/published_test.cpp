@@ -7,6 +7,7 @@
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
+#include "editable_space.h"
 
 using namespace controlspace;
 
@@ -22,7 +23,7 @@ const CatalogueEntry& tree(const std::string& id) {
 }
 
 struct Built {
-    std::unique_ptr<ControlSpace> space;
+    std::unique_ptr<EditableSpace> space;
     InsertionReport inserted;
     Footprint footprint;
     double megabytes;  // in the paper's accounting
@@ -33,7 +34,7 @@ Built build(const std::string& id, SplitRule split, double rho, double tau) {
     std::vector<PointSource>& sources = spheres[rho];
     if (sources.empty()) sources = sample_sphere({.rho = rho});
     Built built;
-    built.space = tree(id).make({.domain = domain, .split = split, .l_min = tau});
+    built.space = editable(tree(id).make({.domain = domain, .split = split, .l_min = tau}));
     built.inserted = built.space->insert(sources);
     built.footprint = built.space->footprint();
     built.megabytes = static_cast<double>(*built.footprint.bytes_published) / 1e6;
@@ -41,7 +42,7 @@ Built build(const std::string& id, SplitRule split, double rho, double tau) {
 }
 
 // δ_R of the paper's Table 4: its law, its schedule and the reference that its runs used.
-Accuracy published_accuracy(ControlSpace& space) {
+Accuracy published_accuracy(EditableSpace& space) {
     space.grade({GradationLaw::mean_length, GradationSchedule::passes, 1.25});
     const auto reference = published_sphere_reference(0.8, 0.03, 1.25, domain.half_diagonal());
     return accuracy(space, make_probes(*reference, cell_centres(domain, 30)));

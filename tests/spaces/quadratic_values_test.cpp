@@ -6,6 +6,7 @@
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
+#include "editable_space.h"
 #include "measure/access_time.h"
 
 using namespace controlspace;
@@ -15,20 +16,20 @@ namespace {
 const Box domain{Point::Constant(-1), Point::Constant(1)};
 constexpr double ratio = 1.25;
 
-std::unique_ptr<ControlSpace> quadratic(SplitRule split) {
+std::unique_ptr<EditableSpace> quadratic(SplitRule split) {
     const CatalogueEntry& entry = tree_catalogue()[1];
     REQUIRE(entry.id == "K_Li");
-    return entry.make({.domain = domain, .split = split, .ratio = ratio});
+    return editable(entry.make({.domain = domain, .split = split, .ratio = ratio}));
 }
 
 // The metric of the leaf that holds `x`.
 Metric own_at(const ControlSpace& space, const Point& x) {
-    return sample_at(space, space.element_at(x).centre());
+    return sample_at(space, space.cell_at(x).value().centre());
 }
 
 // By what is known of single leaves alone, with tensors.
 Metric by_leaves(const ControlSpace& space, const Point& place) {
-    const Box box = space.element_at(place);
+    const Box box = space.cell_at(place).value();
     const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
     const Metric own = own_at(space, x);
     std::array<Metric, 6> across;
@@ -75,7 +76,7 @@ TEST_CASE("K_Li interpolates between the leaf and its neighbours, however they a
             check_answers(*space);
             space->grade({.ratio = ratio});
             check_answers(*space);
-            check_answers(*space->freeze(Precision::doubles));
+            check_answers(*space->compact(Precision::doubles));
             // Leaves are split once more; the first source is thin, the second is not.
             for (const double thin : {0.2, 1.0}) {
                 const Point p = thin < 1 ? Point(0.3, -0.2, 0.9) : Point(-0.7, 0.1, 0.1);
@@ -93,7 +94,7 @@ TEST_CASE("a source at a leaf's face is met by K_Li, before gradation and after"
     for (const Point& p : {Point(0, 0, 0), Point(1e-9, 0.3, -0.5), Point(-1, -1, -1)}) {
         const PointSource source{p, Metric::isotropic(0.01)};
         const Box domain{Point::Constant(-1), Point::Constant(1)};
-        const auto space = tree_catalogue()[1].make({.domain = domain});
+        const auto space = editable(tree_catalogue()[1].make({.domain = domain}));
         REQUIRE(tree_catalogue()[1].id == "K_Li");
         space->insert(source);
         // Along a leaf's half diagonal, at most sqrt(3) / 2 of its size, sizes grow by 0.25.

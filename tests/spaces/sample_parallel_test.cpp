@@ -7,6 +7,7 @@
 
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/sources/sampled_surfaces.h"
+#include "editable_space.h"
 #include "measure/access_time.h"
 
 using namespace controlspace;
@@ -20,7 +21,8 @@ TEST_CASE("a batch on many threads gets the bits of one thread, whatever its siz
     const std::vector<Point> x = random_points(domain, 10003, 1);
     for (const CatalogueEntry& entry : structures()) {
         CAPTURE(entry.id, threads);
-        auto space = entry.make({.domain = domain, .finest_length = finest_length(sources)});
+        auto space =
+            editable(entry.make({.domain = domain, .finest_length = finest_length(sources)}));
         space->insert(sources);
         space->grade({});
         std::vector<Metric> expected(x.size());

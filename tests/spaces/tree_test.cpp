@@ -5,6 +5,7 @@
 #include <set>
 
 #include "controlspace/metric/nonconformity.h"
+#include "editable_space.h"
 #include "trees/topology/face_pairs.h"
 #include "trees/values/quadratic_values.h"
 #include "trees/values/vertex_values.h"
@@ -117,7 +118,7 @@ TEST_CASE("vertices of leaves are shared: as many control nodes as distinct plac
         if (entry.order != 1) continue;
         for (const SplitRule split : {SplitRule::middle, SplitRule::golden, SplitRule::metric}) {
             CAPTURE(entry.id, static_cast<int>(split));
-            const auto space = entry.make({.domain = domain, .split = split});
+            const auto space = editable(entry.make({.domain = domain, .split = split}));
             space->insert(scattered(300, 4));
             const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
             const auto& graph = std::get<NodeGraph>(nodes.graph);
@@ -127,7 +128,7 @@ TEST_CASE("vertices of leaves are shared: as many control nodes as distinct plac
             CHECK(space->footprint().control_nodes == graph.size());
             // Every corner of every element that answers somewhere is one of them.
             for (const Point& x : places(500, 5)) {
-                const Box leaf = space->element_at(x);
+                const Box leaf = space->cell_at(x).value();
                 for (int i = 0; i < 8; ++i) {
                     const Point c = corner(leaf, i);
                     CHECK(distinct.count({c.x(), c.y(), c.z()}) == 1);
@@ -138,7 +139,7 @@ TEST_CASE("vertices of leaves are shared: as many control nodes as distinct plac
 }
 
 TEST_CASE("vertex neighbours are joined by an edge of a leaf: along one axis") {
-    const auto space = tree_catalogue()[2].make({.domain = domain});
+    const auto space = editable(tree_catalogue()[2].make({.domain = domain}));
     space->insert(scattered(200, 6));
     const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
     const auto& graph = std::get<NodeGraph>(nodes.graph);
@@ -185,7 +186,7 @@ TEMPLATE_TEST_CASE("with all neighbours, any two vertices of a leaf are neighbou
 }
 
 TEST_CASE("leaf neighbours: all across the faces, or the nearest across each") {
-    const auto space = tree_catalogue()[0].make({.domain = domain});
+    const auto space = editable(tree_catalogue()[0].make({.domain = domain}));
     space->insert(scattered(200, 7));
     const ControlNodes all = space->control_nodes(Neighbourhood::faces);
     const ControlNodes nearest = space->control_nodes(Neighbourhood::nearest_per_face);
@@ -221,14 +222,14 @@ TEST_CASE("K_oLB is balanced after every insertion; K_oL is not") {
         int largest = 0;
         for (NodeIndex i = 0; i < graph.size(); ++i) {
             graph.for_each_neighbour(i, [&](NodeIndex j) {
-                largest = std::max(largest, level_of(space.element_at(graph.position(j))) -
-                                                level_of(space.element_at(graph.position(i))));
+                largest = std::max(largest, level_of(space.cell_at(graph.position(j)).value()) -
+                                                level_of(space.cell_at(graph.position(i)).value()));
             });
         }
         return largest;
     };
-    const auto plain = tree_catalogue()[3].make({.domain = domain});
-    const auto balanced = tree_catalogue()[4].make({.domain = domain});
+    const auto plain = editable(tree_catalogue()[3].make({.domain = domain}));
+    const auto balanced = editable(tree_catalogue()[4].make({.domain = domain}));
     for (const PointSource& source : sources) {
         plain->insert(source);
         balanced->insert(source);
@@ -242,10 +243,10 @@ TEST_CASE("leaves at a source are no longer than l_min in its metric, and not mu
     for (const CatalogueEntry& entry : tree_catalogue()) {
         for (const double l_min : {1.0, 0.3}) {
             CAPTURE(entry.id, l_min);
-            const auto space = entry.make({.domain = domain, .l_min = l_min});
+            const auto space = editable(entry.make({.domain = domain, .l_min = l_min}));
             const PointSource source{Point(0.3, -0.2, 0.7), Metric::isotropic(0.05)};
             CHECK(space->insert(source) == Insertion::inserted);
-            const Vector edges = space->element_at(source.position).edges();
+            const Vector edges = space->cell_at(source.position).value().edges();
             CHECK(edges.maxCoeff() <= l_min * 0.05);
             CHECK(edges.minCoeff() > 0.25 * l_min * 0.05);
             // K_Li blends in the neighbours, which are still large: not met before gradation.
@@ -258,9 +259,10 @@ TEST_CASE("the depth limits are kept") {
     const PointSource tiny{Point(0.1, 0.2, 0.3), Metric::isotropic(1e-9)};
     for (const CatalogueEntry& entry : tree_catalogue()) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = domain, .kd_depth = 7, .octree_depth = 3});
+        const auto space =
+            editable(entry.make({.domain = domain, .kd_depth = 7, .octree_depth = 3}));
         space->insert(tiny);
-        CHECK(space->footprint().depth == (entry.has_split_rules ? 8 : 4));
+        CHECK(space->footprint().depth == (entry.has<SplitRules>() ? 8 : 4));
     }
 }
 
@@ -268,7 +270,8 @@ TEST_CASE("where floating point ends, splitting stops") {
     const Box small{Point::Constant(1), Point::Constant(1 + 1e-9)};
     for (const CatalogueEntry& entry : tree_catalogue()) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = small, .kd_depth = 200, .octree_depth = 60});
+        const auto space =
+            editable(entry.make({.domain = small, .kd_depth = 200, .octree_depth = 60}));
         CHECK(space->insert({small.centre(), Metric::isotropic(1e-30)}) == Insertion::inserted);
         CHECK(space->footprint().depth < 3 * 24);
     }
@@ -291,7 +294,7 @@ TEST_CASE("options out of range are refused by name") {
 TEST_CASE("sources that are no sources are refused, and leave the space as it was") {
     for (const CatalogueEntry& entry : tree_catalogue()) {
         CAPTURE(entry.id);
-        const auto space = entry.make({.domain = domain});
+        const auto space = editable(entry.make({.domain = domain}));
         const auto refuses = [&](const PointSource& source, const std::string& word) {
             CHECK_THROWS_WITH(space->insert(source), Catch::Contains(word));
         };

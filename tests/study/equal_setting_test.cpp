@@ -9,9 +9,9 @@ using namespace controlspace;
 
 namespace {
 
-const CatalogueEntry grid{.id = "grid", .description = "", .has_voxels = true};
+const CatalogueEntry grid{.id = "grid", .description = "", .capabilities = {VoxelSize()}};
 const CatalogueEntry levels{
-    .id = "levels", .description = "", .has_voxels = true, .has_levels = true, .can_prune = true};
+    .id = "levels", .description = "", .capabilities = {VoxelSize(), VoxelLevels(), Pruning()}};
 
 Case for_delta(double delta) {
     Case c;

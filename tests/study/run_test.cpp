@@ -40,14 +40,14 @@ std::vector<CatalogueEntry> catalogue_with_failures() {
     std::vector<CatalogueEntry> entries(trees.begin(), trees.end());
     CatalogueEntry broken = entries.front();
     broken.id = "broken";
-    broken.has_split_rules = false;
-    broken.construct = [](const SpaceOptions&) -> std::unique_ptr<ControlSpace> {
+    broken.capabilities.clear();
+    broken.construct = [](const SpaceOptions&) -> std::unique_ptr<ControlSpaceBuilder> {
         throw InputError("cannot be made");
     };
     entries.insert(entries.begin(), broken);
     CatalogueEntry greedy = broken;
     greedy.id = "greedy";
-    greedy.construct = [](const SpaceOptions&) -> std::unique_ptr<ControlSpace> {
+    greedy.construct = [](const SpaceOptions&) -> std::unique_ptr<ControlSpaceBuilder> {
         throw std::bad_alloc();
     };
     entries.push_back(greedy);

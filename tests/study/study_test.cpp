@@ -51,12 +51,10 @@ TEST_CASE("splits multiply kd-trees only, depths those that have them") {
 
 TEST_CASE("voxels, levels and pruning multiply the grids that have them") {
     std::vector<CatalogueEntry> catalogue = catalogue_with_a_grid();
-    catalogue.push_back({.id = "flat", .description = "", .has_voxels = true});
+    catalogue.push_back({.id = "flat", .description = "", .capabilities = {VoxelSize()}});
     catalogue.push_back({.id = "levels",
                          .description = "",
-                         .has_voxels = true,
-                         .has_levels = true,
-                         .can_prune = true,
+                         .capabilities = {VoxelSize(), VoxelLevels(), Pruning()},
                          .former_id = "stack"});
     Study study = study_of({"K_oL", "grid", "flat", "stack"});
     study.runs[0].voxel = {0, 0.5};
@@ -85,8 +83,8 @@ TEST_CASE("voxels, levels and pruning multiply the grids that have them") {
 
 TEST_CASE("goals that voxels are chosen for multiply grids, node values what holds metrics") {
     std::vector<CatalogueEntry> catalogue = catalogue_with_a_grid();
-    catalogue.push_back({.id = "flat", .description = "", .has_voxels = true});
-    catalogue.push_back({.id = "keeper", .description = "", .takes_metrics = false});
+    catalogue.push_back({.id = "flat", .description = "", .capabilities = {VoxelSize()}});
+    catalogue.push_back({.id = "keeper", .description = "", .capabilities = {KeptSources()}});
     Study study = study_of({"K_oL", "flat", "keeper"});
     study.runs[0].equal_delta = {0, 0.1};
     study.runs[0].node_values = {NodeValues::graded, NodeValues::exact};

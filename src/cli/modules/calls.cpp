@@ -69,17 +69,17 @@ void load_module_of(std::string_view structure) {
     if (structure.starts_with("openvdb")) load_module("openvdb");
 }
 
-std::unique_ptr<ControlSpace> make_openvdb_grid(const SpaceOptions& options,
+std::unique_ptr<ControlSpaceBuilder> make_openvdb_grid(const SpaceOptions& options,
                                                 Interpolation interpolation) {
     return openvdb().make_openvdb_grid(options, interpolation);
 }
 
-std::unique_ptr<ControlSpace> make_openvdb_levels(const SpaceOptions& options,
+std::unique_ptr<ControlSpaceBuilder> make_openvdb_levels(const SpaceOptions& options,
                                                   Interpolation interpolation) {
     return openvdb().make_openvdb_levels(options, interpolation);
 }
 
-std::unique_ptr<ControlSpace> make_openvdb_vec3s(const SpaceOptions& options) {
+std::unique_ptr<ControlSpaceBuilder> make_openvdb_vec3s(const SpaceOptions& options) {
     return openvdb().make_openvdb_vec3s(options);
 }
 

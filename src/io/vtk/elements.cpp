@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "controlspace/error.h"
+
 namespace controlspace {
 namespace {
 
@@ -30,6 +32,12 @@ bool cut_by_face(const Box& region, const Box& element, Box& low, Box& high) {
     return nearest < 1;
 }
 
+Box cell_of(const ControlSpace& space, const Point& x) {
+    const auto cell = space.cell_at(x);
+    if (!cell) throw InputError("this field has no cells: write a slice of it");
+    return *cell;
+}
+
 }  // namespace
 
 std::vector<Box> elements_of(const ControlSpace& space) {
@@ -38,7 +46,7 @@ std::vector<Box> elements_of(const ControlSpace& space) {
     while (!regions.empty()) {
         const Box region = regions.back();
         regions.pop_back();
-        const Box element = space.element_at(region.centre());
+        const Box element = cell_of(space, region.centre());
         Box low, high;
         if (cut_by_face(region, element, low, high)) {
             regions.push_back(high);

@@ -28,7 +28,8 @@ void grow(const ControlSpace& space, vtkHyperTreeGridNonOrientedCursor& cursor, 
     const auto number = static_cast<std::size_t>(cursor.GetGlobalNodeIndex());
     if (centres.size() <= number) centres.resize(number + 1);
     centres[number] = box.centre();
-    const Box element = space.element_at(box.centre());
+    const auto cell = space.cell_at(box.centre());
+    const Box element = cell.value_or(Box());
     if (element == box) return;
     const Subdivision subdivision = octants(box);
     const bool is_inside = box.contains(element.low) && box.contains(element.high);

@@ -19,6 +19,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
+#include "controlspace/space/control_nodes.h"
 #include "geometry/point_order.h"
 #include "io/vtk/elements.h"
 #include "io/vtk/vtk_fields.h"
@@ -101,8 +102,9 @@ void write_leaves(const std::filesystem::path& path, const ControlSpace& space) 
 }
 
 void write_nodes(const std::filesystem::path& path, const ControlSpace& space) {
-    const ControlNodes nodes = space.control_nodes(Neighbourhood::faces);
-    write_points(path, positions(nodes.graph), nodes.metrics);
+    const auto nodes = control_nodes(space, Neighbourhood::faces);
+    if (!nodes) throw InputError("this field has no control nodes: write a slice of it");
+    write_points(path, positions(nodes->graph), nodes->metrics);
 }
 
 void write_slice(const std::filesystem::path& path, const MetricField& field, const Box& domain,

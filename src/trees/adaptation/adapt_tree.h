@@ -13,7 +13,7 @@
 
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
-#include "trees/adaptation/goal_field.h"
+#include "space/goal_field.h"
 #include "trees/adaptation/leaf_judge.h"
 #include "trees/adaptation/nearby_field.h"
 #include "trees/topology/topology.h"

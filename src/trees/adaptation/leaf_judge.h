@@ -7,30 +7,12 @@
 #include <span>
 
 #include "controlspace/metric/nonconformity.h"
+#include "geometry/place_sequence.h"
+#include "trees/adaptation/leaf_places.h"
 #include "trees/adaptation/nearby_field.h"
 #include "trees/topology/topology.h"
 
 namespace controlspace {
-
-/// Where a leaf is compared with the field, each coordinate in units of its edges: corners, centre,
-/// centres of faces (low z, y, x, high x, y, z), middles of edges.
-struct LeafPlaces {
-    static constexpr std::size_t corners = 0, centre = corners + 8, faces = centre + 1,
-                                 edges = faces + 6, all = edges + 12;
-    std::array<Vector, all> at;
-
-    LeafPlaces();
-    static constexpr std::size_t low_face(std::size_t axis) { return faces + 2 - axis; }
-    static constexpr std::size_t high_face(std::size_t axis) { return faces + 3 + axis; }
-    Point in(const Box& box, std::size_t i) const {
-        return box.low + at[i].cwiseProduct(box.edges());
-    }
-};
-const LeafPlaces& leaf_places();
-
-/// Place `k` of an endless sequence that fills the box evenly (the additive recurrence R_3, on the
-/// powers of the root of x^4 = x + 1).
-Point place_in(const Box& box, std::uint64_t k);
 
 /// How the departure of a storage shows along which axis a leaf should be cut.
 enum class CutBy {

@@ -4,7 +4,7 @@
 
 #include "cones/nearby_cones.h"
 #include "controlspace/geometry/box.h"
-#include "trees/adaptation/goal_field.h"
+#include "space/goal_field.h"
 
 namespace controlspace {
 

@@ -14,7 +14,7 @@
 
 #include "controlspace/metric/intersection.h"
 #include "controlspace/sources/point_source.h"
-#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_space_builder.h"
 #include "controlspace/space/insertion.h"
 #include "trees/insertion/met_sources.h"
 #include "trees/insertion/source_cuts.h"

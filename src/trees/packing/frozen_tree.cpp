@@ -11,6 +11,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
+#include "space/saved.h"
 #include "trees/packing/frozen_values.h"
 #include "trees/topology/sample_leaves.h"
 #include "trees/topology/topology_state.h"
@@ -19,12 +20,8 @@ namespace controlspace {
 
 namespace {
 
-[[noreturn]] void refuse_to_change() {
-    throw InputError("a frozen structure is only read: insert, grade and adapt before freezing it");
-}
-
 template <class Node, class Values>
-class FrozenTree final : public ControlSpace {
+class FrozenTree final : public ControlSpace, public HasControlNodes, public Saved {
 public:
     FrozenTree(Topology<Node> topology, Values values)
         : topology_(std::move(topology)), values_(std::move(values)) {}
@@ -35,8 +32,8 @@ public:
     ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
         return values_.control_nodes(topology_, neighbourhood);
     }
-    const Box& domain() const override { return topology_.domain(); }
-    Box element_at(const Point& x) const override { return topology_.locate(x).box; }
+    Box domain() const override { return topology_.domain(); }
+    std::optional<Box> cell_at(const Point& x) const override { return topology_.locate(x).box; }
     Footprint footprint() const override {
         Footprint footprint;
         topology_.describe(footprint);
@@ -50,12 +47,6 @@ public:
         controlspace::save(topology_, state);
         values_.save(state);
     }
-
-    Insertion insert(const PointSource&) override { refuse_to_change(); }
-    InsertionReport insert(std::span<const PointSource>) override { refuse_to_change(); }
-    void assign(std::span<const Metric>) override { refuse_to_change(); }
-    GradationReport grade(const GradationOptions&) override { refuse_to_change(); }
-    AdaptationReport adapt(const AdaptationGoal&) override { refuse_to_change(); }
 
 private:
     Topology<Node> topology_;
@@ -71,7 +62,7 @@ void require_close(const StoredMetric<float>& rounded, const Metric& m) {
     if (in_range && nonconformity(rounded, m) < most) return;
     throw InputError(
         fmt::format("floats cannot hold the metric {} (xx yy zz xy xz yz) to 0.1 % of each "
-                    "length: freeze with doubles",
+                    "length: use doubles",
                     to_string(m)));
 }
 

@@ -4,15 +4,15 @@
 #include <span>
 
 #include "controlspace/metric/stored_metric.h"
-#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_nodes.h"
 #include "trees/topology/corners.h"
 #include "trees/topology/topology.h"
 
 namespace controlspace {
 
-// Compact forms of trees, which can only be read (ControlSpace::freeze): nodes and leaves lie depth
-// first, and only what reading needs is kept. With doubles they answer as the tree does, to the
-// bit. For KdNode and OctreeNode. All throw InputError where floats cannot hold a metric.
+// Compact forms of trees, which can only be read (BuildOptions::precision): nodes and leaves lie
+// depth first, and only what reading needs is kept. With doubles they answer as the tree does, to
+// the bit. For KdNode and OctreeNode. All throw InputError where floats cannot hold a metric.
 
 /// One metric a leaf, constant over it.
 template <class Node>

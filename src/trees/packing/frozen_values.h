@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "controlspace/metric/stored_metric.h"
-#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_nodes.h"
 #include "trees/packing/frozen_state.h"
 #include "trees/topology/corners.h"
 #include "trees/topology/leaf_faces.h"

@@ -7,7 +7,7 @@
 
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/metric_field.h"
-#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_nodes.h"
 #include "controlspace/space/space_options.h"
 #include "space/state.h"
 #include "trees/adaptation/adapt_tree.h"

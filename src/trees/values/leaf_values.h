@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_nodes.h"
 #include "controlspace/space/space_options.h"
 #include "space/state.h"
 #include "trees/adaptation/adapt_tree.h"
@@ -43,7 +43,7 @@ namespace controlspace {
 //   save(state), load(tree, state)       all that it holds, but for what options give
 // and, if it holds metrics,
 //   grade(tree, options)                 the same as grading control_nodes and assigning them
-//   freeze(tree, precision)              see ControlSpace::freeze
+//   freeze(tree, precision)              see ControlSpaceBuilder::build
 // and for sources that come after gradation:
 //   release_asked(), keep_asked(metrics) see NodeMetrics; from the latter on, changes are recorded
 //   is_regradable(), regrade(tree, past) whether changes are few and isotropic; grades those alone
@@ -95,6 +95,10 @@ public:
     template <class Node>
     ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const;
 
+    template <class Node>
+    std::size_t control_nodes_of(const Topology<Node>& tree) const {
+        return tree.leaves();
+    }
     template <class Node>
     void assign(const Topology<Node>& tree, std::span<const Metric> metrics) {
         metrics_.forget_asked();

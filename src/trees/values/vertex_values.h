@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "controlspace/metric/blend.h"
-#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_nodes.h"
 #include "controlspace/space/space_options.h"
 #include "space/state.h"
 #include "trees/adaptation/adapt_tree.h"
@@ -74,6 +74,10 @@ public:
     ControlNodes control_nodes(const Topology<Node>&, Neighbourhood neighbourhood) const {
         return {vertex_graph(corners_, positions_, neighbourhood),
                 {metrics_.field().begin(), metrics_.field().end()}};
+    }
+    template <class Node>
+    std::size_t control_nodes_of(const Topology<Node>&) const {
+        return metrics_.size();
     }
     template <class Node>
     void assign(const Topology<Node>&, std::span<const Metric> metrics) {

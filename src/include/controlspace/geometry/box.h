@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 
@@ -11,6 +12,12 @@ namespace controlspace {
 struct Box {
     Point low = Point::Zero();
     Point high = Point::Zero();
+
+    /// All of space.
+    static Box everywhere() {
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        return {Point::Constant(-infinity), Point::Constant(infinity)};
+    }
 
     Vector edges() const { return high - low; }
     Point centre() const { return 0.5 * (low + high); }

@@ -1,40 +1,70 @@
 #pragma once
 
-#include <cstddef>
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
-#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_space_builder.h"
 #include "controlspace/space/space_options.h"
 
 namespace controlspace {
 
+// What a structure can do, beside what all of them can. Most name the options that it reads.
+
+/// A tree, whose leaves are cut for sources: l_min and the depth (kd_depth or octree_depth). It can
+/// be adapted to a field.
+struct SourceLeaves {};
+/// A kd-tree, to be run with each SplitRule: split.
+struct SplitRules {};
+/// Control nodes carry metrics: make() gives a NodeBuilder.
+struct MetricNodes {
+    double rounding = 1e-12;  ///< δ up to which it answers metrics that it was given
+};
+/// Keeps sources and answers their cones: ratio.
+struct KeptSources {};
+/// Has compact forms: BuildOptions::precision.
+struct CompactForm {};
+/// A grid: voxel.
+struct VoxelSize {};
+/// A grid of voxels of many sizes: voxel_factor.
+struct VoxelLevels {};
+/// Joins voxels that are alike: prune_delta.
+struct Pruning {};
+
+using Capability = std::variant<SourceLeaves, SplitRules, MetricNodes, KeptSources, CompactForm,
+                                VoxelSize, VoxelLevels, Pruning>;
+
 /// One structure of the study.
 struct CatalogueEntry {
-    std::string id;                ///< as in options and result files: "K_L", "uniform-nearest"
-    std::string description;       ///< one line
-    bool has_split_rules = false;  ///< a kd-tree: to be run with each SplitRule
-    bool exact_at_nodes = true;    ///< answers a control node's own metric at its position
-    int order = 0;                 ///< of interpolation: 0 constant, 1 linear, 2 quadratic
-    std::unique_ptr<ControlSpace> (*construct)(const SpaceOptions&) = nullptr;
-    /// How it is chosen with others: "trees" (the paper's), "anchored", "baselines".
-    std::string group = "baselines";
-    /// Holds metrics, so that assign() sets them; otherwise sources, and assign() is refused.
-    bool takes_metrics = true;
-    /// Answers the cones of its sources at once, without gradation, and its nodes are the sources.
-    bool graded_from_start = false;
-    bool has_voxels = false;     ///< a grid, made finer by SpaceOptions::voxel
-    bool has_levels = false;     ///< a grid of voxels of many sizes: SpaceOptions::voxel_factor
-    bool can_prune = false;      ///< joins voxels that are alike: SpaceOptions::prune_delta
-    bool can_freeze = false;     ///< has forms that are only read: ControlSpace::freeze
-    double rounding = 1e-12;     ///< δ up to which it answers metrics that it was given
+    std::string id;           ///< as in options and result files: "K_L", "uniform-nearest"
+    std::string description;  ///< one line
+    /// How it is chosen together with others: "trees" (the paper's), "anchored", "baselines".
+    std::string family = "baselines";
+    int order = 0;  ///< of interpolation: 0 constant in a cell, 1 linear, 2 quadratic
+    std::unique_ptr<ControlSpaceBuilder> (*construct)(const SpaceOptions&) = nullptr;
+    std::vector<Capability> capabilities = {};
     std::string former_id = {};  ///< still understood in options and study files
 
-    /// A new structure. Throws InputError where options are invalid.
-    std::unique_ptr<ControlSpace> make(const SpaceOptions& options) const;
+    /// A builder of a new structure. Throws InputError where options are invalid.
+    std::unique_ptr<ControlSpaceBuilder> make(const SpaceOptions& options) const;
+
+    /// The capability, null if it has none of that type: `if (entry.find<VoxelSize>())`.
+    template <class T>
+    const T* find() const {
+        for (const Capability& capability : capabilities) {
+            if (const T* found = std::get_if<T>(&capability)) return found;
+        }
+        return nullptr;
+    }
+    template <class T>
+    bool has() const {
+        return find<T>() != nullptr;
+    }
 };
 
 /// The entry that is named `id`, or once was; null where there is none.

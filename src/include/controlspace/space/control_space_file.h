@@ -3,35 +3,62 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 
 #include "controlspace/space/catalogue.h"
 #include "controlspace/space/control_space.h"
+#include "controlspace/space/control_space_builder.h"
 
 namespace controlspace {
 
 // A file of a control space (.ctrl), all numbers little-endian:
 //   8 bytes    89 43 54 52 4c 0d 0a 1a
-//   32 bits    version of the format: 2
+//   32 bits    version of the format
 //   32 bits    01020304 (hexadecimal), by which the order of bytes can be seen
 //   64 bits    size of the file in bytes
 //   ...        named arrays of numbers, each in chunks that Blosc has compressed (state.h)
 //   64 bits    checksum of all bytes before: XXH3
 
-/// Version of the format that is written, and the only one that is read: version 1, whose checksum
-/// was another, was never released.
+/// Version of the format that is written, and the only one that is read.
 inline constexpr std::uint32_t control_space_file_version = 2;
 
-/// Writes `space`, with all that it takes to go on with it, to `file`: whole or not at all. Throws
-/// InputError where it was not made by a CatalogueEntry, where it keeps a continuous field, and
-/// where writing fails.
+/// How a structure was made.
+struct Recipe {
+    std::string structure;  ///< id in the catalogue
+    SpaceOptions options;
+    std::optional<Precision> precision = {};  ///< of the compact form
+};
+
+/// None where it was not made by a CatalogueEntry.
+std::optional<Recipe> recipe_of(const ControlSpace& space);
+
+/// Writes a finished structure, which can be read again, or a builder, which can be gone on with
+/// too, to `file`: whole or not at all. Throws InputError where it was not made by a
+/// CatalogueEntry, where it keeps a continuous field, and where writing fails.
 void save_control_space(const std::filesystem::path& file, const ControlSpace& space);
+void save_control_space(const std::filesystem::path& file, const ControlSpaceBuilder& builder);
+
+/// What a file holds.
+struct SavedControlSpace {
+    Recipe recipe;
+    std::string saved_by;                          ///< "controlspace 0.1.0, format 1"
+    std::unique_ptr<ControlSpaceBuilder> builder;  ///< none of a compact form
+    std::unique_ptr<ControlSpace> space;
+};
 
 /// The control space that was saved: it answers, takes sources and is graded as the first one
 /// would, to the last bit, in as much memory.
 /// Throws InputError, saying why, where the file is missing, no such file, of a newer version,
 /// truncated or altered, and where its structure is not among `structures`.
+SavedControlSpace open_control_space(const std::filesystem::path& file,
+                                     std::span<const CatalogueEntry> structures);
+/// The space alone, to be read.
 std::unique_ptr<ControlSpace> load_control_space(const std::filesystem::path& file,
                                                  std::span<const CatalogueEntry> structures);
+/// The builder alone. Throws InputError for a compact form, too.
+std::unique_ptr<ControlSpaceBuilder> load_builder(const std::filesystem::path& file,
+                                                  std::span<const CatalogueEntry> structures);
 
 }  // namespace controlspace

@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <type_traits>
 
 #include "controlspace/error.h"
-#include "controlspace/space/catalogue.h"
-#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/space_options.h"
 #include "gradation/regrade.h"
 #include "trees/insertion/leaf_growth.h"
 #include "trees/insertion/met_sources.h"
 #include "trees/insertion/published_bytes.h"
 #include "trees/insertion/source_cuts.h"
+#include "trees/packing/frozen_state.h"
 #include "trees/regradation/past_state.h"
 #include "trees/topology/adjacency.h"
 #include "trees/topology/sample_leaves.h"
@@ -26,49 +26,44 @@
 
 namespace controlspace {
 
-/// A tree over a box as control space: the paper's table with one switch, how a box is cut (`Node`)
-/// and where the control nodes are (`Storage`). Insertion (§3.1) is the same for all.
+/// A tree over a box as SharedBuilder wants it: the paper's table with one switch, how a box is cut
+/// (`Node`) and where the control nodes are (`Storage`). Insertion (§3.1) is the same for all.
 template <class Node, class Storage>
-class Tree final : public ControlSpace {
+class TreeData {
+    static constexpr bool keeps_sources = std::is_same_v<Storage, AnchoredValues>;
+
 public:
     /// With `balanced`, no leaf ever has a neighbour across a face that is more than one level
     /// coarser (octrees).
-    explicit Tree(const SpaceOptions& options, bool balanced = false)
+    explicit TreeData(const SpaceOptions& options, bool balanced = false)
         : options_(options), balanced_(balanced), topology_(options.domain), storage_(options) {}
 
-    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+    void sample(std::span<const Point> x, std::span<Metric> out) const {
         sample_leaves(topology_, storage_, x, out);
     }
 
-    Insertion insert(const PointSource& source) override {
-        require_valid(source, 0, domain());
-        return insert_valid(source);
-    }
-
-    InsertionReport insert(std::span<const PointSource> sources) override {
+    InsertionReport insert(std::span<const PointSource> sources) {
+        // Copying everything would be out of proportion to a few sources more.
+        is_finished_ = options_.takes_later_sources;
         InsertionReport report;
         if constexpr (Storage::grows_by_leaf) {
             if (!balanced_ && !storage_.keeps_asked()) report = insert_by_leaf(sources);
         }
         insert_in_turn(sources, report);
-        // Copying everything would be out of proportion to a few sources more.
-        if (!options_.takes_later_sources) settle();
+        if (!is_finished_ && sources.size() > topology_.leaves() / 16) finish();
         return report;
     }
 
-    ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
+    ControlNodes control_nodes(Neighbourhood neighbourhood) const {
         return storage_.control_nodes(topology_, neighbourhood);
     }
-    void assign(std::span<const Metric> metrics) override {
-        if constexpr (keeps_sources) {
-            throw std::logic_error("this structure keeps sources: it takes no metrics");
-        } else {
-            storage_.assign(topology_, metrics);
-            past_.reset();
-        }
+    void assign(std::span<const Metric> metrics) requires(!keeps_sources) {
+        require_one_each(metrics.size(), storage_.control_nodes_of(topology_));
+        storage_.assign(topology_, metrics);
+        past_.reset();
     }
 
-    GradationReport grade(const GradationOptions& options) override {
+    GradationReport grade(const GradationOptions& options) {
         if constexpr (keeps_sources) {
             return grade_sources(options);
         } else {
@@ -82,7 +77,7 @@ public:
         }
     }
 
-    AdaptationReport adapt(const AdaptationGoal& goal) override {
+    AdaptationReport adapt(const AdaptationGoal& goal) {
         const GoalField field(goal, domain());
         topology_ = Topology<Node>(domain());
         storage_ = Storage(options_);
@@ -111,24 +106,25 @@ public:
                 "the field jumps: leaves far shorter than an element are not cut: raise "
                 "target_delta";
         }
-        settle();
+        finish();
         return report;
     }
 
-    void save(StateWriter& state) const override {
+    void save(StateWriter& state) const {
         controlspace::save(topology_, state);
         storage_.save(state);
         exchange_past(past_, state);
     }
-    void load(const StateReader& state) override {
+    void load(const StateReader& state) {
+        is_finished_ = true;
         topology_ = load_topology<Node>(domain(), state);
         storage_.load(topology_, state);
         exchange_past(past_, state);
     }
 
-    const Box& domain() const override { return topology_.domain(); }
+    const Box& domain() const { return topology_.domain(); }
 
-    Footprint footprint() const override {
+    Footprint footprint() const {
         Footprint footprint;
         topology_.describe(footprint);
         storage_.describe(footprint);
@@ -138,20 +134,30 @@ public:
         return footprint;
     }
 
-    Box element_at(const Point& x) const override { return topology_.locate(x).box; }
+    Box cell_at(const Point& x) const { return topology_.locate(x).box; }
 
-    std::unique_ptr<ControlSpace> freeze(Precision precision) const override {
-        if constexpr (keeps_sources) {
-            return ControlSpace::freeze(precision);
-        } else {
-            auto frozen = storage_.freeze(topology_, precision);
-            if (making()) frozen->set_making({making()->structure, options_, precision});
-            return frozen;
+    std::unique_ptr<ControlSpace> pack(Precision precision) const requires(!keeps_sources) {
+        return storage_.freeze(topology_, precision);
+    }
+    static std::unique_ptr<ControlSpace> load_compact(
+        const Box& domain, Precision precision, const StateReader& state) requires(!keeps_sources) {
+        return load_frozen(domain, precision, state);
+    }
+
+    bool is_finished() const { return is_finished_; }
+    /// Gives back what only growing needs, and makes what only answers need.
+    void finish() {
+        if constexpr (keeps_sources) storage_.drop_idle_sources();
+        topology_.shrink_to_fit();
+        topology_.fit_jumps();
+        storage_.shrink_to_fit();
+        if constexpr (requires { storage_.remember_parts(topology_); }) {
+            storage_.remember_parts(topology_);
         }
+        is_finished_ = true;
     }
 
 private:
-    static constexpr bool keeps_sources = std::is_same_v<Storage, AnchoredValues>;
     static constexpr bool is_octree = std::is_same_v<Node, OctreeNode>;
 
     SourceCuts<Node> cuts() const { return SourceCuts<Node>(options_); }
@@ -237,7 +243,7 @@ private:
             return cuts().is_too_long(storage_.value(topology_, box.centre()), box) &&
                    split_across(box, along, cut);
         });
-        settle();
+        finish();
         const ControlNodes nodes = control_nodes(Neighbourhood::faces);
         report.largest_ratio_left =
             largest_gradation(nodes.graph, nodes.metrics, GradationLaw::cone);
@@ -287,17 +293,6 @@ private:
         if (leaves > next_look_) require_memory(leaves);
     }
 
-    // Gives back what only growing needs, and makes what only answers need.
-    void settle() {
-        if constexpr (keeps_sources) storage_.drop_idle_sources();
-        topology_.shrink_to_fit();
-        topology_.fit_jumps();
-        storage_.shrink_to_fit();
-        if constexpr (requires { storage_.remember_parts(topology_); }) {
-            storage_.remember_parts(topology_);
-        }
-    }
-
     // Stops a tree of so many leaves that outgrows the cap, long before the system stops the
     // program.
     void require_memory(std::size_t leaves, Neighbourhood neighbourhood = Neighbourhood::faces) {
@@ -331,6 +326,7 @@ private:
     Topology<Node> topology_;
     Storage storage_;
     std::optional<PastGradation> past_;  // where sources may come after it
+    bool is_finished_ = false;           // nothing has grown since `finish`
     std::size_t next_look_ = 1024;       // number of leaves at which memory is looked at again
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -9,8 +10,6 @@
 #include "controlspace/space/adaptation.h"
 
 namespace controlspace {
-
-class ControlSpace;
 
 /// The field of a goal, whose sources must outlive it, as exact as the target needs: cones of
 /// tensors that would make a difference of some hundredth of it are passed over.
@@ -40,8 +39,11 @@ public:
         return cones_.range_in(box, memory);
     }
 
-    /// Largest δ between `space` and the field at places all over the domain and near to sources.
-    double largest_departure(const ControlSpace& space) const;
+    /// Answers metrics at places.
+    using Sample = std::function<void(std::span<const Point>, std::span<Metric>)>;
+    /// Largest δ between what `sample` answers and the field, at places all over the domain and
+    /// near to sources.
+    double largest_departure(const Box& domain, const Sample& sample) const;
 
     const ConeField& cones() const { return cones_; }
     const Metric& largest() const { return largest_; }

@@ -1,19 +1,18 @@
-#include "trees/adaptation/goal_field.h"
+#include "space/goal_field.h"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
-#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_space_builder.h"
 #include "controlspace/space/space_options.h"
-#include "trees/adaptation/leaf_judge.h"
+#include "geometry/place_sequence.h"
 
 namespace controlspace {
 
@@ -84,9 +83,8 @@ void GoalField::add_continuous(std::span<const Point> x, std::span<Metric> out) 
     for (std::size_t i = 0; i < x.size(); ++i) out[i] = intersection(out[i], own[i]);
 }
 
-double GoalField::largest_departure(const ControlSpace& space) const {
+double GoalField::largest_departure(const Box& domain, const Sample& sample) const {
     constexpr std::uint64_t everywhere = 100000, near_sources = 100000;
-    const Box& domain = space.domain();
     std::vector<Point> x;
     x.reserve(everywhere + near_sources);
     for (std::uint64_t k = 0; k < everywhere; ++k) x.push_back(place_in(domain, k));
@@ -98,48 +96,13 @@ double GoalField::largest_departure(const ControlSpace& space) const {
     }
     std::vector<Metric> own(x.size());
     std::vector<Metric> exact(x.size());
-    space.sample(x, own);
+    sample(x, own);
     evaluate(x, exact);
     double largest = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
         largest = std::max(largest, nonconformity(own[i], exact[i]));
     }
     return largest;
-}
-
-LeafPlaces::LeafPlaces() {
-    std::size_t next = 0;
-    // By how many coordinates stand at the middle: corners 0, centre 3, faces 2, edges 1.
-    for (const int middles : {0, 3, 2, 1}) {
-        for (int i = 0; i < 27; ++i) {
-            const std::array<int, 3> step{i % 3, i / 3 % 3, i / 9};
-            if (std::count(step.begin(), step.end(), 1) != middles) continue;
-            // A little inside: a place on a face might belong to the neighbour.
-            constexpr double inset = 1e-6;
-            for (Axis a = 0; a < 3; ++a) {
-                const int s = step[static_cast<std::size_t>(a)];
-                at[next][a] = s == 0 ? inset : s == 1 ? 0.5 : 1 - inset;
-            }
-            ++next;
-        }
-    }
-}
-
-const LeafPlaces& leaf_places() {
-    static const LeafPlaces places;
-    return places;
-}
-
-Point place_in(const Box& box, std::uint64_t k) {
-    constexpr double root = 1.2207440846057596;
-    Vector t;
-    double step = 1;
-    for (Axis a = 0; a < 3; ++a) {
-        step /= root;
-        const double turns = 0.5 + step * static_cast<double>(k);
-        t[a] = turns - std::floor(turns);
-    }
-    return box.low + t.cwiseProduct(box.edges());
 }
 
 }  // namespace controlspace

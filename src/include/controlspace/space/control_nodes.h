@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "controlspace/gradation/node_graph.h"
+#include "controlspace/metric/metric.h"
+#include "controlspace/space/control_space.h"
+
+namespace controlspace {
+
+/// Control nodes with their metrics, detached from the structure that they came from.
+struct ControlNodes {
+    ControlGraph graph;
+    std::vector<Metric> metrics;
+};
+
+/// What has control nodes: finished trees and grids, and builders of those that store metrics.
+class HasControlNodes {
+public:
+    virtual ~HasControlNodes() = default;
+
+    /// Control nodes in the structure's own order (leaves of trees: depth first). Of structures
+    /// that keep sources: the centres of leaves, or the sources' places, with the metric there.
+    virtual ControlNodes control_nodes(Neighbourhood neighbourhood) const = 0;
+};
+
+/// The control nodes of a finished structure; none of a field.
+std::optional<ControlNodes> control_nodes(const ControlSpace& space, Neighbourhood neighbourhood);
+
+}  // namespace controlspace

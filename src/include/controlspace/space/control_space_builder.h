@@ -1,0 +1,81 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "controlspace/geometry/box.h"
+#include "controlspace/gradation/grade.h"
+#include "controlspace/metric/metric.h"
+#include "controlspace/metric/stored_metric.h"
+#include "controlspace/sources/point_source.h"
+#include "controlspace/space/adaptation.h"
+#include "controlspace/space/control_nodes.h"
+#include "controlspace/space/control_space.h"
+#include "controlspace/space/insertion.h"
+
+namespace controlspace {
+
+struct BuildOptions {
+    /// The compact form, for a CatalogueEntry that has CompactForm: answers alike in less memory.
+    /// With doubles it answers the same bits; floats round the metrics by 6e-8.
+    std::optional<Precision> precision = {};
+};
+
+/// Makes a control space from point sources (paper §2-3), or from a field.
+///
+/// A new one holds M_max = H I everywhere, H the half diagonal of its domain. Only one thread may
+/// use it at a time.
+class ControlSpaceBuilder {
+public:
+    virtual ~ControlSpaceBuilder() = default;
+
+    /// Paper §3.1 steps 1-6 for one source after the other, in order; a structure may do it faster,
+    /// never differently. Throws InputError as require_valid does; the sources before are inserted.
+    virtual InsertionReport insert(std::span<const PointSource> sources) = 0;
+    /// One source.
+    Insertion insert(const PointSource& source);
+
+    /// Makes the field grow smoothly (paper §3.2). Structures whose control nodes carry metrics are
+    /// graded alike, over the neighbours that neighbourhood_of(options) names; those that keep
+    /// sources answer their cones of this ratio. Throws InputError for a ratio below 1 or not
+    /// finite, and where so many neighbours would outgrow the cap on memory.
+    virtual GradationReport grade(const GradationOptions& options) = 0;
+
+    /// Replaces all that was held by the field of `goal`, with few cells that keep within its
+    /// target. A tree is built anew from its root, without regard to l_min; a grid keeps its
+    /// voxels. What could not be reached is said in the report. Throws InputError for a goal that
+    /// is not valid, and where the structure would outgrow its cap on memory; the field is
+    /// undefined then.
+    virtual AdaptationReport adapt(const AdaptationGoal& goal) = 0;
+
+    /// The control space made so far. It stays as it is while the builder goes on; both share their
+    /// data until then, so that this costs no copy. Throws InputError where a compact form is asked
+    /// of a structure that has none, and for metrics that floats cannot hold (beyond 1e-38 to 3e38,
+    /// or with lengths in ratios above about 1e4).
+    virtual std::unique_ptr<ControlSpace> build(const BuildOptions& options = {}) = 0;
+
+    virtual Box domain() const = 0;
+};
+
+/// A builder of a structure whose control nodes carry metrics.
+class NodeBuilder : public ControlSpaceBuilder, public HasControlNodes {
+public:
+    /// Sets the metrics, in the order of control_nodes(). Throws InputError for another number.
+    virtual void assign(std::span<const Metric> metrics) = 0;
+
+    /// Grades a copy of the control nodes and assigns it.
+    GradationReport grade(const GradationOptions& options) override;
+    /// Sets the control nodes to the field.
+    AdaptationReport adapt(const AdaptationGoal& goal) override;
+};
+
+/// Throws InputError, naming the source by `index` (0-based), if its position is outside `domain`
+/// or its metric not positive definite.
+void require_valid(const PointSource& source, std::size_t index, const Box& domain);
+/// Whether it does not.
+bool is_valid(const PointSource& source, const Box& domain);
+/// Throws InputError unless there is one metric for each control node.
+void require_one_each(std::size_t metrics, std::size_t control_nodes);
+
+}  // namespace controlspace

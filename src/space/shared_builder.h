@@ -1,0 +1,150 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+#include "controlspace/error.h"
+#include "controlspace/space/control_nodes.h"
+#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_space_builder.h"
+#include "space/saved.h"
+
+namespace controlspace {
+
+/// A finished structure: `Data` that is only read, shared with its builder.
+template <class Data>
+class SharedSpace final : public ControlSpace, public HasControlNodes, public Saved {
+public:
+    explicit SharedSpace(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+        data_->sample(x, out);
+    }
+    Box domain() const override { return data_->domain(); }
+    Footprint footprint() const override { return data_->footprint(); }
+    std::optional<Box> cell_at(const Point& x) const override { return data_->cell_at(x); }
+    ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
+        return data_->control_nodes(neighbourhood);
+    }
+    void save(StateWriter& state) const override { data_->save(state); }
+
+private:
+    std::shared_ptr<const Data> data_;
+};
+
+/// A builder around `Data`, which can be copied, read and changed: sample, domain, footprint,
+/// cell_at, control_nodes, save; insert(sources), grade, adapt, load; for a NodeBuilder assign,
+/// which then may leave out grade and adapt. With pack(precision) and
+/// load_compact(domain, precision, state) it has compact forms; finish() is called before it is
+/// built.
+///
+/// What it builds shares the data, which are copied before the next change as long as they are
+/// shared.
+template <class Data>
+    class SharedBuilder final
+    : public std::conditional_t < requires(Data& data, std::span<const Metric> metrics) {
+    data.assign(metrics);
+}, NodeBuilder, ControlSpaceBuilder >, public SavedBuilder {
+    static constexpr bool has_nodes = requires(Data & data, std::span<const Metric> metrics) {
+        data.assign(metrics);
+    };
+    static constexpr bool has_compact_form = requires(const Data& data) {
+        data.pack(Precision::doubles);
+    };
+    using Base = std::conditional_t<has_nodes, NodeBuilder, ControlSpaceBuilder>;
+
+public:
+    template <class... Arguments>
+    explicit SharedBuilder(const Arguments&... arguments)
+        : data_(std::make_shared<Data>(arguments...)) {}
+
+    using ControlSpaceBuilder::insert;
+    InsertionReport insert(std::span<const PointSource> sources) override {
+        return edit().insert(sources);
+    }
+    GradationReport grade(const GradationOptions& options) override {
+        if constexpr (requires(Data & data) { data.grade(options); }) {
+            return edit().grade(options);
+        } else {
+            return Base::grade(options);
+        }
+    }
+    AdaptationReport adapt(const AdaptationGoal& goal) override {
+        if constexpr (requires(Data & data) { data.adapt(goal); }) {
+            return edit().adapt(goal);
+        } else {
+            return Base::adapt(goal);
+        }
+    }
+    std::unique_ptr<ControlSpace> build(const BuildOptions& options) override {
+        if (options.precision) return pack(*options.precision);
+        if constexpr (requires(Data & data) { data.finish(); }) {
+            if (!data_->is_finished()) edit().finish();
+        }
+        auto space = std::make_unique<SharedSpace<Data>>(data_);
+        space->set_recipe(this->recipe());
+        return space;
+    }
+    Box domain() const override { return data_->domain(); }
+
+    ControlNodes control_nodes(Neighbourhood neighbourhood) const {
+        return data_->control_nodes(neighbourhood);
+    }
+    void assign(std::span<const Metric> metrics) {
+        if constexpr (has_nodes) {
+            edit().assign(metrics);
+        }
+    }
+
+    void save(StateWriter & state) const override { data_->save(state); }
+    void load(const StateReader& state) override { edit().load(state); }
+    std::unique_ptr<ControlSpace> load_compact(Precision precision, const StateReader& state)
+        const override {
+        if constexpr (has_compact_form) {
+            return with_recipe(Data::load_compact(domain(), precision, state), precision);
+        } else {
+            fail_compact();
+        }
+    }
+
+private:
+    Data& edit() {
+        if (data_.use_count() > 1) {
+            data_ = std::make_shared<Data>(*data_);
+        } else {
+            // What the last of the spaces that shared them has read, perhaps in another thread, is
+            // behind us.
+            std::atomic_thread_fence(std::memory_order_acquire);
+        }
+        return *data_;
+    }
+
+    std::unique_ptr<ControlSpace> pack(Precision precision) {
+        if constexpr (has_compact_form) {
+            return with_recipe(data_->pack(precision), precision);
+        } else {
+            fail_compact();
+        }
+    }
+
+    std::unique_ptr<ControlSpace> with_recipe(std::unique_ptr<ControlSpace> compact,
+                                              Precision precision) const {
+        if (this->recipe()) {
+            Recipe recipe = *this->recipe();
+            recipe.precision = precision;
+            dynamic_cast<Saved&>(*compact).set_recipe(std::move(recipe));
+        }
+        return compact;
+    }
+
+    [[noreturn]] static void fail_compact() {
+        throw InputError("this structure has no compact form: choose a tree that holds metrics");
+    }
+
+    std::shared_ptr<Data> data_;
+};
+
+}  // namespace controlspace

@@ -1,0 +1,30 @@
+#include "trees/adaptation/leaf_places.h"
+
+#include <algorithm>
+
+namespace controlspace {
+
+LeafPlaces::LeafPlaces() {
+    std::size_t next = 0;
+    // By how many coordinates stand at the middle: corners 0, centre 3, faces 2, edges 1.
+    for (const int middles : {0, 3, 2, 1}) {
+        for (int i = 0; i < 27; ++i) {
+            const std::array<int, 3> step{i % 3, i / 3 % 3, i / 9};
+            if (std::count(step.begin(), step.end(), 1) != middles) continue;
+            // A little inside: a place on a face might belong to the neighbour.
+            constexpr double inset = 1e-6;
+            for (Axis a = 0; a < 3; ++a) {
+                const int s = step[static_cast<std::size_t>(a)];
+                at[next][a] = s == 0 ? inset : s == 1 ? 0.5 : 1 - inset;
+            }
+            ++next;
+        }
+    }
+}
+
+const LeafPlaces& leaf_places() {
+    static const LeafPlaces places;
+    return places;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "controlspace/geometry/box.h"
+
+namespace controlspace {
+
+/// Where a leaf is compared with the field, each coordinate in units of its edges: corners, centre,
+/// centres of faces (low z, y, x, high x, y, z), middles of edges.
+struct LeafPlaces {
+    static constexpr std::size_t corners = 0, centre = corners + 8, faces = centre + 1,
+                                 edges = faces + 6, all = edges + 12;
+    std::array<Vector, all> at;
+
+    LeafPlaces();
+    static constexpr std::size_t low_face(std::size_t axis) { return faces + 2 - axis; }
+    static constexpr std::size_t high_face(std::size_t axis) { return faces + 3 + axis; }
+    Point in(const Box& box, std::size_t i) const {
+        return box.low + at[i].cwiseProduct(box.edges());
+    }
+};
+const LeafPlaces& leaf_places();
+
+}  // namespace controlspace
