@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/catalogue.h"
 #include "controlspace/space/space_options.h"
 
 namespace controlspace {
