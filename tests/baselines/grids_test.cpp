@@ -26,7 +26,9 @@ struct Grid {
     Lattice lattice;
     std::vector<Metric> metrics;
 
-    explicit Grid(std::size_t i) : entry(&grids()[i]), space(entry->make(options)) { read(); }
+    explicit Grid(std::size_t i) : entry(&grids()[i]), space(editable(entry->make(options))) {
+        read();
+    }
     void read() {
         ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
         lattice = std::get<Lattice>(nodes.graph);

@@ -52,7 +52,7 @@ double volume(const Box& box) { return box.edges().prod(); }
 class NodesByPlace {
 public:
     explicit NodesByPlace(const ControlSpace& space) {
-        const ControlNodes nodes = space.control_nodes(Neighbourhood::faces);
+        const ControlNodes nodes = control_nodes(space, Neighbourhood::faces).value();
         const auto& graph = std::get<NodeGraph>(nodes.graph);
         for (NodeIndex i = 0; i < graph.size(); ++i) {
             unique_ = metrics_.emplace(key(graph.position(i)), nodes.metrics[i]).second && unique_;
@@ -99,7 +99,7 @@ TEST_CASE("with all voxels as small as the finest, a grid in levels is the unifo
                                            {Point(-0.7, 0.8, -0.1), Metric::isotropic(0.12)}};
     const auto uniform = editable(structure_with_id("uniform-nearest").make(options));
     const auto levels = editable(make_openvdb_levels(options, Interpolation::nearest));
-    for (ControlSpace* space : {uniform.get(), levels.get()}) {
+    for (EditableSpace* space : {uniform.get(), levels.get()}) {
         space->insert(sources);
         space->grade({});
     }
@@ -220,12 +220,12 @@ TEST_CASE("pruning never makes a metric larger, nor smaller by more than its tol
     const auto plain = editable(structure_with_id(id).make(options));
     options.prune_delta = 0.2;
     const auto pruned = editable(structure_with_id(id).make(options));
-    for (ControlSpace* space : {plain.get(), pruned.get()}) {
+    for (EditableSpace* space : {plain.get(), pruned.get()}) {
         space->insert(isotropic_sources(options));
         space->grade({.ratio = 1.05});
     }
     const auto at_nodes = [](const ControlSpace& space) {
-        return space.control_nodes(Neighbourhood::faces).metrics;
+        return control_nodes(space, Neighbourhood::faces).value().metrics;
     };
     const std::vector<Metric> before = at_nodes(*plain);
     const std::vector<Metric> after = at_nodes(*pruned);
@@ -339,7 +339,7 @@ TEST_CASE("levels that no number can hold are refused") {
     CHECK_THROWS_WITH(make_openvdb_levels(options, Interpolation::nearest),
                       Catch::Contains("raise voxel"));
     options.voxel = 10;  // larger than the domain: one voxel
-    CHECK(make_openvdb_levels(options, Interpolation::nearest)->footprint().elements == 1);
+    CHECK(make_openvdb_levels(options, Interpolation::nearest)->build()->footprint().elements == 1);
 }
 
 }  // namespace controlspace

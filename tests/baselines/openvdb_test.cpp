@@ -70,7 +70,7 @@ TEST_CASE("two Vec3S trees answer as the grid of doubles does, up to the roundin
         const Point x = random_point(random, options.domain);
         worst = std::max(worst, nonconformity(sample_at(*doubles, x), sample_at(*floats, x)));
     }
-    CHECK(worst < structure_with_id("openvdb-vec3s-trilinear").rounding);
+    CHECK(worst < structure_with_id("openvdb-vec3s-trilinear").find<MetricNodes>()->rounding);
     CHECK(worst > 0);
     CHECK(2 * floats->footprint().bytes_payload == doubles->footprint().bytes_payload);
 

@@ -6,12 +6,14 @@
 #include <thread>
 
 #include "contract/structures_under_test.h"
+#include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"
 #include "measure/access_time.h"
 
 using namespace controlspace;
+using Catch::Matchers::Contains;
 
 namespace {
 

@@ -59,7 +59,7 @@ std::vector<Metric> answers(const ControlSpace& space) {
 }
 
 std::vector<Metric> node_metrics(const ControlSpace& space) {
-    return space.control_nodes(Neighbourhood::faces).metrics;
+    return control_nodes(space, Neighbourhood::faces).value().metrics;
 }
 
 std::unique_ptr<EditableSpace> all_at_once(const Structure& structure,

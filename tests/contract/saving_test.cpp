@@ -73,7 +73,7 @@ TEST_CASE("saved between a later source and the gradation that it waits for") {
     const ScratchDirectory scratch("saving");
     const Work work = isotropic_sphere();
     for (const Structure& structure : whole_catalogue()) {
-        if (structure.entry->rounding > 1e-12) continue;
+        if (is_rounding(*structure.entry)) continue;
         CAPTURE(structure.name());
         SpaceOptions options = work.options(structure.split);
         options.takes_later_sources = true;

@@ -102,7 +102,7 @@ TEST_CASE("frozen with doubles, a tree answers the same bits; with floats, to 1e
 TEST_CASE("frozen trees have the same control nodes and links as before") {
     using Entered = std::tuple<double, double, double, double, std::size_t>;
     const auto entered = [](const ControlSpace& space, Neighbourhood neighbourhood) {
-        const ControlNodes nodes = space.control_nodes(neighbourhood);
+        const ControlNodes nodes = control_nodes(space, neighbourhood).value();
         const NodeGraph& graph = std::get<NodeGraph>(nodes.graph);
         std::vector<Entered> all;
         for (NodeIndex i = 0; i < graph.size(); ++i) {

@@ -11,6 +11,7 @@
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
 #include "editable_space.h"
+#include "space/saved.h"
 #include "space/state.h"
 
 using namespace controlspace;
@@ -19,9 +20,9 @@ namespace {
 
 const Box domain{Point::Constant(-1), Point::Constant(1)};
 
-std::string state_of(const ControlSpace& space) {
+std::string state_of(const EditableSpace& space) {
     StateWriter state;
-    space.save(state);
+    dynamic_cast<const Saved&>(space.built()).save(state);
     return state.bytes();
 }
 

@@ -1,5 +1,3 @@
-#include "trees/tree.h"
-
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
@@ -217,7 +215,7 @@ TEST_CASE("K_oLB is balanced after every insertion; K_oL is not") {
                                            {Point(-0.9, 0.3, 0.2), Metric::isotropic(0.05)},
                                            {Point(-0.01, 0.6, -0.3), Metric::isotropic(0.004)}};
     const auto jump = [](const ControlSpace& space) {
-        const auto nodes = space.control_nodes(Neighbourhood::faces);
+        const auto nodes = control_nodes(space, Neighbourhood::faces).value();
         const auto& graph = std::get<NodeGraph>(nodes.graph);
         int largest = 0;
         for (NodeIndex i = 0; i < graph.size(); ++i) {
