@@ -6,7 +6,8 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm
 
-from .figures import SMALLEST_ERROR, Spec, drawn, height_of, legend_above, lines_axis, log_axis
+from .figures import (SMALLEST_ERROR, Spec, colour_bar, drawn, height_of, legend_above, lines_axis,
+                      log_axis)
 from .results import InputError
 from .table import table_of
 
@@ -150,7 +151,7 @@ def cross_validation(sampled):
             ax.set_xticks(range(n), labels, rotation=45, ha="right")
             ax.set_yticks(range(n), labels)
             ax.grid(False)
-        figure.colorbar(image, ax=figure.axes, shrink=0.8)
+        colour_bar(image, figure.axes)
     side, names = min(max(40 * n, 240), 6000), 7 * max(map(len, labels))
     yield Spec("cross-validation", {"group": structures[0].row.group()}, plot,
                2 * side + names + 120, side + names + 80)
@@ -173,7 +174,7 @@ def slice_figures(sampled):
         ax.set(xlabel="x [length]", ylabel="y [length]", xlim=(x0, x1), ylim=(y0, y1))
         ax.set_title(title, fontsize=9)
         ax.grid(False)
-        ax.figure.colorbar(image, ax=ax, shrink=0.8, format="%.3g")
+        colour_bar(image, ax)
 
     for sample in structures:
         def plot(figure):
@@ -194,4 +195,4 @@ def slice_figures(sampled):
             "shown": "Mean length" + (" (anisotropy below it)" if len(measures) > 1 else ""),
             "cells": "with its cells" if sample.outlines is not None
             else "whose cells are too many to be drawn"},
-            plot, 1200, 430 * len(measures), raster=True)
+            plot, 1200, 400 * len(measures), raster=True)

@@ -85,14 +85,25 @@ class Styles:
         return {"color": colour, "marker": mark, "markerfacecolor": colour if full else "none"}
 
 
-def log_axis(axis, label, low=None, high=None):
-    axis.axes.set(**{f"{axis.axis_name}scale": "log", f"{axis.axis_name}label": label})
-    low, high = (low, high) if low else axis.get_view_interval()
+def log_ticks(low, high):
+    """Every power of ten and, the fewer these are, the more places between them."""
     subs = [1] if high > 1000 * low else [1, 2, 5] if high > 4 * low else \
         [1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8]
-    axis.set_major_locator(LogLocator(subs=subs, numticks=40))
+    return LogLocator(subs=subs, numticks=40)
+
+
+def log_axis(axis, label, low=None, high=None):
+    axis.axes.set(**{f"{axis.axis_name}scale": "log", f"{axis.axis_name}label": label})
+    axis.set_major_locator(log_ticks(*((low, high) if low else axis.get_view_interval())))
     axis.set_major_formatter(StrMethodFormatter("{x:.7g}"))
     axis.set_minor_formatter(NullFormatter())
+
+
+def colour_bar(image, axes):
+    figure = image.axes.figure
+    bar = figure.colorbar(image, ax=axes, shrink=0.8, ticks=log_ticks(*image.get_clim()),
+                          format=StrMethodFormatter("{x:.4g}"))
+    bar.ax.minorticks_off()
 
 
 def lines_axis(ax, labels):
