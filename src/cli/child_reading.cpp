@@ -16,7 +16,7 @@
 #include <string>
 
 #include "controlspace/error.h"
-#include "io/text/indefinite_tensors.h"
+#include "io/text/metric_rows.h"
 
 namespace controlspace {
 namespace {

@@ -6,6 +6,7 @@
 #include "cli/formats.h"
 #include "cli/input_study.h"
 #include "cli/options.h"
+#include "controlspace/io/read_sources.h"
 
 namespace controlspace {
 
@@ -23,7 +24,7 @@ Action add_convert(Options& options) {
                 job->output);
     add_reading_options(options, job->given);
     return [job](const std::string&) {
-        write_source_file(job->output, sources_of_input(job->input, given_settings(job->given)));
+        write_sources(job->output, sources_of_input(job->input, given_settings(job->given)));
         return 0;
     };
 }

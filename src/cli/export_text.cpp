@@ -5,9 +5,8 @@
 
 #include "cli/export.h"
 #include "controlspace/error.h"
+#include "controlspace/io/read_sources.h"
 #include "io/text/medit.h"
-#include "io/text/write_medit_sources.h"
-#include "io/text/write_sources.h"
 
 namespace controlspace {
 namespace {

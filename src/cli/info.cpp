@@ -15,7 +15,7 @@
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/gradation/grade.h"
 #include "controlspace/space/control_space_file.h"
-#include "io/text/indefinite_tensors.h"
+#include "io/text/metric_rows.h"
 #include "measure/source_summary.h"
 #include "study/names.h"
 
@@ -93,9 +93,8 @@ std::string space_info(const std::filesystem::path& file) {
         text += fmt::format("  frozen       in {}: it is only read\n",
                             *recipe.precision == Precision::floats ? "floats" : "doubles");
     }
-    text +=
-        fmt::format("  saved by     {}\n  domain       {}\n  options      {}\n", saved.saved_by,
-                    to_string(saved.space->domain()), options_text(entry, recipe.options));
+    text += fmt::format("  saved by     {}\n  domain       {}\n  options      {}\n", saved.saved_by,
+                        to_string(saved.space->domain()), options_text(entry, recipe.options));
     text += fmt::format("  elements     {}", footprint.elements);
     if (footprint.leaves > 0) {
         text += fmt::format(", {} of them leaves, in {} levels", footprint.leaves, footprint.depth);

@@ -8,10 +8,8 @@
 
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/gmsh/gmsh_mesher.h"
-#include "controlspace/mesh/write_medit.h"
-#include "controlspace/mesh/write_msh.h"
-#include "controlspace/mesh/write_vtu.h"
-#include "io/text/write_medit_sources.h"
+#include "controlspace/mesh/mesh_files.h"
+#include "io/text/medit.h"
 #include "mesh/estimate.h"
 #include "mesh/size_query.h"
 

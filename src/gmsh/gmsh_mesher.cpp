@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "controlspace/error.h"
-#include "mesh/estimate.h"
 #include "gmsh/gmsh_session.h"
+#include "mesh/estimate.h"
 #include "mesh/size_query.h"
 #include "mesh/stopwatch.h"
 
@@ -89,8 +89,9 @@ TetMesh take_mesh(const UnitFrame& frame) {
         const double* x = &coordinates[3 * i];
         mesh.vertices.push_back(frame.to_domain(x[0], x[1], x[2]));
     }
-    mesh.triangles = elements<3>(gmsh_triangle, index_of_tag);
-    mesh.tets = elements<4>(gmsh_tetrahedron, index_of_tag);
+    constexpr int triangle = 2, tetrahedron = 4;  // Gmsh's types of elements
+    mesh.triangles = elements<3>(triangle, index_of_tag);
+    mesh.tets = elements<4>(tetrahedron, index_of_tag);
     turn_upright(mesh);
     return mesh;
 }
@@ -125,11 +126,11 @@ GmshRun mesh_with_gmsh(const Box& domain, const MetricField& field, const GmshOp
     require_valid(domain, field, options);
     const UnitFrame frame(domain);
     SizeQuery query(field, frame, options.factor.value_or(standard_factor(options.algorithm)));
-    return in_gmsh_session(options.threads, [&] {
+    GmshRun run;
+    in_gmsh_session(options.threads, [&] {
         add_box(frame);
         set_options(options);
         set_size_callback(query);
-        GmshRun run;
         const Stopwatch watch;
         try {
             generate(options.algorithm,
@@ -151,8 +152,8 @@ GmshRun mesh_with_gmsh(const Box& domain, const MetricField& field, const GmshOp
             throw InputError(fmt::format("Gmsh made no tetrahedra{}{}: try the other algorithm",
                                          why.empty() ? "" : ": ", why));
         }
-        return run;
     });
+    return run;
 }
 
 }  // namespace controlspace

@@ -11,9 +11,8 @@
 #include <vector>
 
 #include "controlspace/error.h"
-#include "controlspace/mesh/write_medit.h"
-#include "io/text/write_medit_sources.h"
-#include "mesh/read_medit_mesh.h"
+#include "controlspace/mesh/mesh_files.h"
+#include "io/text/medit.h"
 #include "mesh/size_query.h"
 #include "mesh/stopwatch.h"
 #include "study/child_program.h"

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "controlspace/gradation/grade.h"
-#include "controlspace/io/file_choice.h"
-#include "controlspace/io/vdb_choice.h"
+#include "controlspace/io/read_surface_sources.h"
+#include "controlspace/io/read_vdb.h"
 #include "controlspace/sources/scattered_surfaces.h"
 #include "controlspace/space/catalogue.h"
 #include "study/field_choice.h"
@@ -32,6 +32,14 @@ enum class NodeValues {
 
 /// Whether a structure is made compact, and only read, once it is finished (ControlSpace::freeze).
 enum class Frozen { no, doubles, floats };
+
+/// What is taken out of a file of sources that holds more than one thing, or no lengths.
+struct FileSources {
+    std::string array = {};         ///< .vtu, .vtp, .msh, .pos; empty: the only one
+    CurvatureSizes curvature = {};  ///< .stl, .obj, .ply, .off
+
+    bool operator==(const FileSources&) const = default;
+};
 
 /// The sources of one case: a sampled surface (paper §5.1), a file, an analytic field, or such a
 /// field with sources on top.

@@ -4,7 +4,7 @@
 
 #include "controlspace/fields/analytic_field.h"
 #include "controlspace/fields/surface_fields.h"
-#include "controlspace/io/vdb_choice.h"
+#include "controlspace/io/read_vdb.h"
 
 namespace controlspace {
 

@@ -34,8 +34,7 @@ bool is_one_of(const std::string& ending, std::span<const std::string_view> endi
 
 /// Formats that other libraries read.
 bool needs_reader(const std::string& ending) {
-    return ending == ".vdb" || (ending != ".pos" && is_one_of(ending, with_arrays)) ||
-           is_one_of(ending, surfaces);
+    return ending == ".vdb" || ending == ".vtu" || ending == ".vtp" || is_one_of(ending, surfaces);
 }
 
 /// What is given for files of another format would be passed over.
@@ -107,7 +106,7 @@ std::vector<PointSource> read_source_file(const SourcesChoice& choice, const Fil
         return reader->second(choice);
     }
     if (needs_reader(ending)) fail_without_reader(choice.file);
-    return read_sources(choice.file);
+    return read_sources(choice.file, choice.in_file.array);
 }
 
 Workload make_workload(const Study& study, const SourcesChoice& choice,

@@ -44,7 +44,7 @@ std::vector<BadFile> csv_files() {
         {"f.csv", head + "0,0,0,-1\n", "f.csv:2: h = -1: a length must be positive"},
         {"f.csv", "x,y,h\n0,0,1\n", "f.csv:1: column 'z' is missing"},
         {"f.csv", "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n0,0,0,1,1,1,2,0,0\n",
-         "f.csv:2: tensor (1 1 1 2 0 0) is not positive definite"},
+         "f.csv:2: tensor 1 (1 1 1 2 0 0) is not positive definite"},
         {"f.csv", head + std::string("0,0,0,\0", 7), "holds a zero byte"},
     };
 }
@@ -55,14 +55,14 @@ std::vector<BadFile> medit_files() {
     return {
         {"f.sol", "", "f.sol is empty"},
         {"f.sol", "f,g\n", "f.sol:1: does not start with MeshVersionFormatted"},
-        {"f.sol", head + "1\n1 3\n1 0 1 0 0", "f.sol:6: the file ends within tensor 1"},
+        {"f.sol", head + "1\n1 3\n1 0 1 0 0", "f.sol:6: the data end within tensor 1"},
         {"f.sol", head + "1\n1 1\nsmall\n", "f.sol:6: size 1: 'small' is not a number"},
         {"f.sol", head + "2000000000\n1 1\n1\n", "f.sol:4: SolAtVertices 2000000000"},
-        {"f.sol", head + "-1\n1 1\n1\n", "f.sol:4: SolAtVertices is followed by '-1'"},
+        {"f.sol", head + "-1\n1 1\n1\n", "f.sol:4: SolAtVertices -1: nothing to read"},
         {"f.sol", head + "1\n1 1\nnan\n", "f.sol:6: size 1 has nan"},
         {"f.sol", head + "1\n1 3\n1 2 1 0 0 1\n",
-         "tensor 1 of f.sol is not positive definite, 1 of 1 are not: is the order of their "
-         "components xx xy yy xz yz zz?"},
+         "f.sol:6: tensor 1 (1 2 1 0 0 1) is not positive definite, 1 of 1 are not: is the order "
+         "of their components xx xy yy xz yz zz?"},
         {"f.sol", "MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n1\n1 1\n1\n",
          "f.sol:2: Dimension is 2"},
         {"f.sol", head + "2\n1 1\n1 1\n", "f.mesh has 1 vertices, and f.sol has sizes for 2"},
@@ -72,7 +72,8 @@ std::vector<BadFile> medit_files() {
         {"f.solb", solb({1}, 2'000'000'000), "SolAtVertices 2000000000, but the file can hold"},
         {"f.solb", solb({1}, -1), "SolAtVertices -1: nothing to read"},
         {"f.solb", solb({nan}), "size 1 has nan"},
-        {"f.solb", solb({1, 2, 1, 0, 0, 1}), "tensor 1 of f.solb is not positive definite"},
+        {"f.solb", solb({1, 2, 1, 0, 0, 1}),
+         "f.solb, byte 96: tensor 1 (1 2 1 0 0 1) is not positive definite"},
     };
 }
 
@@ -81,14 +82,14 @@ std::vector<BadFile> pos_files() {
     return {
         {"f.pos", "", "f.pos is empty"},
         {"f.pos", "solid s\n", "f.pos:1: 'View' expected"},
-        {"f.pos", head + "SP(0,0,0){1};\nSP(0,0,", "f.pos:3: '' is not a number"},
-        {"f.pos", head + "SP(0,0,zero){1};\n};", "f.pos:2: 'zero' is not a number"},
-        {"f.pos", head + "SP(0,0,0){nan};\n};", "f.pos:2: size nan"},
-        {"f.pos", head + "SP(0,0,inf){1};\n};", "f.pos:2: inf cannot be a coordinate"},
-        {"f.pos", head + "SP(0,0,0){-1};\n};", "f.pos:2: size -1"},
+        {"f.pos", head + "SP(0,0,0){1};\nSP(0,0,", "f.pos:3: the data end within an element"},
+        {"f.pos", head + "SP(0,0,zero){1};\n};", "f.pos:2: an element: 'zero' is not a number"},
+        {"f.pos", head + "SP(0,0,0){nan};\n};", "f.pos:2: size 1 is nan"},
+        {"f.pos", head + "SP(0,0,inf){1};\n};", "f.pos:2: corner 1 has a coordinate inf"},
+        {"f.pos", head + "SP(0,0,0){-1};\n};", "f.pos:2: size 1 is -1"},
         {"f.pos", head + "SP(0,0){1};\n};", "f.pos:2: 2 numbers instead of 3"},
         {"f.pos", head + "TP(0,0,0){1,2,0,2,1,0,0,0,1};\n};",
-         "tensor 1 of f.pos is not positive definite, 1 of 1 are not: is the order"},
+         "f.pos:2: tensor 1 (1 2 0 2 1 0 0 0 1) is not positive definite, 1 of 1 are not: is the"},
     };
 }
 
@@ -115,20 +116,21 @@ std::vector<BadFile> vtk_files() {
     return {
         {"f.vtu", "", "f.vtu is empty"},
         {"f.vtu", "solid s\n", "f.vtu: no VTKFile element"},
-        {"f.vtu", good.substr(0, good.size() / 2), "f.vtu: a count is cut off"},
+        {"f.vtu", good.substr(0, good.size() / 2), "f.vtu: VTK cannot read it: "},
         {"f.vtu", good.substr(0, good.size() - 40), "f.vtu: VTK cannot read it: "},
         {"f.vtu", vtu(sizes, "0.5 small"), "f.vtu: VTK cannot read it: "},
-        {"f.vtu", vtu(points, "NumberOfPoints=\"2000000000\""), "f.vtu:3: NumberOfPoints"},
-        {"f.vtu", vtu(points, "NumberOfPoints=\"-2\""), "f.vtu:3: NumberOfPoints"},
+        {"f.vtu", vtu(points, "NumberOfPoints=\"2000000000\""), "f.vtu: "},
+        {"f.vtu", vtu(points, "NumberOfPoints=\"-2\""), "f.vtu: "},
         {"f.vtu", vtu(points, "NumberOfPoints=\"3\""), "f.vtu: VTK cannot read it: "},
         {"f.vtu", vtu(sizes, "0.5 nan"), "f.vtu: "},
         {"f.vtu", vtu("Float64", "Float65"), "f.vtu: VTK cannot read it: "},
-        {"f.vtu", vtu(sizes, "0.5 -1"), "size 2 of f.vtu is -1: a length must be positive"},
+        {"f.vtu", vtu(sizes, "0.5 -1"), "f.vtu: size 2 is -1: a length must be positive"},
         {"f.vtu", vtu("0 0 0 1", "0 1e99 0 1"), "f.vtu: point 1 has a coordinate 1e+99"},
-        {"f.vtu", vtu("a:metric", "a"), "0 arrays of points are named :metric; there are 'a'"},
+        {"f.vtu", vtu("a:metric", "a"),
+         "f.vtu: no array of points is named :metric, there are 'a': name one"},
         {"f.vtu", vtu(tensors, "NumberOfComponents=\"6\" format=\"ascii\">1 1 1 0 0 0 1 1 1 2 0 0"),
-         "tensor 2 of f.vtu is not positive definite, 1 of 2 are not: is the order of their "
-         "components XX YY ZZ XY YZ XZ?"},
+         "f.vtu: tensor 2 (1 1 1 2 0 0) is not positive definite, 1 of 2 are not: is the order of "
+         "their components XX YY ZZ XY YZ XZ?"},
         {"f.vtp", vtu(), "f.vtp: "},
     };
 }
@@ -151,10 +153,10 @@ std::vector<BadFile> msh_files() {
         {"f.msh", msh().substr(0, 60), "is it cut off?"},
         {"f.msh", msh().substr(0, msh().find("$NodeData")), "f.msh: no $NodeData"},
         {"f.msh", msh("1 3 1 3", "1 2000000000 1 3"), "f.msh:5: Nodes 200000000"},
-        {"f.msh", msh("1 3 1 3", "1 -3 1 3"), "f.msh:5: '-3' instead of a count"},
+        {"f.msh", msh("1 3 1 3", "1 -3 1 3"), "f.msh:5: Nodes: '-3' instead of a count"},
         {"f.msh", msh("2 1 0 3", "2 1 0 2000000000"), "f.msh:6: a block of 2000000000"},
         {"f.msh", msh("1 0.5", "1 nan"), "f.msh"},
-        {"f.msh", msh("2 0.25", "2 -1"), "size 2 of f.msh is -1: a length must be positive"},
+        {"f.msh", msh("2 0.25", "2 -1"), "f.msh: size 2 is -1: a length must be positive"},
         {"f.msh", msh("1 0 0", "1 0 1e99"), "f.msh: node 2 has a coordinate 1e+99"},
         {"f.msh", msh("3 0.125", "7 0.125"), "f.msh"},
     };
@@ -185,26 +187,22 @@ std::vector<BadFile> surface_files() {
         {"f.ply", "", "f.ply is empty"},
         {"f.ply", "text\n", "f.ply: "},
         {"f.ply", ply_head + "2000000000" + ply_properties + corners + "3 0 1 2\n",
-         "f.ply:3: a count of '2000000000'"},
-        {"f.ply", ply_head + "-3" + ply_properties + corners + "3 0 1 2\n",
-         "f.ply:3: a count of '-3'"},
+         "f.ply: the library that reads such files fails on it"},
+        {"f.ply", ply_head + "-3" + ply_properties + corners + "3 0 1 2\n", "f.ply: "},
         {"f.ply", ply_head + "3" + ply_properties + "0 0 0\n1 0", "f.ply: "},
         {"f.ply", ply_head + "3" + ply_properties + corners + "3 0 1 7\n", "f.ply: "},
         {"f.ply", ply_head + "3" + ply_properties + "0 0 0\n1 zero 0\n0 1 0\n3 0 1 2\n", "f.ply: "},
         {"f.off", "OFF\n2000000000 1 0\n" + corners + "3 0 1 2\n",
-         "f.off:2: a count of '2000000000'"},
+         "f.off: the library that reads such files fails on it"},
         {"f.off", "OFF\n3 1 0\n" + corners + "3 0 1 7\n", "f.off: "},
     };
 }
 
 std::vector<std::vector<BadFile> (*)()> all_formats() {
     return {
-        csv_files,     medit_files, pos_files,
+        csv_files,     medit_files, pos_files, msh_files,
 #ifdef CONTROLSPACE_VTK
         vtk_files,
-#endif
-#ifdef CONTROLSPACE_GMSH
-        msh_files,
 #endif
 #ifdef CONTROLSPACE_CGAL
         surface_files,

@@ -157,11 +157,9 @@ TEST_CASE("damaged files of surfaces are read or refused") {
 }
 #endif
 
-#ifdef CONTROLSPACE_GMSH
 TEST_CASE("damaged meshes of Gmsh are read or refused") {
     check_damaged(Sandbox("damaged-msh"), "d.msh", msh);
 }
-#endif
 
 #ifdef CONTROLSPACE_VTK
 TEST_CASE("damaged files of VTK are read or refused") {

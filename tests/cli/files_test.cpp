@@ -69,7 +69,7 @@ TEST_CASE("info counts the tensors that are not positive definite, other command
     };
     CHECK_THAT(said("t.csv"),
                Contains("sources      4, 2 of them (50 %) positive definite; not so: 2, 4\n") &&
-                   Contains("t.csv:4: tensor (1 1 1 2 0 0) is not positive definite") &&
+                   Contains("t.csv:4: tensor 2 (1 1 1 2 0 0) is not positive definite") &&
                    Contains("isotropic    1 of them") && Contains("sizes        1 to 4, ") &&
                    Contains("anisotropy   4 at most"));
     CHECK_THAT(said("all.csv"),
@@ -77,7 +77,7 @@ TEST_CASE("info counts the tensors that are not positive definite, other command
     CHECK_THAT(said("m.sol"), Contains("2, 1 of them (50 %)") && Contains("not so: 2\n") &&
                                   Contains("order of their components xx xy yy xz yz zz?"));
     check_refused(box.run("convert t.csv out.csv"), "t.csv:4: tensor");
-    check_refused(box.run("convert m.sol out.csv"), "tensor 2 of m.sol");
+    check_refused(box.run("convert m.sol out.csv"), "m.sol:1: tensor 2");
     // What else is wrong is said first.
     box.write("t.csv", head + "0,0,0,1,1,1,2,0,0\n0,0,0,1,1,1,2,0\n");
     check_refused(box.run("info t.csv"), "t.csv:3: 8 columns instead of 9");

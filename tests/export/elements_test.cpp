@@ -1,9 +1,8 @@
 // Elements found by asking, against what structures say of themselves.
-#include "io/vtk/elements.h"
-
 #include <catch2/catch.hpp>
 
 #include "contract/structures_under_test.h"
+#include "io/text/cells.h"
 
 using namespace controlspace;
 

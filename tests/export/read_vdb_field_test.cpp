@@ -1,8 +1,7 @@
-#include "controlspace/io/read_vdb_field.h"
-
 #include <limits>
 
 #include "controlspace/baselines/catalogue.h"
+#include "controlspace/io/read_vdb.h"
 #include "controlspace/io/write_vdb.h"
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"

@@ -1,9 +1,8 @@
-#include "controlspace/io/read_vdb_sources.h"
-
 #include <openvdb/tools/LevelSetSphere.h>
 #include <openvdb/tools/LevelSetUtil.h>
 #include <openvdb/tools/MeshToVolume.h>
 
+#include "controlspace/io/read_vdb.h"
 #include "export/fixtures.h"
 
 using namespace controlspace;

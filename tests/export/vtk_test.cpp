@@ -26,8 +26,8 @@
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
 #include "editable_space.h"
-#include "io/vtk/elements.h"
-#include "io/vtk/vtk_fields.h"
+#include "io/text/cells.h"
+#include "io/text/vtk_xml.h"
 #include "sources/files.h"
 
 using namespace controlspace;
@@ -255,9 +255,9 @@ TEST_CASE("arrays of 1, 6 and 9 components, however VTK encodes them") {
     const auto floats = write_vtp<vtkFloatArray>(folder, components, "size", *writer);
     check_close(read_vtk_sources(floats, "size"), expected, 1e-5);
     CHECK_THAT(error_of([&] { read_vtk_sources(floats); }),
-               Contains("0 arrays of points are named :metric; there are 'size': name one"));
+               Contains("no array of points is named :metric, there are 'size': name one"));
     CHECK_THAT(error_of([&] { read_vtk_sources(floats, "sizes"); }),
-               Contains("0 arrays of points are 'sizes'"));
+               Contains("0 of its arrays of points can be meant: name one of 'size'"));
 }
 
 TEST_CASE("arrays that are no metrics are refused") {

@@ -1,7 +1,7 @@
 // A mesh in binary Medit files against the same in ASCII.
 #include <catch2/catch.hpp>
 
-#include "mesh/read_medit_mesh.h"
+#include "controlspace/mesh/mesh_files.h"
 #include "sources/files.h"
 #include "sources/medit_bytes.h"
 

@@ -7,7 +7,7 @@
 
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/mesh/conformity.h"
-#include "controlspace/mesh/write_msh.h"
+#include "controlspace/mesh/mesh_files.h"
 #include "mesh/fixtures.h"
 #include "sources/files.h"
 

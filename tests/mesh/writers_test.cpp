@@ -5,11 +5,9 @@
 
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/mesh/conformity.h"
-#include "controlspace/mesh/write_medit.h"
-#include "controlspace/mesh/write_vtu.h"
+#include "controlspace/mesh/mesh_files.h"
 #include "io/text/medit.h"
 #include "io/text/text_file.h"
-#include "io/text/write_medit_sources.h"
 #include "mesh/fixtures.h"
 #include "sources/files.h"
 

@@ -92,7 +92,8 @@ TEST_CASE("CSV errors name the line and the fault") {
     CHECK_THAT(error_in("x,y,z,h\n1,2,3,-1\n"), Contains("h = -1"));
     CHECK_THAT(error_in("x,y,z,h\n1,2,3,1e-300\n"), Contains("h = 1e-300"));
     const std::string tensor = "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n";
-    CHECK_THAT(error_in(tensor + "0,0,0,1,1,1,2,0,0\n"), Contains("s.csv:2: tensor (1 1 1 2 0 0)"));
+    CHECK_THAT(error_in(tensor + "0,0,0,1,1,1,2,0,0\n"),
+               Contains("s.csv:2: tensor 1 (1 1 1 2 0 0) is not positive definite, 1 of 1"));
     CHECK_THAT(error_in(tensor + "0,0,0,0,0,0,0,0,0\n"), Contains("not positive definite"));
     CHECK_THAT(error_in(std::string("x,y,z,h\n1,2,\0,4\n", 16)), Contains("z = '?'"));
 }

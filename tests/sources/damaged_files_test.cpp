@@ -5,7 +5,6 @@
 
 #include "controlspace/io/read_sources.h"
 #include "io/text/csv.h"
-#include "io/text/write_sources.h"
 #include "scratch_directory.h"
 
 using namespace controlspace;

@@ -59,10 +59,11 @@ TEST_CASE("tensors in another order are found out") {
     // The same tensor in the order of MMG's programming interface, xx xy xz yy yz zz.
     const std::string text =
         mesh_head + "SolAtVertices\n3\n1 3\n1 0 1 0 0 1\n1e4 90 -800 1 10 100\n1 0 1 0 0 1\n";
-    CHECK_THAT(error_in_solution(text), Contains("tensor 2 of m.sol is not positive definite, "
-                                                 "1 of 3 are not: is the order"));
+    CHECK_THAT(error_in_solution(text),
+               Contains("m.sol:7: tensor 2 (10000 90 -800 1 10 100) is not positive "
+                        "definite, 1 of 3 are not: is the order"));
     CHECK_THAT(error_in_solution(mesh_head + "SolAtVertices 2 1 3 0 0 0 0 0 0  -1 0 -1 0 0 -1"),
-               Contains("tensor 1 of m.sol is not positive definite, 2 of 2"));
+               Contains("m.sol:3: tensor 1 (0 0 0 0 0 0) is not positive definite, 2 of 2"));
 }
 
 TEST_CASE("errors of a mesh name the place") {
@@ -77,19 +78,21 @@ TEST_CASE("errors of a mesh name the place") {
     CHECK_THAT(error_in_mesh(mesh_head + "End\n"), Contains("m.mesh has no Vertices"));
     CHECK_THAT(error_in_mesh(mesh_head), Contains("has no Vertices"));
     const std::string vertices = mesh_head + "Vertices\n";
-    CHECK_THAT(error_in_mesh(vertices), Contains("'' instead of a count"));
-    CHECK_THAT(error_in_mesh(vertices + "-5\n0 0 0 0\n"), Contains("m.mesh:4: Vertices is "));
+    CHECK_THAT(error_in_mesh(vertices), Contains("the data end within Vertices"));
+    CHECK_THAT(error_in_mesh(vertices + "-5\n0 0 0 0\n"),
+               Contains("m.mesh:4: Vertices -5: nothing to read"));
     CHECK_THAT(error_in_mesh(vertices + "0\n"), Contains("nothing to read"));
     CHECK_THAT(error_in_mesh(vertices + "1000000000000\n0 0 0 0\n"),
-               Contains("can hold 1 at most"));
+               Contains("can hold 1 there at most"));
     CHECK_THAT(error_in_mesh(vertices + "99999999999999999999999\n0 0 0 0\n"),
                Contains("instead of a count"));
     CHECK_THAT(error_in_mesh(vertices + "2\n0 0 0 0\n0.125 0.375 1\n"),
-               Contains("the file ends within vertex 2"));
+               Contains("the data end within vertex 2"));
     CHECK_THAT(error_in_mesh(vertices + "2\n0 0 0 0\n0 x 0 0\n"),
                Contains("m.mesh:6: vertex 2: 'x' is not a number"));
     CHECK_THAT(error_in_mesh(vertices + "1\n0 nan 0 0\n"), Contains("vertex 1 has nan"));
-    CHECK_THAT(error_in_mesh(vertices + "1\n0 1e99 0 0\n"), Contains("too large"));
+    CHECK_THAT(error_in_mesh(vertices + "1\n0 1e99 0 0\n"),
+               Contains("vertex 1 has a coordinate 1e+99: give finite ones, of at most 1e+50"));
 }
 
 TEST_CASE("errors of a solution name the place") {
@@ -100,9 +103,10 @@ TEST_CASE("errors of a solution name the place") {
     CHECK_THAT(error_in_solution(head + "2\n1 2\n1 1 1 1 1 1\n"), Contains("field of type 2"));
     CHECK_THAT(error_in_solution(head + "2\n1 1\n0.5 0\n"), Contains("size 2 is 0"));
     CHECK_THAT(error_in_solution(head + "2\n1 1\n-0.5 1\n"), Contains("size 1 is -0.5"));
-    CHECK_THAT(error_in_solution(head + "2\n1 1\n0.5\n"), Contains("ends within size 2"));
+    CHECK_THAT(error_in_solution(head + "2\n1 1\n0.5\n"),
+               Contains("m.sol:7: the data end within size 2"));
     CHECK_THAT(error_in_solution(head + "2\n1 3\n1 0 1 0 0 1 1 0 1\n"),
-               Contains("ends within tensor 2"));
+               Contains("the data end within tensor 2"));
     CHECK_THAT(error_in_solution(head + "2\n1 3\n1 0 1 0 0 inf\n"),
                Contains("m.sol:6: tensor 1 has inf"));
     CHECK_THAT(error_in_solution(head + "4000000000\n1 3\n1 0 1 0 0 1\n"), Contains("at most"));

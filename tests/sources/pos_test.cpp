@@ -54,8 +54,8 @@ TEST_CASE("elements give a source at each corner, and shared corners one") {
 TEST_CASE("of several views one is named") {
     const std::string two = "View \"a\" {SP(0,0,0){1};};\nView \"b\" {SP(0,0,0){2};};\n";
     CHECK(parsed(two, "b").front().metric == Metric::isotropic(2));
-    CHECK_THAT(error_in(two), Contains("2 views, the first two 'a' and 'b': name one"));
-    CHECK_THAT(error_in(two, "c"), Contains("no view 'c': its first one is 'a'"));
+    CHECK_THAT(error_in(two), Contains("v.pos: 2 of its views can be meant: name one of 'a', 'b'"));
+    CHECK_THAT(error_in(two, "c"), Contains("0 of its views can be meant: name one of 'a', 'b'"));
 }
 
 TEST_CASE("sources that are written as a view are read back") {
@@ -86,12 +86,14 @@ TEST_CASE("what is wrong in a view is named with its line") {
     CHECK_THAT(element("VP(0,0,0){1,1,1};"), Contains("v.pos:2: 'VP' is no element"));
     CHECK_THAT(element("SP(0,0){1};"), Contains("2 numbers instead of 3"));
     CHECK_THAT(element("SP(0,0,0){1,1};"), Contains("2 numbers instead of 1: of one step in time"));
-    CHECK_THAT(element("SP(0,0,zero){1};"), Contains("v.pos:2: 'zero' is not a number"));
-    CHECK_THAT(element("SP(0,0,0){nan};"), Contains("size nan: a length must be positive"));
-    CHECK_THAT(element("SP(0,0,inf){1};"), Contains("inf cannot be a coordinate"));
-    CHECK_THAT(element("SP(0,0,0){-1};"), Contains("size -1"));
+    CHECK_THAT(element("SP(0,0,zero){1};"),
+               Contains("v.pos:2: an element: 'zero' is not a number"));
+    CHECK_THAT(element("SP(0,0,0){nan};"),
+               Contains("v.pos:2: size 1 is nan: a length must be positive"));
+    CHECK_THAT(element("SP(0,0,inf){1};"), Contains("v.pos:2: corner 1 has a coordinate inf"));
+    CHECK_THAT(element("SP(0,0,0){-1};"), Contains("size 1 is -1"));
     CHECK_THAT(element("SP(0,0,0){1}"), Contains("v.pos:3: ';' expected, '};' found"));
-    CHECK_THAT(element("TP(0,0,0){1,2,0,0,1,0,0,0,1};"), Contains("tensor 1 of v.pos is not symm"));
+    CHECK_THAT(element("TP(0,0,0){1,2,0,0,1,0,0,0,1};"), Contains("v.pos:2: tensor 1 is not symm"));
     CHECK_THAT(element("TP(0,0,0){1,2,0,2,1,0,0,0,1};"),
-               Contains("tensor 1 of v.pos is not positive definite, 1 of 1 are not"));
+               Contains("v.pos:2: tensor 1 (1 2 0 2 1 0 0 0 1) is not positive definite, 1 of 1"));
 }

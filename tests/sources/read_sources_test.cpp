@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "data_folder.h"
-#include "io/text/write_medit_sources.h"
+#include "io/text/medit.h"
 #include "sources/files.h"
 
 using namespace controlspace;

@@ -70,12 +70,12 @@ void load_module_of(std::string_view structure) {
 }
 
 std::unique_ptr<ControlSpaceBuilder> make_openvdb_grid(const SpaceOptions& options,
-                                                Interpolation interpolation) {
+                                                       Interpolation interpolation) {
     return openvdb().make_openvdb_grid(options, interpolation);
 }
 
 std::unique_ptr<ControlSpaceBuilder> make_openvdb_levels(const SpaceOptions& options,
-                                                  Interpolation interpolation) {
+                                                         Interpolation interpolation) {
     return openvdb().make_openvdb_levels(options, interpolation);
 }
 
@@ -99,27 +99,6 @@ std::vector<PointSource> read_vtk_sources(const fs::path& path, const std::strin
     return vtk().read_vtk_sources(path, array);
 }
 
-void write_leaves(const fs::path& path, const ControlSpace& space) {
-    vtk().write_leaves(path, space);
-}
-
-void write_nodes(const fs::path& path, const ControlSpace& space) {
-    vtk().write_nodes(path, space);
-}
-
-void write_octree(const fs::path& path, const ControlSpace& space) {
-    vtk().write_octree(path, space);
-}
-
-void write_slice(const fs::path& path, const MetricField& field, const Box& domain,
-                 const Slice& slice) {
-    vtk().write_slice(path, field, domain, slice);
-}
-
-void write_vtk_sources(const fs::path& path, std::span<const PointSource> sources) {
-    vtk().write_vtk_sources(path, sources);
-}
-
 SurfaceMesh read_surface_mesh(const fs::path& path) { return cgal().read_surface_mesh(path); }
 
 std::vector<PointSource> read_surface_sources(const fs::path& path, const CurvatureSizes& sizes) {
@@ -128,12 +107,6 @@ std::vector<PointSource> read_surface_sources(const fs::path& path, const Curvat
 
 GmshRun mesh_with_gmsh(const Box& domain, const MetricField& field, const GmshOptions& options) {
     return gmsh().mesh_with_gmsh(domain, field, options);
-}
-
-void write_msh(const fs::path& path, const TetMesh& mesh) { gmsh().write_msh(path, mesh); }
-
-std::vector<PointSource> read_msh_sources(const fs::path& path, const std::string& view) {
-    return gmsh().read_msh_sources(path, view);
 }
 
 }  // namespace controlspace

@@ -3,8 +3,6 @@
 
 CONTROLSPACE_MODULE(GmshModule) {
     static const controlspace::GmshModule table{.version = controlspace::version(),
-                                                .mesh_with_gmsh = controlspace::mesh_with_gmsh,
-                                                .write_msh = controlspace::write_msh,
-                                                .read_msh_sources = controlspace::read_msh_sources};
+                                                .mesh_with_gmsh = controlspace::mesh_with_gmsh};
     return &table;
 }

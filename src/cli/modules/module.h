@@ -11,13 +11,9 @@
 #include "baselines/openvdb/openvdb_vec3s.h"
 #include "controlspace/gmsh/gmsh_mesher.h"
 #include "controlspace/io/read_surface_sources.h"
-#include "controlspace/io/read_vdb_field.h"
-#include "controlspace/io/read_vdb_sources.h"
+#include "controlspace/io/read_vdb.h"
 #include "controlspace/io/read_vtk_sources.h"
 #include "controlspace/io/write_vdb.h"
-#include "controlspace/io/write_vtk.h"
-#include "controlspace/mesh/write_msh.h"
-#include "gmsh/read_msh_sources.h"
 #include "io/surface/surface_mesh.h"
 
 namespace controlspace {
@@ -46,11 +42,6 @@ struct OpenvdbModule {
 struct VtkModule {
     std::string_view version;
     decltype(&controlspace::read_vtk_sources) read_vtk_sources;
-    decltype(&controlspace::write_leaves) write_leaves;
-    decltype(&controlspace::write_nodes) write_nodes;
-    decltype(&controlspace::write_octree) write_octree;
-    decltype(&controlspace::write_slice) write_slice;
-    decltype(&controlspace::write_vtk_sources) write_vtk_sources;
 };
 
 struct CgalModule {
@@ -62,8 +53,6 @@ struct CgalModule {
 struct GmshModule {
     std::string_view version;
     decltype(&controlspace::mesh_with_gmsh) mesh_with_gmsh;
-    decltype(&controlspace::write_msh) write_msh;
-    decltype(&controlspace::read_msh_sources) read_msh_sources;
 };
 
 /// Loads the module `name` ("openvdb", "vtk", "cgal", "gmsh") unless it is loaded already. Throws

@@ -1,5 +1,3 @@
-#include "controlspace/io/read_vdb_field.h"
-
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
 
@@ -10,6 +8,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/io/metric_grids.h"
+#include "controlspace/io/read_vdb.h"
 #include "controlspace/metric/blend.h"
 #include "controlspace/metric/evaluate.h"
 #include "controlspace/sources/point_source.h"
@@ -51,10 +50,24 @@ private:
     std::array<double, 3> high_weight_;
 };
 
-/// `Grids` says what the voxels hold:
-///   base()                                        a grid, for the transform and what is active
-///   reader() -> r with r(voxel, metric) -> bool   whether the voxel is active, and its metric
-template <class Grids>
+Metric metric_from(const openvdb::Vec3s& diagonal, const openvdb::Vec3s& off_diagonal) {
+    return {diagonal[0],     diagonal[1],     diagonal[2],
+            off_diagonal[0], off_diagonal[1], off_diagonal[2]};
+}
+
+/// Either lengths, or both parts of tensors.
+struct Grids {
+    openvdb::FloatGrid::ConstPtr lengths;
+    openvdb::Vec3SGrid::ConstPtr diagonal;
+    openvdb::Vec3SGrid::ConstPtr off_diagonal;
+
+    /// The grid that says which voxels are active.
+    const openvdb::GridBase& base() const {
+        if (lengths) return *lengths;
+        return *diagonal;
+    }
+};
+
 class VoxelField final : public MetricField {
 public:
     VoxelField(Grids grids, double elsewhere)
@@ -64,14 +77,36 @@ public:
 
     void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
         evaluate_blocks(x, out, [this](auto points, auto metrics) {
-            auto read = grids_.reader();
-            for (std::size_t i = 0; i < points.size(); ++i) metrics[i] = at(points[i], read);
+            if (grids_.lengths) {
+                const auto nodes = grids_.lengths->getConstUnsafeAccessor();
+                interpolate(points, metrics, [&](const Coord& voxel, Metric& metric) {
+                    float h = 0;
+                    if (!nodes.probeValue(voxel, h)) return false;
+                    metric = Metric::isotropic(h);
+                    return true;
+                });
+            } else {
+                const auto a = grids_.diagonal->getConstUnsafeAccessor();
+                const auto b = grids_.off_diagonal->getConstUnsafeAccessor();
+                interpolate(points, metrics, [&](const Coord& voxel, Metric& metric) {
+                    openvdb::Vec3s d;
+                    if (!a.probeValue(voxel, d)) return false;
+                    metric = metric_from(d, b.getValue(voxel));
+                    return true;
+                });
+            }
         });
     }
 
 private:
-    template <class Reader>
-    Metric at(const Point& x, Reader& read) const {
+    /// `read`(voxel, metric) answers whether the voxel is active, and its metric.
+    template <class Read>
+    void interpolate(std::span<const Point> x, std::span<Metric> out, const Read& read) const {
+        for (std::size_t i = 0; i < x.size(); ++i) out[i] = at(x[i], read);
+    }
+
+    template <class Read>
+    Metric at(const Point& x, const Read& read) const {
         const Corners corners(grids_.base().transform(), voxels_, x);
         std::array<double, 8> weights;
         std::array<Metric, 8> metrics;
@@ -94,49 +129,13 @@ private:
     Metric elsewhere_;
 };
 
-Metric metric_from(const openvdb::Vec3s& diagonal, const openvdb::Vec3s& off_diagonal) {
-    return {diagonal[0],     diagonal[1],     diagonal[2],
-            off_diagonal[0], off_diagonal[1], off_diagonal[2]};
-}
-
-struct TensorGrids {
-    openvdb::Vec3SGrid::ConstPtr diagonal;
-    openvdb::Vec3SGrid::ConstPtr off_diagonal;
-
-    const openvdb::GridBase& base() const { return *diagonal; }
-    auto reader() const {
-        return [a = diagonal->getConstUnsafeAccessor(), b = off_diagonal->getConstUnsafeAccessor()](
-                   const Coord& voxel, Metric& metric) {
-            openvdb::Vec3s d;
-            if (!a.probeValue(voxel, d)) return false;
-            metric = metric_from(d, b.getValue(voxel));
-            return true;
-        };
-    }
-};
-
-struct LengthGrid {
-    openvdb::FloatGrid::ConstPtr lengths;
-
-    const openvdb::GridBase& base() const { return *lengths; }
-    auto reader() const {
-        return [nodes = lengths->getConstUnsafeAccessor()](const Coord& voxel, Metric& metric) {
-            float h = 0;
-            if (!nodes.probeValue(voxel, h)) return false;
-            metric = Metric::isotropic(h);
-            return true;
-        };
-    }
-};
-
 std::string name_of(const Coord& voxel) {
     return fmt::format("({}, {}, {})", voxel.x(), voxel.y(), voxel.z());
 }
 
-template <class Grids>
 AnalyticField field_of(Grids grids, double elsewhere, double finest) {
     const Box domain = active_box(grids.base());
-    return {std::make_shared<VoxelField<Grids>>(std::move(grids), elsewhere), domain, finest};
+    return {std::make_shared<VoxelField>(std::move(grids), elsewhere), domain, finest};
 }
 
 AnalyticField tensor_field(const VdbFile& file) {
@@ -183,7 +182,7 @@ AnalyticField tensor_field(const VdbFile& file) {
                         "they of lengths, xx yy zz and xy xz yz?",
                         bad, all, name_of(first_bad)));
     }
-    return field_of(TensorGrids{diagonal, off_diagonal}, coarsest, finest);
+    return field_of({nullptr, diagonal, off_diagonal}, coarsest, finest);
 }
 
 AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
@@ -207,7 +206,8 @@ AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
         finest = std::min(finest, h);
         coarsest = std::max(coarsest, h);
     }
-    return field_of(LengthGrid{grid}, what.density ? what.density->coarsest : coarsest, finest);
+    return field_of({grid, nullptr, nullptr}, what.density ? what.density->coarsest : coarsest,
+                    finest);
 }
 
 }  // namespace

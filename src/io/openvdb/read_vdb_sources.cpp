@@ -1,5 +1,3 @@
-#include "controlspace/io/read_vdb_sources.h"
-
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
@@ -10,6 +8,7 @@
 #include <cmath>
 
 #include "controlspace/error.h"
+#include "controlspace/io/read_vdb.h"
 #include "io/openvdb/vdb_file.h"
 
 namespace controlspace {

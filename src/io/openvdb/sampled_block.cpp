@@ -17,24 +17,22 @@ constexpr std::int32_t side = SampledBlock::side;
 struct Cube {
     std::int32_t i, j, k, edge;
 
+    /// Calls visit(voxel, i, j, k).
     template <class Visit>
     void for_each(Visit&& visit) const {
         for (std::int32_t a = i; a < i + edge; ++a) {
             for (std::int32_t b = j; b < j + edge; ++b) {
-                for (std::int32_t c = k; c < k + edge; ++c) visit(SampledBlock::index(a, b, c));
+                for (std::int32_t c = k; c < k + edge; ++c) {
+                    visit(SampledBlock::index(a, b, c), a, b, c);
+                }
             }
         }
     }
     template <class Holds>
     bool all_of(Holds&& holds) const {
-        for (std::int32_t a = i; a < i + edge; ++a) {
-            for (std::int32_t b = j; b < j + edge; ++b) {
-                for (std::int32_t c = k; c < k + edge; ++c) {
-                    if (!holds(SampledBlock::index(a, b, c))) return false;
-                }
-            }
-        }
-        return true;
+        bool all = true;
+        for_each([&](std::size_t v, auto...) { all = all && holds(v); });
+        return all;
     }
     Cube child(int number) const {
         const std::int32_t half = edge / 2;
@@ -45,7 +43,7 @@ struct Cube {
 
 Metric mean_of(const SampledBlock& block, const Cube& cube) {
     Metric sum{0, 0, 0, 0, 0, 0};
-    cube.for_each([&](std::size_t v) {
+    cube.for_each([&](std::size_t v, auto...) {
         const Metric& m = block.metrics[v];
         sum = {sum.xx + m.xx, sum.yy + m.yy, sum.zz + m.zz,
                sum.xy + m.xy, sum.xz + m.xz, sum.yz + m.yz};
@@ -68,7 +66,7 @@ void settle(SampledBlock& block, const Cube& cube, double tolerance) {
             [&](std::size_t v) { return nonconformity(shared, block.metrics[v]) <= tolerance; });
     }
     if (one) {
-        cube.for_each([&](std::size_t v) {
+        cube.for_each([&](std::size_t v, auto...) {
             block.metrics[v] = shared;
             block.same_as[v] = static_cast<std::uint16_t>(first);
         });
@@ -103,17 +101,14 @@ VoxelLattice voxel_lattice(const Box& domain, double voxel) {
 
 void sample_block(const MetricField& field, const VoxelLattice& lattice,
                   const std::array<std::int32_t, 3>& first, double tolerance, SampledBlock& block) {
+    constexpr Cube whole{0, 0, 0, side};
     std::array<Point, SampledBlock::size> points;
     const auto at = [&](std::size_t axis, std::int32_t offset) {
         return std::min(first[axis] + offset, lattice.counts[axis] - 1);
     };
-    for (std::int32_t i = 0; i < side; ++i) {
-        for (std::int32_t j = 0; j < side; ++j) {
-            for (std::int32_t k = 0; k < side; ++k) {
-                points[SampledBlock::index(i, j, k)] = lattice.centre(at(0, i), at(1, j), at(2, k));
-            }
-        }
-    }
+    whole.for_each([&](std::size_t v, std::int32_t i, std::int32_t j, std::int32_t k) {
+        points[v] = lattice.centre(at(0, i), at(1, j), at(2, k));
+    });
     field.evaluate(points, block.metrics);
     for (std::size_t v = 0; v < SampledBlock::size; ++v) {
         if (is_positive_definite(block.metrics[v])) continue;
@@ -123,7 +118,7 @@ void sample_block(const MetricField& field, const VoxelLattice& lattice,
                         "another structure",
                         x.x(), x.y(), x.z(), to_string(block.metrics[v])));
     }
-    settle(block, {0, 0, 0, side}, tolerance);
+    settle(block, whole, tolerance);
 }
 
 }  // namespace controlspace

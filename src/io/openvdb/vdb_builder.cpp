@@ -4,8 +4,8 @@
 #include <openvdb/tools/Prune.h>
 
 #include <algorithm>
+#include <mutex>
 #include <string>
-#include <vector>
 
 namespace controlspace {
 namespace {
@@ -32,53 +32,37 @@ public:
     explicit Builder(const MetricGrid& kind)
         : kind_(kind), grid_(Grid::create(openvdb::zeroVal<Value>())) {}
 
-    void start_layer(std::size_t blocks) override { slots_.resize(blocks); }
-
-    void fill(std::size_t slot, const std::array<std::int32_t, 3>& first,
-              const std::array<std::int32_t, 3>& inside, const SampledBlock& block,
-              const std::array<EigenFrame, SampledBlock::size>& frames) override {
+    std::size_t add(const std::array<std::int32_t, 3>& first,
+                    const std::array<std::int32_t, 3>& inside, const SampledBlock& block,
+                    const std::array<EigenFrame, SampledBlock::size>& frames) override {
         std::array<Value, SampledBlock::size> values;
         for (std::size_t v = 0; v < values.size(); ++v) {
             const std::size_t same = block.same_as[v];
             values[v] = same == v ? value_from<Value>(kind_.value(block.metrics[v], frames[v]))
                                   : values[same];
         }
-        Slot& s = slots_[slot];
-        s.origin = Coord(first[0], first[1], first[2]);
-        s.value = values[0];
+        const Coord origin(first[0], first[1], first[2]);
         const bool whole = std::all_of(inside.begin(), inside.end(),
                                        [](std::int32_t n) { return n == SampledBlock::side; });
         if (whole && std::all_of(values.begin(), values.end(),
                                  [&](const Value& value) { return value == values[0]; })) {
-            return;
+            constexpr openvdb::Index level_of_leaf_sized_tiles = 1;
+            const std::lock_guard lock(mutex_);
+            grid_->tree().addTile(level_of_leaf_sized_tiles, origin, values[0], true);
+            return 0;
         }
-        s.leaf = std::make_unique<Leaf>(s.origin, openvdb::zeroVal<Value>(), /*active=*/false);
-        for (std::int32_t i = 0; i < inside[0]; ++i) {
-            for (std::int32_t j = 0; j < inside[1]; ++j) {
-                for (std::int32_t k = 0; k < inside[2]; ++k) {
-                    const std::size_t v = SampledBlock::index(i, j, k);
-                    s.leaf->setValueOn(static_cast<openvdb::Index>(v), values[v]);
-                }
-            }
+        auto leaf = std::make_unique<Leaf>(origin, openvdb::zeroVal<Value>(), /*active=*/false);
+        for (openvdb::Index v = 0; v < values.size(); ++v) {
+            const Coord at = Leaf::offsetToLocalCoord(v);
+            if (at.x() >= inside[0] || at.y() >= inside[1] || at.z() >= inside[2]) continue;
+            leaf->setValueOn(v, values[v]);
         }
+        const std::lock_guard lock(mutex_);
+        voxels_ += leaf->onVoxelCount();
+        grid_->tree().addLeaf(leaf.release());
+        return sizeof(Leaf) + SampledBlock::size * sizeof(Value);
     }
 
-    void finish_layer() override {
-        for (Slot& slot : slots_) {
-            if (slot.leaf) {
-                voxels_ += slot.leaf->onVoxelCount();
-                grid_->tree().addLeaf(slot.leaf.release());
-                ++leaves_;
-            } else {
-                constexpr openvdb::Index level_of_leaf_sized_tiles = 1;
-                grid_->tree().addTile(level_of_leaf_sized_tiles, slot.origin, slot.value, true);
-            }
-        }
-    }
-
-    std::size_t bytes() const override {
-        return leaves_ * (sizeof(Leaf) + SampledBlock::size * sizeof(Value));
-    }
     std::size_t voxels() const override { return voxels_; }
 
     openvdb::GridBase::Ptr finish() override {
@@ -94,16 +78,9 @@ public:
     }
 
 private:
-    struct Slot {
-        Coord origin;
-        Value value;
-        std::unique_ptr<Leaf> leaf;  ///< none: a tile
-    };
-
     MetricGrid kind_;
     typename Grid::Ptr grid_;
-    std::vector<Slot> slots_;
-    std::size_t leaves_ = 0;
+    std::mutex mutex_;
     std::size_t voxels_ = 0;
 };
 

@@ -1,5 +1,3 @@
-#include "io/openvdb/vdb_points.h"
-
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
 
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "controlspace/io/metric_grids.h"
+#include "io/openvdb/vdb_builder.h"
 
 namespace controlspace {
 namespace {

@@ -9,15 +9,17 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <mutex>
+#include <utility>
 
 #include "controlspace/error.h"
 #include "controlspace/space/space_field.h"
 #include "io/openvdb/vdb_builder.h"
 #include "io/openvdb/vdb_file.h"
-#include "io/openvdb/vdb_points.h"
 
 namespace controlspace {
 namespace {
@@ -42,108 +44,89 @@ std::vector<MetricGrid> chosen_grids(const std::vector<std::string>& names) {
     return chosen;
 }
 
-/// Lengths from `finest` to `coarsest`, of a field.
-struct Range {
-    double finest = std::numeric_limits<double>::infinity();
-    double coarsest = 0;
-
-    void add(const Range& other) {
-        finest = std::min(finest, other.finest);
-        coarsest = std::max(coarsest, other.coarsest);
-    }
-};
-
 struct Extremes {
-    Range smallest;  ///< of the smallest lengths
-    Range all;
+    double finest = std::numeric_limits<double>::infinity();  ///< of the smallest lengths
+    double coarsest = 0;                                      ///< of the smallest lengths
+    double longest = 0;                                       ///< of all lengths
     bool isotropic = true;
 
-    void add(const Metric& m, const EigenFrame& frame) {
-        const double h = frame.lengths[0];
-        smallest.add({h, h});
-        all.add({h, frame.lengths[2]});
-        isotropic &= is_isotropic(m);
-    }
     void add(const Extremes& other) {
-        smallest.add(other.smallest);
-        all.add(other.all);
+        finest = std::min(finest, other.finest);
+        coarsest = std::max(coarsest, other.coarsest);
+        longest = std::max(longest, other.longest);
         isotropic &= other.isotropic;
     }
 };
 
-/// Samples the blocks layer by layer of x, so that no more than a layer is held beside the grids.
-Extremes fill(const Builders& builders, const MetricField& field, const VoxelLattice& lattice,
-              const VdbOptions& options) {
-    const auto blocks = [&](std::size_t axis) { return (lattice.counts[axis] + side - 1) / side; };
-    const std::int32_t rows = blocks(1);
-    const std::int32_t columns = blocks(2);
+/// Samples all blocks. Returns the bytes of the grids, and what the lengths are.
+std::pair<std::size_t, Extremes> fill(const Builders& builders, const MetricField& field,
+                                      const VoxelLattice& lattice, const VdbOptions& options) {
+    const auto blocks = [&](std::size_t axis) -> std::int64_t {
+        return (lattice.counts[axis] + side - 1) / side;
+    };
+    const std::int64_t in_layer = blocks(1) * blocks(2), count = blocks(0) * in_layer;
     struct Scratch {
         SampledBlock block;
         std::array<EigenFrame, SampledBlock::size> frames;
         Extremes extremes;
     };
     tbb::combinable<std::unique_ptr<Scratch>> scratches([] { return std::make_unique<Scratch>(); });
-    for (std::int32_t layer = 0; layer < blocks(0); ++layer) {
-        const std::int32_t in_layer = rows * columns;
-        for (const auto& builder : builders) {
-            builder->start_layer(static_cast<std::size_t>(in_layer));
+    std::atomic<std::size_t> bytes = 0;
+    std::mutex mutex;  // of the progress
+    std::int64_t done = 0;
+    tbb::parallel_for(std::int64_t{0}, count, [&](std::int64_t b) {
+        Scratch& s = *scratches.local();
+        const std::array<std::int64_t, 3> place{b / in_layer, b / blocks(2) % blocks(1),
+                                                b % blocks(2)};
+        std::array<std::int32_t, 3> first, inside;
+        for (std::size_t a = 0; a < 3; ++a) {
+            first[a] = static_cast<std::int32_t>(place[a]) * side;
+            inside[a] = std::min(side, lattice.counts[a] - first[a]);
         }
-        tbb::parallel_for(std::int32_t{0}, in_layer, [&](std::int32_t b) {
-            Scratch& s = *scratches.local();
-            const std::array first{layer * side, b / columns * side, b % columns * side};
-            std::array<std::int32_t, 3> inside;
-            for (std::size_t a = 0; a < 3; ++a) {
-                inside[a] = std::min(side, lattice.counts[a] - first[a]);
-            }
-            // A thread that waits for its part of the field must not take up another block, whose
-            // scratch would be the same.
-            tbb::this_task_arena::isolate(
-                [&] { sample_block(field, lattice, first, options.tolerance, s.block); });
-            for (std::size_t v = 0; v < SampledBlock::size; ++v) {
-                if (s.block.same_as[v] != v) continue;
-                s.frames[v] = eigen_frame(s.block.metrics[v]);
-                s.extremes.add(s.block.metrics[v], s.frames[v]);
-            }
-            for (const auto& builder : builders) {
-                builder->fill(static_cast<std::size_t>(b), first, inside, s.block, s.frames);
-            }
-        });
-        std::size_t bytes = 0;
-        for (const auto& builder : builders) {
-            builder->finish_layer();
-            bytes += builder->bytes();
+        // A thread that waits for its part of the field must not take up another block, whose
+        // scratch would be the same.
+        tbb::this_task_arena::isolate(
+            [&] { sample_block(field, lattice, first, options.tolerance, s.block); });
+        for (std::size_t v = 0; v < SampledBlock::size; ++v) {
+            if (s.block.same_as[v] != v) continue;
+            s.frames[v] = eigen_frame(s.block.metrics[v]);
+            const auto& lengths = s.frames[v].lengths;
+            s.extremes.add({lengths[0], lengths[0], lengths[2], is_isotropic(s.block.metrics[v])});
         }
+        for (const auto& builder : builders)
+            bytes += builder->add(first, inside, s.block, s.frames);
         if (bytes > options.max_bytes) {
             throw InputError(fmt::format(
                 "grids of {} x {} x {} voxels take more memory than {} bytes: raise the voxel "
                 "(--voxel), the tolerance, or the cap (--max-memory), or write fewer grids",
                 lattice.counts[0], lattice.counts[1], lattice.counts[2], options.max_bytes));
         }
-        if (options.progress) {
-            const auto all = static_cast<std::size_t>(lattice.size());
-            const auto layers = static_cast<std::size_t>(blocks(0));
-            options.progress(all * static_cast<std::size_t>(layer + 1) / layers, all);
-        }
-    }
+        const std::lock_guard lock(mutex);
+        if (++done % in_layer != 0 || !options.progress) return;
+        const auto all = static_cast<std::size_t>(lattice.size());
+        options.progress(
+            all * static_cast<std::size_t>(done / in_layer) / static_cast<std::size_t>(blocks(0)),
+            all);
+    });
     Extremes extremes;
     scratches.combine_each([&](const std::unique_ptr<Scratch>& s) { extremes.add(s->extremes); });
-    return extremes;
+    return {bytes, extremes};
 }
 
-void require_numbers_hold(const Range& lengths, bool half) {
+void require_numbers_hold(const Extremes& lengths, bool half) {
     const double most = half ? 65504 : static_cast<double>(std::numeric_limits<float>::max());
     const double least = half ? 6.2e-5 : static_cast<double>(std::numeric_limits<float>::min());
-    if (lengths.finest < least || lengths.coarsest > most) {
+    if (lengths.finest < least || lengths.longest > most) {
         throw InputError(
             fmt::format("lengths from {:.3g} to {:.3g} do not fit the file's numbers, from {:.3g} "
                         "to {:.3g}: {}",
-                        lengths.finest, lengths.coarsest, least, most,
+                        lengths.finest, lengths.longest, least, most,
                         half ? "leave out --half" : "use another unit of length"));
     }
 }
 
 /// Smallest lengths, in place, to what the fog is.
-void make_density(openvdb::FloatGrid& grid, const Range& lengths) {
+void make_density(openvdb::FloatGrid& grid, const Extremes& lengths) {
     const auto density = [&](float h) {
         return static_cast<float>(
             density_of(static_cast<double>(h), lengths.finest, lengths.coarsest));
@@ -209,20 +192,22 @@ VdbReport write_vdb(const std::filesystem::path& path, const MetricField& field,
 
     Builders builders;
     for (const MetricGrid& kind : kinds) builders.push_back(make_vdb_builder(kind));
-    const Extremes extremes = fill(builders, field, lattice, options);
-    require_numbers_hold(extremes.all, options.half);
+    const auto [bytes, extremes] = fill(builders, field, lattice, options);
+    require_numbers_hold(extremes, options.half);
 
-    VdbReport report{lattice.voxel, lattice.counts, extremes.smallest.finest,
-                     extremes.smallest.coarsest};
+    VdbReport report{.voxel = lattice.voxel,
+                     .counts = lattice.counts,
+                     .finest = extremes.finest,
+                     .coarsest = extremes.coarsest,
+                     .memory = bytes};
     const auto transform = transform_of(lattice);
     openvdb::GridPtrVec grids;
     for (std::size_t i = 0; i < kinds.size(); ++i) {
         const double kept = static_cast<double>(builders[i]->voxels());
         report.kept = std::max(report.kept, kept / lattice.size());
-        report.memory += builders[i]->bytes();
         grids.push_back(builders[i]->finish());
         if (kinds[i].kind == GridKind::fog) {
-            make_density(*openvdb::gridPtrCast<openvdb::FloatGrid>(grids[i]), extremes.smallest);
+            make_density(*openvdb::gridPtrCast<openvdb::FloatGrid>(grids[i]), extremes);
         }
     }
     if (extremes.isotropic) share_trees(kinds, grids);

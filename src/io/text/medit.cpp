@@ -2,74 +2,61 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <string>
 
 #include "controlspace/error.h"
+#include "io/text/medit_file.h"
 #include "io/text/metric_rows.h"
+#include "io/text/text_file.h"
 
 namespace controlspace {
-
 namespace {
 
-enum SolutionType : std::uint64_t { scalar = 1, symmetric_tensor = 3 };
+constexpr std::int32_t one_field = 1, scalar = 1, symmetric_tensor = 3;
 
-template <class Reader>
-std::vector<Point> vertices_in(Reader& file) {
-    file.find("Vertices");
-    std::vector<Point> vertices(file.rows("Vertices", 3, 1));
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        for (Axis a = 0; a < 3; ++a) {
-            vertices[i][a] = file.number("vertex", i);
-            if (!is_coordinate(vertices[i][a])) {
-                file.fail(fmt::format("vertex {}: {} is too large", i + 1, vertices[i][a]));
-            }
-        }
-        file.skip_reference("vertex", i);
+/// Of sizes, or of tensors.
+void write_solution(MeditWriter& file, std::span<const Metric> metrics, bool sizes) {
+    const std::size_t components = sizes ? 1 : medit_tensor.numbers;
+    file.begin(medit_solution, metrics.size(), components * sizeof(double),
+               {one_field, sizes ? scalar : symmetric_tensor});
+    for (const Metric& m : metrics) {
+        const auto numbers = sizes ? std::array<double, 9>{m.xx} : numbers_of(m, medit_tensor);
+        file.row<double>(std::span(numbers).first(components), std::nullopt);
     }
-    return vertices;
-}
-
-template <class Reader>
-std::vector<Metric> metrics_in(Reader& file, const std::filesystem::path& path) {
-    file.find("SolAtVertices");
-    const std::size_t n = file.rows("SolAtVertices", 1, 0);
-    const std::uint64_t fields = file.count("SolAtVertices");
-    if (fields != 1) file.fail(fmt::format("{} fields: give a file with one", fields));
-    const std::uint64_t type = file.count("the number of fields");
-    MetricRows metrics(path, "xx xy yy xz yz zz");
-    if (type == scalar) {
-        for (std::size_t i = 0; i < n; ++i) {
-            const double h = file.number("size", i);
-            if (!is_length(h)) {
-                file.fail(fmt::format("size {} is {}: {}", i + 1, h, length_rule));
-            }
-            metrics.add_size(h);
-        }
-        return metrics.take();
-    }
-    if (type != symmetric_tensor) {
-        file.fail(fmt::format(
-            "field of type {}: give scalars (1), which are sizes, or symmetric tensors (3)", type));
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-        Metric t;
-        for (double* entry : {&t.xx, &t.xy, &t.yy, &t.xz, &t.yz, &t.zz}) {
-            *entry = file.number("tensor", i);
-        }
-        metrics.add_tensor(t);
-    }
-    return metrics.take();
+    file.finish();
 }
 
 }  // namespace
 
 std::vector<Point> parse_medit_vertices(std::string_view bytes, const std::filesystem::path& path) {
-    return read_medit(bytes, path, [](auto& file) { return vertices_in(file); });
+    MeditReader file(bytes, path);
+    std::vector<Point> vertices(file.find(medit_vertices, 3, 1));
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        for (double& x : vertices[i]) x = file.number({"vertex", i});
+        require_coordinates(vertices[i], "vertex", i + 1, [&] { return file.where(); });
+        file.skip_reference({"vertex", i});
+    }
+    return vertices;
 }
 
 std::vector<Metric> parse_medit_metrics(std::string_view bytes, const std::filesystem::path& path) {
-    return read_medit(bytes, path, [&](auto& file) { return metrics_in(file, path); });
+    MeditReader file(bytes, path);
+    const std::size_t rows = file.find(medit_solution, 1, 0);
+    const std::int64_t fields = file.integer("SolAtVertices");
+    if (fields != one_field) file.fail(fmt::format("{} fields: give a file with one", fields));
+    const std::int64_t type = file.integer("the number of fields");
+    if (type != scalar && type != symmetric_tensor) {
+        file.fail(fmt::format(
+            "field of type {}: give scalars (1), which are sizes, or symmetric tensors (3)", type));
+    }
+    const char* const what = type == scalar ? "size" : "tensor";
+    std::vector<double> numbers(type == scalar ? 1 : medit_tensor.numbers);
+    MetricRows metrics([&] { return file.where(); }, medit_tensor);
+    for (std::size_t i = 0; i < rows; ++i) {
+        for (double& x : numbers) x = file.number({what, i});
+        metrics.add(numbers);
+    }
+    return metrics.take();
 }
 
 std::vector<Point> read_medit_vertices(const std::filesystem::path& mesh) {
@@ -86,9 +73,33 @@ std::vector<PointSource> read_medit_sources(const std::filesystem::path& mesh,
                         "that belong together",
                         mesh.string(), vertices.size(), solution.string(), metrics.size()));
     }
-    std::vector<PointSource> sources(vertices.size());
-    for (std::size_t i = 0; i < sources.size(); ++i) sources[i] = {vertices[i], metrics[i]};
-    return sources;
+    return sources_from(vertices, metrics);
+}
+
+void write_medit_solution(const std::filesystem::path& path, std::span<const Metric> metrics) {
+    MeditWriter file(path, metrics.size() * medit_tensor.numbers * sizeof(double));
+    write_solution(file, metrics, /*sizes=*/false);
+    file.commit();
+}
+
+void write_medit_sources(const std::filesystem::path& path, std::span<const PointSource> sources) {
+    const bool binary = is_binary_medit_name(path), sizes = all_isotropic(sources);
+    std::filesystem::path mesh = path, solution = path;
+    mesh.replace_extension(binary ? ".meshb" : ".mesh");
+    solution.replace_extension(binary ? ".solb" : ".sol");
+    MeditWriter mesh_file(mesh, sources.size() * medit_vertex_bytes);
+    MeditWriter solution_file(solution,
+                              sources.size() * sizeof(double) * (sizes ? 1 : medit_tensor.numbers));
+    std::vector<Metric> metrics;
+    mesh_file.begin(medit_vertices, sources.size(), medit_vertex_bytes);
+    for (const PointSource& s : sources) {
+        mesh_file.row<double>({s.position.data(), 3}, 0);
+        metrics.push_back(s.metric);
+    }
+    mesh_file.finish();
+    write_solution(solution_file, metrics, sizes);
+    mesh_file.commit();
+    solution_file.commit();
 }
 
 }  // namespace controlspace

@@ -1,12 +1,8 @@
 #include "io/text/output_file.h"
 
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
-#include <utility>
+#include <random>
 
 #include "controlspace/error.h"
 
@@ -24,7 +20,8 @@ std::filesystem::path without_links(const std::filesystem::path& path) {
 }  // namespace
 
 std::filesystem::path OutputFile::partial(const std::filesystem::path& path) {
-    return without_links(path) += fmt::format(".{}.partial", ::getpid());
+    static const unsigned process = std::random_device{}();
+    return without_links(path) += fmt::format(".{}.partial", process);
 }
 
 OutputFile::OutputFile(const std::filesystem::path& path) {
@@ -33,38 +30,39 @@ OutputFile::OutputFile(const std::filesystem::path& path) {
         throw InputError(
             fmt::format("cannot write {}: it is a directory, name a file", path.string()));
     }
-    // A file that output is sent to may hold other things already.
+    // A file that standard output is sent to may hold other things already.
     const bool standard_output = path == "/dev/stdout";
     const bool special = standard_output || (std::filesystem::exists(path, ignored) &&
                                              !std::filesystem::is_regular_file(path, ignored));
     target_ = special ? path : without_links(path);
     written_ = special ? path : partial(path);
-    const int flags = O_WRONLY | O_CLOEXEC | (special ? 0 : O_CREAT | O_TRUNC);
-    const int descriptor = standard_output ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
-                                           : ::open(written_.c_str(), flags, 0666);
-    if (descriptor < 0) fail();
-    file_ = ::fdopen(descriptor, "wb");
+    file_ = standard_output ? stdout : std::fopen(written_.string().c_str(), "wb");
     if (file_ == nullptr) fail();
 }
 
 OutputFile::~OutputFile() {
-    if (file_ != nullptr) std::fclose(file_);
+    close();
     if (written_ != target_) {
         std::error_code ignored;
         std::filesystem::remove(written_, ignored);
     }
 }
 
-void OutputFile::write(std::string_view text) {
-    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail();
+void OutputFile::write(std::string_view bytes) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail();
+}
+
+bool OutputFile::close() {
+    std::FILE* file = std::exchange(file_, nullptr);
+    if (file == nullptr) return true;
+    // Some file systems report a full disk only when the file is closed.
+    return (file == stdout ? std::fflush(file) : std::fclose(file)) == 0;
 }
 
 void OutputFile::commit() {
-    std::FILE* file = std::exchange(file_, nullptr);
-    // Some file systems report a full disk only when the file is closed.
-    if (std::fclose(file) != 0) fail();
+    if (!close()) fail();
     if (written_ == target_) return;
-    if (std::rename(written_.c_str(), target_.c_str()) != 0) fail();
+    if (std::rename(written_.string().c_str(), target_.string().c_str()) != 0) fail();
     written_ = target_;
 }
 

@@ -1,15 +1,18 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <string_view>
+#include <utility>
 
 namespace controlspace {
 
-/// A file that is either written whole or not at all: the text goes to a temporary file beside it,
-/// which takes its name on `commit` and is removed otherwise. What is not a regular file
-/// is written to directly, and so is standard output (/dev/stdout), whatever it is. Failures, a
-/// full disk among them, throw InputError.
+/// A file that is written whole or not at all: the bytes go to a temporary file beside it, which is
+/// renamed by `commit` and removed without it. Every writer of this program uses this. What is not
+/// a regular file is written to directly, and so is standard output (/dev/stdout), whatever it is.
+/// Failures, a full disk among them, throw InputError.
 class OutputFile {
 public:
     explicit OutputFile(const std::filesystem::path& path);
@@ -17,22 +20,40 @@ public:
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
 
-    /// Where the text for `path` goes until `commit`, in this process: to be removed by who ends
-    /// the program at once.
+    /// The temporary file for `path` in this process: a program that ends at once removes it.
     static std::filesystem::path partial(const std::filesystem::path& path);
 
-    void write(std::string_view text);
-    /// Where the text goes until `commit`, for writers that open the file themselves.
+    void write(std::string_view bytes);
+    /// Numbers are written so that they read back to the last bit.
+    template <class... Args>
+    void print(fmt::format_string<Args...> format, Args&&... args) {
+        line_.clear();
+        fmt::format_to(std::back_inserter(line_), format, std::forward<Args>(args)...);
+        write({line_.data(), line_.size()});
+    }
+    /// The raw bytes of numbers.
+    template <class Number>
+    void write_raw(const Number* numbers, std::size_t count) {
+        write({reinterpret_cast<const char*>(numbers), count * sizeof(Number)});
+    }
+    template <class Number>
+    void write_raw(Number number) {
+        write_raw(&number, 1);
+    }
+
+    /// Where the bytes go until `commit`, for libraries that open the file themselves.
     const std::filesystem::path& written() const { return written_; }
     /// To be called once, last.
     void commit();
 
 private:
+    bool close();
     [[noreturn]] void fail() const;
 
     std::filesystem::path target_;
     std::filesystem::path written_;  ///< the temporary file, or the target itself
     std::FILE* file_ = nullptr;
+    fmt::memory_buffer line_;
 };
 
 }  // namespace controlspace

@@ -1,11 +1,13 @@
 #include "io/text/text_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <vector>
 
 #include "controlspace/error.h"
 
@@ -84,6 +86,19 @@ std::string quote(std::string_view text) {
     std::string shown = "'";
     for (const char c : text.substr(0, most)) shown += c >= ' ' && c <= '~' ? c : '?';
     return shown + (text.size() > most ? "...'" : "'");
+}
+
+std::size_t chosen_array(const std::filesystem::path& path, std::string_view kind,
+                         std::span<const std::string> names, const std::string& wanted) {
+    std::vector<std::string> quoted;
+    std::vector<std::size_t> chosen;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        quoted.push_back(quote(names[i]));
+        if (wanted.empty() || names[i] == wanted) chosen.push_back(i);
+    }
+    if (chosen.size() == 1) return chosen.front();
+    throw InputError(fmt::format("{}: {} of its {} can be meant: name one of {} (--source-array)",
+                                 path.string(), chosen.size(), kind, fmt::join(quoted, ", ")));
 }
 
 }  // namespace controlspace

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -28,6 +29,11 @@ std::string place(const std::filesystem::path& path, std::size_t line);
 
 /// A piece of a file as a message can quote it: its beginning, in printable characters.
 std::string quote(std::string_view text);
+
+/// Index in `names` of the array that is called `wanted`; of the only one, if that is empty. Throws
+/// InputError that lists them if there is none, or more than one. `kind` is "views", for messages.
+std::size_t chosen_array(const std::filesystem::path& path, std::string_view kind,
+                         std::span<const std::string> names, const std::string& wanted);
 
 /// Whether all of `text` is a number that fits into `value`; a leading + is allowed.
 template <class Number>

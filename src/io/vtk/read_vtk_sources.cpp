@@ -13,9 +13,9 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
-#include <algorithm>
 #include <array>
 #include <new>
+#include <span>
 #include <string_view>
 
 #include "controlspace/error.h"
@@ -28,33 +28,6 @@ namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
     throw InputError(fmt::format("{}: {}", path.string(), what));
-}
-
-/// VTK allocates as much as a file says it holds: what it says is checked first.
-void require_plausible_counts(const std::filesystem::path& path) {
-    const std::string bytes = read_binary_file(path);
-    const std::string_view file(bytes);
-    if (file.find("<VTKFile") == std::string_view::npos) {
-        fail(path, "no VTKFile element: give a file in VTK's XML format");
-    }
-    // A point is 12 bytes or more, which are compressed to a thousandth at best.
-    const std::size_t most = 128 * file.size();
-    constexpr std::string_view counter = " NumberOf";
-    const std::size_t end = std::min(file.find("<AppendedData"), file.size());
-    for (std::size_t at = file.find(counter); at < end; at = file.find(counter, at + 1)) {
-        const std::size_t begin = file.find('"', at);
-        const std::size_t length = std::min(file.find('"', begin + 1), end) - begin - 1;
-        if (begin >= end || length > end) fail(path, "a count is cut off");
-        const std::string_view text = file.substr(begin + 1, length);
-        std::size_t count = 0;
-        if (!parse_number(text, count) || count > most) {
-            const auto line = std::count(bytes.begin(), bytes.begin() + std::ptrdiff_t(at), '\n');
-            throw InputError(
-                fmt::format("{}: {} of {}, but {} bytes cannot hold so many: is it cut off?",
-                            place(path, 1 + std::size_t(line)), file.substr(at + 1, begin - at - 2),
-                            quote(text), file.size()));
-        }
-    }
 }
 
 /// Keeps the first error that VTK's readers report. What they and their helpers say is not printed
@@ -110,72 +83,63 @@ vtkSmartPointer<vtkPointSet> read_points(const std::filesystem::path& path) {
     return reader->GetOutput();
 }
 
-vtkDataArray& chosen_array(const std::filesystem::path& path, vtkPointData& data,
-                           const std::string& name) {
-    std::vector<vtkDataArray*> chosen;
-    std::string names;
+vtkDataArray& array_named(const std::filesystem::path& path, vtkPointData& data,
+                          const std::string& name) {
+    std::vector<vtkDataArray*> arrays;
+    std::vector<std::string> names;
+    std::string all;
     for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
         vtkDataArray* array = data.GetArray(i);
         if (array == nullptr || array->GetName() == nullptr) continue;  // of texts, or nameless
         const std::string its_name = array->GetName();
-        names += (names.empty() ? "" : ", ") + quote(its_name);
-        const bool is_named =
-            name.empty() ? its_name.find(":metric") != its_name.npos : its_name == name;
-        if (is_named) chosen.push_back(array);
+        all += (all.empty() ? "" : ", ") + quote(its_name);
+        if (name.empty() && its_name.find(":metric") == its_name.npos) continue;
+        arrays.push_back(array);
+        names.push_back(its_name);
     }
-    if (chosen.size() == 1) return *chosen.front();
-    if (names.empty()) fail(path, "its points have no arrays: give sizes or metrics at points");
-    fail(path, fmt::format("{} arrays of points are {}; there are {}: name one (--source-array)",
-                           chosen.size(), name.empty() ? "named :metric" : quote(name), names));
-}
-
-std::vector<Metric> metrics_of(const std::filesystem::path& path, vtkDataArray& array) {
-    const int components = array.GetNumberOfComponents();
-    if (components != 1 && components != 6 && components != 9) {
-        fail(path, fmt::format("array {} has {} components: give 1 (sizes), 6 or 9 (tensors)",
-                               quote(array.GetName()), components));
+    if (all.empty()) fail(path, "its points have no arrays: give sizes or metrics at points");
+    if (names.empty()) {
+        fail(path, fmt::format("no array of points is named :metric, there are {}: name one "
+                               "(--source-array)",
+                               all));
     }
-    MetricRows metrics(path, components == 6 ? "XX YY ZZ XY YZ XZ" : "by rows");
-    std::array<double, 9> t{};
-    for (vtkIdType i = 0; i < array.GetNumberOfTuples(); ++i) {
-        array.GetTuple(i, t.data());
-        if (components == 1) {
-            metrics.add_size(t[0]);
-        } else if (components == 6) {
-            metrics.add_tensor({t[0], t[1], t[2], t[3], t[5], t[4]});
-        } else {
-            metrics.add_matrix(t);
-        }
-    }
-    return metrics.take();
+    return *arrays[chosen_array(path, "arrays of points", names, name)];
 }
 
 }  // namespace
 
 std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
                                           const std::string& array) {
-    require_plausible_counts(path);
+    if (read_binary_file(path).find("<VTKFile") == std::string::npos) {
+        fail(path, "no VTKFile element: give a file in VTK's XML format");
+    }
     const auto grid = lower_case_extension(path) == ".vtp"
                           ? read_points<vtkXMLPolyDataReader>(path)
                           : read_points<vtkXMLUnstructuredGridReader>(path);
-    vtkDataArray& values = chosen_array(path, *grid->GetPointData(), array);
+    vtkDataArray& values = array_named(path, *grid->GetPointData(), array);
     const vtkIdType count = grid->GetNumberOfPoints();
     if (count == 0) fail(path, "no points: nothing to read");
     if (values.GetNumberOfTuples() != count) {
         fail(path, fmt::format("{} points, but {} values in {}: is it cut off?", count,
                                values.GetNumberOfTuples(), quote(values.GetName())));
     }
-    const std::vector<Metric> metrics = metrics_of(path, values);
-    std::vector<PointSource> sources(metrics.size());
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-        sources[i].metric = metrics[i];
-        grid->GetPoint(static_cast<vtkIdType>(i), sources[i].position.data());
-        for (const double x : sources[i].position) {
-            if (!is_coordinate(x))
-                fail(path, fmt::format("point {} has a coordinate {}", i + 1, x));
-        }
+    const auto components = static_cast<std::size_t>(values.GetNumberOfComponents());
+    if (components != 1 && components != vtk_tensor.numbers && components != matrix_rows.numbers) {
+        fail(path, fmt::format("array {} has {} components: give 1 (sizes), 6 or 9 (tensors)",
+                               quote(values.GetName()), components));
     }
-    return sources;
+    const auto where = [&] { return path.string(); };
+    MetricRows metrics(where, components == vtk_tensor.numbers ? vtk_tensor : matrix_rows);
+    std::vector<Point> positions(static_cast<std::size_t>(count));
+    std::array<double, 9> numbers{};
+    for (vtkIdType i = 0; i < count; ++i) {
+        Point& x = positions[static_cast<std::size_t>(i)];
+        grid->GetPoint(i, x.data());
+        require_coordinates(x, "point", static_cast<std::size_t>(i) + 1, where);
+        values.GetTuple(i, numbers.data());
+        metrics.add(std::span(numbers).first(components));
+    }
+    return sources_from(positions, metrics.take());
 }
 
 }  // namespace controlspace

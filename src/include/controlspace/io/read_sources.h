@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,16 +11,27 @@ namespace controlspace {
 
 /// Sources from a file, by its extension:
 ///   - `.csv`: a line of names, x, y, z and either h, or m_xx, m_yy, m_zz, m_xy, m_xz, m_yz (the
-///     tensor of lengths M), or h1, h2, h3, e1x, e1y, e1z, e2x, e2y, e2z (lengths along two
-///     orthogonal directions and across them);
+///     tensor M, whose eigenvalues are lengths), or h1, h2, h3, e1x, e1y, e1z, e2x, e2y, e2z
+///     (lengths along two orthogonal directions and normal to both);
 ///   - `.mesh`, `.meshb`, `.sol` or `.solb`: a Medit mesh or solution that has the other beside it
 ///     under the same name, with lengths, or Riemannian metrics M^-2 as xx xy yy xz yz zz;
-///   - `.pos`: a list view of Gmsh, with lengths, or Riemannian metrics.
-/// A pipe without an extension is read as CSV. Throws InputError, naming file and line or offset,
-/// for anything that cannot be read as such.
-std::vector<PointSource> read_sources(const std::filesystem::path& path);
+///   - `.pos` and `.msh`: a list view of Gmsh, or a mesh (format 4.1) with $NodeData, with lengths,
+///     or Riemannian metrics M^-2 by rows; `array` names the view, if there is more than one.
+/// Lengths are in the units of the positions. A pipe without an extension is read as CSV. Throws
+/// InputError, naming file and line or offset, for anything that cannot be read as such, and
+/// naming the first tensor that is not positive definite.
+std::vector<PointSource> read_sources(const std::filesystem::path& path,
+                                      const std::string& array = {});
 
-/// The ending of a file's name, which tells its format, in small letters: ".csv".
+/// Writes `sources` in the format that the name's ending says: .csv, .pos, .vtu, .vtp, or .mesh,
+/// .sol, .meshb or .solb, which makes a mesh and a solution. read_sources, and read_vtk_sources for
+/// .vtu and .vtp, read them again: the same to the last bit from .csv and where all are isotropic.
+/// Throws InputError for another ending, and if writing fails, of which nothing is left.
+void write_sources(const std::filesystem::path& path, std::span<const PointSource> sources);
+
+/// `text` with small letters in place of capital ones (ASCII).
+std::string lower_case(std::string text);
+/// The extension of a file's name, which tells its format, in small letters: ".csv".
 std::string lower_case_extension(const std::filesystem::path& path);
 
 }  // namespace controlspace

@@ -9,28 +9,32 @@
 
 namespace controlspace {
 
-// Files for ParaView and whatever reads VTK's XML formats, with the arrays of add_metric_arrays.
-// Each throws InputError if its file cannot be written, of which nothing is left then.
+// Files for ParaView and other programs that read VTK's XML formats, written without VTK, with the
+// arrays `controlspace:metric`, the Riemannian metric M^-2 as a matrix by rows (9 components), and
+// `h_min`, `h_max`, `h_mean` and `anisotropy`: smallest, largest and mean length in the units of
+// the domain, and the ratio of the first two. Each function throws InputError if its file cannot
+// be written, and leaves no part of it.
 
-/// The elements of `space` as hexahedra (.vtu), with the metrics at their centres as data of cells.
+/// The leaves or cells of `space` as hexahedra (.vtu), with the metrics at their centres as data of
+/// cells.
 void write_leaves(const std::filesystem::path& path, const ControlSpace& space);
 
 /// The control nodes of `space` as vertices (.vtu), with their metrics as data of points.
 void write_nodes(const std::filesystem::path& path, const ControlSpace& space);
 
 /// An octree as vtkHyperTreeGrid (.htg): one tree of branch factor 2, with the metrics at the
-/// centres of all its boxes as data of cells. Throws InputError for other structures too.
+/// centres of all its boxes as data of cells. Throws InputError for other structures, too.
 void write_octree(const std::filesystem::path& path, const ControlSpace& space);
 
 /// A plane across the domain.
 struct Slice {
-    Axis axis = 2;      ///< that it is across
+    Axis axis = 2;      ///< normal to the plane
     double at = 0;      ///< coordinate along that axis
-    int samples = 512;  ///< places along the longer edge of the domain
+    int samples = 512;  ///< points along the longer edge of the domain
 };
 
-/// The field on a slice through `domain` as an image (.vti), with data of points; the places along
-/// the shorter edge are as far apart as along the longer one, or nearly. Throws InputError for a
+/// The field on a slice through `domain` as an image (.vti), with data of points; points along the
+/// shorter edge have the same distance as along the longer one, or nearly. Throws InputError for a
 /// slice outside the domain, and unless there are from 2 to 8192 samples.
 void write_slice(const std::filesystem::path& path, const MetricField& field, const Box& domain,
                  const Slice& slice);

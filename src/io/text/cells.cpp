@@ -1,4 +1,4 @@
-#include "io/vtk/elements.h"
+#include "io/text/cells.h"
 
 #include <algorithm>
 #include <array>

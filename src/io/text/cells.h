@@ -7,7 +7,7 @@
 
 namespace controlspace {
 
-/// The elements of any structure, each once: the leaves of a tree, the cells of a grid, as far as
+/// The cells of any structure, each once: the leaves of a tree, the cells of a grid, as far as
 /// they lie in the domain. Found by asking for the element at places, so that nothing needs to be
 /// known of the structure; in ascending order of their low corners, x first.
 std::vector<Box> elements_of(const ControlSpace& space);

@@ -1,12 +1,13 @@
-#include "controlspace/io/read_sources.h"
-
 #include <fmt/format.h>
 
 #include <string>
 
 #include "controlspace/error.h"
+#include "controlspace/io/read_sources.h"
+#include "controlspace/io/write_vtk.h"
 #include "io/text/csv.h"
 #include "io/text/medit.h"
+#include "io/text/msh.h"
 #include "io/text/pos.h"
 
 namespace controlspace {
@@ -27,13 +28,16 @@ std::filesystem::path partner(const std::filesystem::path& path, const char* lik
 
 }  // namespace
 
-std::string lower_case_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 'a' - 'A') : c;
-    return extension;
+std::string lower_case(std::string text) {
+    for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 'a' - 'A') : c;
+    return text;
 }
 
-std::vector<PointSource> read_sources(const std::filesystem::path& path) {
+std::string lower_case_extension(const std::filesystem::path& path) {
+    return lower_case(path.extension().string());
+}
+
+std::vector<PointSource> read_sources(const std::filesystem::path& path, const std::string& array) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) {
         throw InputError(fmt::format("{}: no such file", path.string()));
@@ -47,11 +51,25 @@ std::vector<PointSource> read_sources(const std::filesystem::path& path) {
     if (extension == ".sol") return read_medit_sources(partner(path, ".mesh", ".meshb"), path);
     if (extension == ".meshb") return read_medit_sources(path, partner(path, ".solb", ".sol"));
     if (extension == ".solb") return read_medit_sources(partner(path, ".meshb", ".mesh"), path);
-    if (extension == ".pos") return read_pos_sources(path);
+    if (extension == ".pos") return read_pos_sources(path, array);
+    if (extension == ".msh") return read_msh_sources(path, array);
     // A pipe, as of <(command), has a name that says nothing.
     if (!std::filesystem::is_regular_file(path, ignored)) return read_csv_sources(path);
     throw InputError(
-        fmt::format("{}: name a .csv, a .mesh beside a .sol, or a .pos", path.string()));
+        fmt::format("{}: name a .csv, a .mesh beside a .sol, a .pos or a .msh", path.string()));
+}
+
+void write_sources(const std::filesystem::path& path, std::span<const PointSource> sources) {
+    const std::string extension = lower_case_extension(path);
+    if (extension == ".csv") return write_csv_sources(path, sources);
+    if (extension == ".pos") return write_pos_sources(path, sources);
+    if (extension == ".vtu" || extension == ".vtp") return write_vtk_sources(path, sources);
+    if (extension == ".mesh" || extension == ".sol" || extension == ".meshb" ||
+        extension == ".solb") {
+        return write_medit_sources(path, sources);
+    }
+    throw InputError(fmt::format(
+        "{}: name a .csv, .mesh, .sol, .meshb, .solb, .pos, .vtu or .vtp to write", path.string()));
 }
 
 }  // namespace controlspace

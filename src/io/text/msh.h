@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "controlspace/sources/point_source.h"
+
+namespace controlspace {
+
+/// Sources at the nodes of a mesh of Gmsh (.msh, format 4.1, text or binary) that carry $NodeData:
+/// sizes h (1 component) or Riemannian metrics M^-2 (9, by rows), of the first step in time, by
+/// ascending number of the node. `view` names the data; empty: the only ones.
+///
+/// Throws InputError with the place for what cannot be read so, for counts that the file has no
+/// room for, and for data that are no metrics.
+std::vector<PointSource> read_msh_sources(const std::filesystem::path& path,
+                                          const std::string& view = {});
+
+}  // namespace controlspace

@@ -1,0 +1,169 @@
+#include "io/text/vtk_xml.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <string_view>
+
+#include "controlspace/io/read_sources.h"
+#include "io/text/metric_rows.h"
+#include "io/text/output_file.h"
+
+namespace controlspace {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the files say so");
+
+/// A file in the making: the XML, and the arrays that are appended to it.
+class Xml {
+public:
+    explicit Xml(std::string_view type) : type_(type) {
+        add(
+            fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"{}\" version=\"1.0\" "
+                        "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n",
+                        type));
+    }
+
+    void add(std::string_view text) { text_ += text; }
+
+    /// `values` must outlive this. The number of tuples is written unless it is 0.
+    template <class Value>
+    void add_array(std::string_view name, std::string_view type, int components,
+                   const std::vector<Value>& values, std::size_t tuples = 0) {
+        text_ += fmt::format(
+            "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
+            "offset=\"{}\"{}/>\n",
+            type, name, components, offset_,
+            tuples == 0 ? "" : fmt::format(" NumberOfTuples=\"{}\"", tuples));
+        const std::string_view bytes(reinterpret_cast<const char*>(values.data()),
+                                     values.size() * sizeof(Value));
+        arrays_.push_back(bytes);
+        offset_ += sizeof(std::uint64_t) + bytes.size();
+    }
+    void add_arrays(std::string_view element, std::span<const VtkArray> arrays,
+                    std::size_t tuples = 0) {
+        text_ += fmt::format("<{}>\n", element);
+        for (const VtkArray& a : arrays)
+            add_array(a.name, "Float64", a.components, a.values, tuples);
+        text_ += fmt::format("</{}>\n", element);
+    }
+
+    void write(const std::filesystem::path& path) const {
+        OutputFile file(path);
+        file.print("{}</{}>\n<AppendedData encoding=\"raw\">\n_", text_, type_);
+        for (const std::string_view bytes : arrays_) {
+            file.write_raw(std::uint64_t{bytes.size()});
+            file.write(bytes);
+        }
+        file.write("\n</AppendedData>\n</VTKFile>\n");
+        file.commit();
+    }
+
+private:
+    std::string_view type_;
+    std::string text_;
+    std::vector<std::string_view> arrays_;
+    std::uint64_t offset_ = 0;
+};
+
+}  // namespace
+
+std::vector<VtkArray> metric_arrays(std::span<const Metric> metrics) {
+    std::vector<VtkArray> arrays{{vtk_metric_array, 9, {}},
+                                 {"h_min", 1, {}},
+                                 {"h_max", 1, {}},
+                                 {"h_mean", 1, {}},
+                                 {"anisotropy", 1, {}}};
+    for (VtkArray& array : arrays) {
+        array.values.reserve(metrics.size() * static_cast<std::size_t>(array.components));
+    }
+    for (const Metric& m : metrics) {
+        const auto rows = numbers_of(m, matrix_rows);
+        arrays[0].values.insert(arrays[0].values.end(), rows.begin(), rows.end());
+        const auto lengths = eigen_frame(m).lengths;
+        arrays[1].values.push_back(lengths[0]);
+        arrays[2].values.push_back(lengths[2]);
+        arrays[3].values.push_back(mean_length(m));
+        arrays[4].values.push_back(lengths[2] / lengths[0]);
+    }
+    return arrays;
+}
+
+void write_vtk_grid(const std::filesystem::path& path, std::span<const Point> points,
+                    const VtkCells& cells, std::span<const VtkArray> point_data,
+                    std::span<const VtkArray> cell_data) {
+    VtkArray coordinates{"Points", 3, {}};
+    for (const Point& p : points) {
+        coordinates.values.insert(coordinates.values.end(), p.begin(), p.end());
+    }
+    const std::size_t count = cells.points.size() / cells.corners;
+    std::vector<std::int64_t> ends(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        ends[i] = static_cast<std::int64_t>((i + 1) * cells.corners);
+    }
+    const std::vector<std::uint8_t> types(count, cells.type);
+
+    const bool poly = lower_case_extension(path) == ".vtp";
+    const std::string_view type = poly ? "PolyData" : "UnstructuredGrid";
+    Xml xml(type);
+    xml.add(fmt::format("<{}>\n<Piece NumberOfPoints=\"{}\" ", type, points.size()));
+    xml.add(poly ? fmt::format("NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
+                               "NumberOfPolys=\"0\">\n",
+                               count)
+                 : fmt::format("NumberOfCells=\"{}\">\n", count));
+    xml.add_arrays("PointData", point_data);
+    xml.add_arrays("CellData", cell_data);
+    xml.add_arrays("Points", {&coordinates, 1});
+    xml.add(poly ? "<Verts>\n" : "<Cells>\n");
+    xml.add_array("connectivity", "Int64", 1, cells.points);
+    xml.add_array("offsets", "Int64", 1, ends);
+    if (!poly) xml.add_array("types", "UInt8", 1, types);
+    xml.add(poly ? "</Verts>\n</Piece>\n" : "</Cells>\n</Piece>\n");
+    xml.write(path);
+}
+
+void write_vtk_image(const std::filesystem::path& path, const Point& origin, const Vector& spacing,
+                     const std::array<int, 3>& counts, std::span<const VtkArray> point_data) {
+    const std::string extent =
+        fmt::format("0 {} 0 {} 0 {}", counts[0] - 1, counts[1] - 1, counts[2] - 1);
+    Xml xml("ImageData");
+    xml.add(fmt::format(
+        "<ImageData WholeExtent=\"{}\" Origin=\"{} {} {}\" Spacing=\"{} {} {}\">\n"
+        "<Piece Extent=\"{}\">\n",
+        extent, origin.x(), origin.y(), origin.z(), spacing.x(), spacing.y(), spacing.z(), extent));
+    xml.add_arrays("PointData", point_data);
+    xml.add("</Piece>\n");
+    xml.write(path);
+}
+
+void write_vtk_octree(const std::filesystem::path& path, const Box& domain,
+                      const std::vector<bool>& is_split, std::vector<std::int64_t> level_counts,
+                      std::span<const VtkArray> cell_data) {
+    // Bits, the first of a byte in its highest place; the last level has no children.
+    const std::size_t bits = is_split.size() - static_cast<std::size_t>(level_counts.back());
+    std::vector<std::uint8_t> descriptor((bits + 7) / 8);
+    for (std::size_t i = 0; i < bits; ++i) {
+        if (is_split[i]) descriptor[i / 8] |= static_cast<std::uint8_t>(0x80 >> i % 8);
+    }
+    std::array<std::vector<double>, 3> ends;
+    Xml xml("HyperTreeGrid");
+    xml.add(
+        "<HyperTreeGrid BranchFactor=\"2\" TransposedRootIndexing=\"0\" Dimensions=\"2 2 2\">\n"
+        "<Grid>\n");
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto axis = static_cast<Axis>(a);
+        ends[a] = {domain.low[axis], domain.high[axis]};
+        xml.add_array(fmt::format("{}Coordinates", "XYZ"[a]), "Float64", 1, ends[a], 2);
+    }
+    xml.add(
+        fmt::format("</Grid>\n<Trees>\n<Tree Index=\"0\" NumberOfLevels=\"{}\" "
+                    "NumberOfVertices=\"{}\">\n",
+                    level_counts.size(), is_split.size()));
+    xml.add_array("Descriptor", "Bit", 1, descriptor, bits);
+    xml.add_array("NbVerticesByLevel", "Int64", 1, level_counts, level_counts.size());
+    xml.add_arrays("CellData", cell_data, is_split.size());
+    xml.add("</Tree>\n</Trees>\n");
+    xml.write(path);
+}
+
+}  // namespace controlspace

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "controlspace/geometry/box.h"
+#include "controlspace/metric/metric.h"
+
+namespace controlspace {
+
+// Files of VTK's XML formats, written without VTK: XML with the numbers as raw binary data behind
+// it. Each writer throws InputError if that fails; no part of a file is left.
+
+/// Name of the array that holds metrics: programs that read metrics from VTK files (MMG) look for
+/// ":metric".
+inline constexpr const char* vtk_metric_array = "controlspace:metric";
+
+/// Data of points or cells.
+struct VtkArray {
+    std::string name;
+    int components = 1;
+    std::vector<double> values;
+};
+
+/// What is shown of `metrics`, in their order: vtk_metric_array, the Riemannian metric M^-2 by
+/// rows, 9 components; h_min, h_max and h_mean, the smallest, largest and mean length; and
+/// anisotropy, the ratio of the largest to the smallest.
+std::vector<VtkArray> metric_arrays(std::span<const Metric> metrics);
+
+/// Cells of one kind.
+struct VtkCells {
+    static constexpr std::uint8_t vertex = 1, tetrahedron = 10, hexahedron = 12;
+
+    std::uint8_t type = vertex;
+    std::size_t corners = 1;
+    std::vector<std::int64_t> points;  ///< of one cell after the other
+};
+
+/// A grid of cells: .vtu, or .vtp (vertices only) by the ending of the name.
+void write_vtk_grid(const std::filesystem::path& path, std::span<const Point> points,
+                    const VtkCells& cells, std::span<const VtkArray> point_data,
+                    std::span<const VtkArray> cell_data);
+
+/// An image of counts[0] x counts[1] x counts[2] points, x fastest: .vti.
+void write_vtk_image(const std::filesystem::path& path, const Point& origin, const Vector& spacing,
+                     const std::array<int, 3>& counts, std::span<const VtkArray> point_data);
+
+/// A tree of branch factor 2 over `domain`, breadth first, x fastest among siblings:
+/// vtkHyperTreeGrid (.htg). `is_split` says of each box whether it has children, `level_counts` how
+/// many boxes each level has.
+void write_vtk_octree(const std::filesystem::path& path, const Box& domain,
+                      const std::vector<bool>& is_split, std::vector<std::int64_t> level_counts,
+                      std::span<const VtkArray> cell_data);
+
+}  // namespace controlspace
