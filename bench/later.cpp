@@ -56,7 +56,7 @@ Work inside(double rho) {
     const std::vector<Point> places = random_points(domain, work.early.size() / 100, 1);
     std::vector<Metric> sizes(places.size());
     exact_reference(work.early, 1.25, Metric::isotropic(domain.half_diagonal()))
-        ->evaluate(places, sizes);
+        ->sample(places, sizes);
     for (std::size_t i = 0; i < places.size(); ++i) {
         work.late.push_back({places[i], Metric::isotropic(0.5 * sizes[i].xx)});
     }

@@ -52,7 +52,7 @@ public:
         cones.evaluate(x, out);
         if (!continuous_) return;
         std::vector<Metric> own(x.size());
-        continuous_->evaluate(x, own);
+        continuous_->sample(x, own);
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = intersection(out[i], own[i]);
     }
 
@@ -178,7 +178,7 @@ private:
     Box domain_;
     double ratio_;
     std::vector<PointSource> sources_;  ///< as inserted
-    std::shared_ptr<const MetricField> continuous_;
+    std::shared_ptr<const ControlSpace> continuous_;
     mutable std::mutex building_;
     mutable std::atomic<bool> built_ = false;
     mutable std::unique_ptr<ConeField> field_;  ///< of all sources, once built

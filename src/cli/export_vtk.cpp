@@ -6,7 +6,6 @@
 #include "cli/export.h"
 #include "controlspace/error.h"
 #include "controlspace/io/write_vtk.h"
-#include "controlspace/space/space_field.h"
 #include "io/text/text_file.h"
 
 namespace controlspace {
@@ -46,7 +45,7 @@ Slice slice_of(const SliceOptions& options, const Box& domain) {
 std::string write_image(const Export& e, const SliceOptions& options) {
     const ControlSpace& space = *e.filled.space;
     const Slice slice = slice_of(options, space.domain());
-    write_slice(e.output, SpaceAsField(space), space.domain(), slice);
+    write_slice(e.output, space, space.domain(), slice);
     return written(e, fmt::format("a slice at {} = {}", "xyz"[slice.axis], slice.at));
 }
 

@@ -19,7 +19,6 @@
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/space/control_space_file.h"
-#include "controlspace/space/space_field.h"
 #include "study/run.h"
 
 namespace controlspace {
@@ -36,7 +35,7 @@ struct MeshJob {
 struct Reference {
     Case first;  ///< of these cases
     Workload workload;
-    std::shared_ptr<const MetricField> field;
+    std::shared_ptr<const ControlSpace> field;
     Probes probes;
     Mesher mesher = Mesher::delaunay;  ///< the choice of `auto` taken
 };
@@ -101,7 +100,7 @@ private:
         row.mesher = reference.mesher;
         folder_.add(
             std::move(row), reference.workload.domain, *reference.field,
-            [&](MeshRow&) -> const MetricField& { return *reference.field; }, interruption_);
+            [&](MeshRow&) -> const ControlSpace& { return *reference.field; }, interruption_);
     }
 
     void mesh_case(const Case& c, const Reference& reference) {
@@ -109,8 +108,7 @@ private:
         row.setting = c;
         row.mesher = reference.mesher;
         std::unique_ptr<ControlSpace> space;
-        std::optional<SpaceAsField> field;
-        const auto make = [&](MeshRow& made) -> const MetricField& {
+        const auto make = [&](MeshRow& made) -> const ControlSpace& {
             Measures measures;
             load_module_of(c.structure);  // before its creation is timed
             space = finish(*make_and_fill(study_, c, entry_of(c, structures()),
@@ -120,7 +118,7 @@ private:
             const Accuracy delta_r = accuracy(*space, reference.probes);
             made.delta_r_max = delta_r.max;
             made.delta_r_mean = delta_r.mean;
-            return field.emplace(*space);
+            return *space;
         };
         folder_.add(std::move(row), reference.workload.domain, *reference.field, make,
                     interruption_);
@@ -136,17 +134,16 @@ private:
 /// Meshes a control space that was saved; it is the reference too.
 void mesh_saved(const std::filesystem::path& file, const ControlSpace& space, int probe_grid,
                 MeshFolder& folder, Interruption& interruption) {
-    const SpaceAsField field(space);
     MeshRow row;
     row.saved = file;
     row.setting.structure = recipe_of(space)->structure;
-    const auto probes = make_probes(field, cell_centres(space.domain(), probe_grid));
+    const auto probes = make_probes(space, cell_centres(space.domain(), probe_grid));
     row.mesher = chosen_mesher(folder.settings().mesher, probes.reference);
     if (row.mesher == Mesher::mmg) require_mmg(mmg_options(folder.settings(), folder.path()));
     folder.begin();
     folder.add(
-        std::move(row), space.domain(), field,
-        [&](MeshRow&) -> const MetricField& { return field; }, interruption);
+        std::move(row), space.domain(), space,
+        [&](MeshRow&) -> const ControlSpace& { return space; }, interruption);
     folder.end();
 }
 

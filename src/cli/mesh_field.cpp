@@ -9,6 +9,7 @@
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/gmsh/gmsh_mesher.h"
 #include "controlspace/mesh/mesh_files.h"
+#include "controlspace/space/sample_parallel.h"
 #include "io/text/medit.h"
 #include "mesh/estimate.h"
 #include "mesh/size_query.h"
@@ -34,7 +35,7 @@ GmshOptions gmsh_options(const MeshSettings& settings, GmshAlgorithm algorithm) 
             .max_tets = settings.max_tets};
 }
 
-GmshRun start_mesh(const Box& domain, const MetricField& field, const MeshSettings& settings) {
+GmshRun start_mesh(const Box& domain, const ControlSpace& field, const MeshSettings& settings) {
     if (settings.start == MeshStart::coarse) return mesh_with_gmsh(domain, coarse_field(domain));
     const bool hxt = settings.start == MeshStart::hxt;
     GmshOptions options =
@@ -59,7 +60,7 @@ MmgOptions mmg_options(const MeshSettings& settings, const std::filesystem::path
             .folder = folder};
 }
 
-TetMesh make_mesh(const Box& domain, const MetricField& field, const MeshSettings& settings,
+TetMesh make_mesh(const Box& domain, const ControlSpace& field, const MeshSettings& settings,
                   const std::filesystem::path& folder, MeshRow& row) {
     if (row.mesher == Mesher::mmg) {
         require_few_tets(domain, field, settings.max_tets);
@@ -88,7 +89,7 @@ TetMesh make_mesh(const Box& domain, const MetricField& field, const MeshSetting
     return std::move(run.mesh);
 }
 
-void write_mesh(const std::filesystem::path& stem, const TetMesh& mesh, const MetricField& field,
+void write_mesh(const std::filesystem::path& stem, const TetMesh& mesh, const ControlSpace& field,
                 const MeshSettings& settings) {
     const auto file = [&](const char* ending) { return stem.string() + ending; };
     for (const std::string& kind : settings.files) {
@@ -98,7 +99,7 @@ void write_mesh(const std::filesystem::path& stem, const TetMesh& mesh, const Me
             write_vtu(file(".vtu"), mesh, field);
         } else {
             std::vector<Metric> metrics(mesh.vertices.size());
-            field.evaluate(mesh.vertices, metrics);
+            sample_parallel(field, mesh.vertices, metrics);
             write_medit_mesh(file(".mesh"), mesh);
             write_medit_solution(file(".sol"), metrics);
         }

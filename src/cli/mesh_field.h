@@ -5,7 +5,7 @@
 
 #include "controlspace/geometry/box.h"
 #include "controlspace/mesh/tet_mesh.h"
-#include "controlspace/metric/metric_field.h"
+#include "controlspace/space/control_space.h"
 #include "mesh/mesh_rows.h"
 #include "mesh/mesh_settings.h"
 #include "mesh/mmg_mesher.h"
@@ -20,11 +20,11 @@ MmgOptions mmg_options(const MeshSettings& settings, const std::filesystem::path
 
 /// Meshes the box by the row's mesher, and enters into the row what that took. What the mesher
 /// throws passes through.
-TetMesh make_mesh(const Box& domain, const MetricField& field, const MeshSettings& settings,
+TetMesh make_mesh(const Box& domain, const ControlSpace& field, const MeshSettings& settings,
                   const std::filesystem::path& folder, MeshRow& row);
 
 /// Writes a mesh in the settings' formats, to `stem` with their endings. Throws InputError.
-void write_mesh(const std::filesystem::path& stem, const TetMesh& mesh, const MetricField& field,
+void write_mesh(const std::filesystem::path& stem, const TetMesh& mesh, const ControlSpace& field,
                 const MeshSettings& settings);
 
 }  // namespace controlspace

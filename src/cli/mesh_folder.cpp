@@ -34,12 +34,12 @@ void MeshFolder::begin() {
     record(false);
 }
 
-void MeshFolder::add(MeshRow row, const Box& domain, const MetricField& reference,
-                     const std::function<const MetricField&(MeshRow&)>& field,
+void MeshFolder::add(MeshRow row, const Box& domain, const ControlSpace& reference,
+                     const std::function<const ControlSpace&(MeshRow&)>& field,
                      Interruption& interruption) {
     restart_peak_memory();
     try {
-        const MetricField& meshed = field(row);
+        const ControlSpace& meshed = field(row);
         const TetMesh mesh = make_mesh(domain, meshed, settings_, path_, row);
         row.peak_bytes = std::max(row.peak_bytes, peak_memory());
         row.conformity = conformity(mesh, reference);

@@ -7,7 +7,7 @@
 
 #include "cli/signals.h"
 #include "controlspace/geometry/box.h"
-#include "controlspace/metric/metric_field.h"
+#include "controlspace/space/control_space.h"
 #include "mesh/mesh_rows.h"
 #include "mesh/mesh_settings.h"
 #include "study/provenance.h"
@@ -28,8 +28,8 @@ public:
     /// Meshes the box by the row's mesher, measures how the mesh conforms to `reference`, and
     /// writes both. `field` gives what is meshed, which must live as long as it does, and may enter
     /// into the row what it took. What goes wrong goes into the row.
-    void add(MeshRow row, const Box& domain, const MetricField& reference,
-             const std::function<const MetricField&(MeshRow&)>& field, Interruption& interruption);
+    void add(MeshRow row, const Box& domain, const ControlSpace& reference,
+             const std::function<const ControlSpace&(MeshRow&)>& field, Interruption& interruption);
     /// Writes the summary.
     void end();
 

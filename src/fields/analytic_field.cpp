@@ -11,13 +11,8 @@
 namespace controlspace {
 
 AnalyticField function_field(std::function<Metric(const Point&)> formula, double finest_length,
-                             const Box& definition) {
-    if (!is_length(finest_length)) {
-        throw InputError(
-            fmt::format("finest length {} of a field: give the smallest length that "
-                        "it asks for, a positive number",
-                        finest_length));
-    }
+                             const Box& domain) {
+    require_length("finest length of a field", finest_length);
     auto checked = [formula = std::move(formula)](const Point& p) {
         const Metric m = formula(p);
         if (!is_positive_definite(m)) {
@@ -28,16 +23,18 @@ AnalyticField function_field(std::function<Metric(const Point&)> formula, double
         }
         return m;
     };
-    return {std::make_shared<FormulaField<decltype(checked)>>(std::move(checked)), definition,
+    return {std::make_shared<FormulaField<decltype(checked)>>(std::move(checked), domain),
             finest_length};
 }
 
 void require_defined(const AnalyticField& field, const Box& domain, const std::string& name) {
-    if (field.definition.contains(domain.low) && field.definition.contains(domain.high)) return;
+    if (!field.field) return;
+    const Box definition = field.field->domain();
+    if (definition.contains(domain.low) && definition.contains(domain.high)) return;
     throw InputError(
         fmt::format("the field {} is defined in {}, but the domain is {}: give one "
                     "that lies within",
-                    name, to_string(field.definition), to_string(domain)));
+                    name, to_string(definition), to_string(domain)));
 }
 
 }  // namespace controlspace

@@ -96,7 +96,7 @@ TetMesh take_mesh(const UnitFrame& frame) {
     return mesh;
 }
 
-void require_valid(const Box& domain, const MetricField& field, const GmshOptions& options) {
+void require_valid(const Box& domain, const ControlSpace& field, const GmshOptions& options) {
     require_volume(domain);
     const double factor = options.factor.value_or(1);
     if (!std::isfinite(factor) || factor <= 0) {
@@ -122,7 +122,7 @@ double standard_optimize(GmshAlgorithm algorithm) {
     return algorithm == GmshAlgorithm::hxt ? 0.6 : 0.75;
 }
 
-GmshRun mesh_with_gmsh(const Box& domain, const MetricField& field, const GmshOptions& options) {
+GmshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshOptions& options) {
     require_valid(domain, field, options);
     const UnitFrame frame(domain);
     SizeQuery query(field, frame, options.factor.value_or(standard_factor(options.algorithm)));

@@ -11,7 +11,7 @@
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
-#include "measure/percentile.h"
+#include "controlspace/space/sample_parallel.h"
 
 namespace controlspace {
 
@@ -31,6 +31,15 @@ void for_each_block(std::size_t n, Block&& block) {
         const std::size_t begin = b * block_size;
         block(b, begin, std::min(begin + block_size, n));
     });
+}
+
+// The least of `values` that at least `percent` per cent of them do not exceed (nearest rank).
+// Reorders them; there must be one.
+double percentile(std::vector<double>& values, std::size_t percent) {
+    const std::size_t rank = (values.size() * percent + 99) / 100;
+    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(rank - 1);
+    std::nth_element(values.begin(), nth, values.end());
+    return *nth;
 }
 
 }  // namespace
@@ -57,10 +66,10 @@ std::vector<Point> cell_centres(const Box& box, int n) {
     return points;
 }
 
-Probes make_probes(const MetricField& field, std::vector<Point> points) {
+Probes make_probes(const ControlSpace& field, std::vector<Point> points) {
     Probes probes{std::move(points), {}};
     probes.reference.resize(probes.points.size());
-    field.evaluate(probes.points, probes.reference);
+    sample_parallel(field, probes.points, probes.reference);
     return probes;
 }
 

@@ -12,22 +12,15 @@
 #include "cones/cone_field.h"
 #include "controlspace/error.h"
 #include "controlspace/fields/surface_fields.h"
-#include "controlspace/metric/evaluate.h"
+#include "controlspace/gradation/grade.h"
 #include "controlspace/metric/intersection.h"
 
 namespace controlspace {
 
 namespace {
 
-void require_ratio(double g) {
-    if (!std::isfinite(g) || g < 1) {
-        throw InputError(
-            fmt::format("gradation ratio {} of the reference: give a finite one >= 1", g));
-    }
-}
-
 void require_usable(std::span<const PointSource> sources, double g, const Metric& largest) {
-    require_ratio(g);
+    require_valid(GradationOptions{.ratio = g});
     if (!is_positive_definite(largest)) {
         throw InputError(
             fmt::format("largest metric {} of the reference is not positive definite: "
@@ -52,22 +45,21 @@ void require_usable(std::span<const PointSource> sources, double g, const Metric
     }
 }
 
-class ExactReference : public MetricField {
+class ExactReference final : public ControlSpace {
 public:
     ExactReference(std::span<const PointSource> sources, double g, const Metric& largest,
                    double tolerance)
         : field_(sources, g, largest, tolerance) {}
 
-    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
-        evaluate_blocks(x, out,
-                        [this](auto points, auto metrics) { field_.evaluate(points, metrics); });
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+        field_.evaluate(x, out);
     }
 
 private:
     ConeField field_;
 };
 
-class BruteForceReference : public MetricField {
+class BruteForceReference final : public ControlSpace {
 public:
     BruteForceReference(std::vector<PointSource> sources, double g, const Metric& largest)
         : sources_(std::move(sources)), g_(g), largest_(largest) {
@@ -75,8 +67,8 @@ public:
         for (const PointSource& s : sources_) smallest_.push_back(eigen_frame(s.metric).lengths[0]);
     }
 
-    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
-        evaluate_each(x, out, [this](const Point& p) { return at(p); });
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+        std::transform(x.begin(), x.end(), out.begin(), [this](const Point& p) { return at(p); });
     }
 
 private:
@@ -104,7 +96,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<MetricField> exact_reference(std::vector<PointSource> sources, double g,
+std::unique_ptr<ControlSpace> exact_reference(std::vector<PointSource> sources, double g,
                                              const Metric& largest, double tolerance) {
     require_usable(sources, g, largest);
     if (!std::isfinite(tolerance) || tolerance < 0) {
@@ -114,15 +106,15 @@ std::unique_ptr<MetricField> exact_reference(std::vector<PointSource> sources, d
     return std::make_unique<ExactReference>(sources, g, largest, tolerance);
 }
 
-std::unique_ptr<MetricField> brute_force_reference(std::vector<PointSource> sources, double g,
+std::unique_ptr<ControlSpace> brute_force_reference(std::vector<PointSource> sources, double g,
                                                    const Metric& largest) {
     require_usable(sources, g, largest);
     return std::make_unique<BruteForceReference>(std::move(sources), g, largest);
 }
 
-std::shared_ptr<const MetricField> published_sphere_reference(double radius, double h, double g,
+std::shared_ptr<const ControlSpace> published_sphere_reference(double radius, double h, double g,
                                                               double largest) {
-    require_ratio(g);
+    require_valid(GradationOptions{.ratio = g});
     return sphere_field({.radius = radius, .lengths = {h, h, 2 * (g - 1) / (g + 1), largest}})
         .field;
 }

@@ -8,6 +8,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/metric/blend.h"
+#include "controlspace/space/sample_parallel.h"
 
 namespace controlspace {
 namespace {
@@ -27,11 +28,11 @@ std::vector<Point> middles_of(const TetMesh& mesh, std::span<const Edge> edges) 
     return middles;
 }
 
-void count_lengths(const TetMesh& mesh, const MetricField& field,
+void count_lengths(const TetMesh& mesh, const ControlSpace& field,
                    std::span<const Metric> at_vertices, Conformity& c) {
     const std::vector<Edge> edges = edges_of(mesh);
     std::vector<Metric> at_middles(edges.size());
-    field.evaluate(middles_of(mesh, edges), at_middles);
+    sample_parallel(field, middles_of(mesh, edges), at_middles);
     std::size_t in_range = 0, in_range_middle = 0, in_unit = 0;
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const auto& [a, b] = edges[i];
@@ -86,13 +87,13 @@ std::vector<double> tet_qualities(const TetMesh& mesh, std::span<const Metric> a
     return qualities;
 }
 
-Conformity conformity(const TetMesh& mesh, const MetricField& field) {
+Conformity conformity(const TetMesh& mesh, const ControlSpace& field) {
     if (mesh.tets.empty()) throw InputError("a mesh without tetrahedra has nothing to measure");
     Conformity c;
     c.nodes = mesh.vertices.size();
     c.tets = mesh.tets.size();
     std::vector<Metric> at_vertices(mesh.vertices.size());
-    field.evaluate(mesh.vertices, at_vertices);
+    sample_parallel(field, mesh.vertices, at_vertices);
     count_lengths(mesh, field, at_vertices, c);
     const std::vector<double> qualities = tet_qualities(mesh, at_vertices);
     c.quality_min = *std::min_element(qualities.begin(), qualities.end());

@@ -8,14 +8,15 @@
 
 #include "controlspace/error.h"
 #include "controlspace/measure/accuracy.h"
+#include "controlspace/space/sample_parallel.h"
 
 namespace controlspace {
 
-double estimated_tets(const Box& domain, const MetricField& field) {
+double estimated_tets(const Box& domain, const ControlSpace& field) {
     constexpr int samples = 24;
     const std::vector<Point> places = cell_centres(domain, samples);
     std::vector<Metric> metrics(places.size());
-    field.evaluate(places, metrics);
+    sample_parallel(field, places, metrics);
     const double cell = domain.edges().prod() / static_cast<double>(places.size());
     const double per_unit = 6 * std::sqrt(2.0);  // regular ones of edge 1 in a unit of volume
     double sum = 0;
@@ -23,7 +24,7 @@ double estimated_tets(const Box& domain, const MetricField& field) {
     return sum;
 }
 
-void require_few_tets(const Box& domain, const MetricField& field, double most) {
+void require_few_tets(const Box& domain, const ControlSpace& field, double most) {
     const double tets = estimated_tets(domain, field);
     if (tets <= most) return;
     throw InputError(

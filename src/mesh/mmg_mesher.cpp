@@ -12,6 +12,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/mesh/mesh_files.h"
+#include "controlspace/space/sample_parallel.h"
 #include "io/text/medit.h"
 #include "mesh/size_query.h"
 #include "mesh/stopwatch.h"
@@ -48,9 +49,9 @@ private:
     bool keep_ = false;
 };
 
-std::vector<Metric> metrics_at(const TetMesh& mesh, const MetricField& field) {
+std::vector<Metric> metrics_at(const TetMesh& mesh, const ControlSpace& field) {
     std::vector<Metric> metrics(mesh.vertices.size());
-    field.evaluate(mesh.vertices, metrics);
+    sample_parallel(field, mesh.vertices, metrics);
     for (std::size_t i = 0; i < metrics.size(); ++i) require_metric(metrics[i], mesh.vertices[i]);
     return metrics;
 }
@@ -116,7 +117,7 @@ fs::path require_mmg(const MmgOptions& options) {
     return found;
 }
 
-MmgRun mesh_with_mmg(const TetMesh& start, const MetricField& field, const MmgOptions& options) {
+MmgRun mesh_with_mmg(const TetMesh& start, const ControlSpace& field, const MmgOptions& options) {
     if (options.rounds < 1) {
         throw InputError(fmt::format("{} rounds of MMG: give 1 or more", options.rounds));
     }

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "controlspace/mesh/tet_mesh.h"
-#include "controlspace/metric/metric_field.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 
@@ -46,6 +46,6 @@ std::filesystem::path require_mmg(const MmgOptions& options);
 /// Throws InputError if MMG is missing, fails, leaves no mesh or takes too long, with its last
 /// words and the folder where its files are left; for options out of range; and for a field that is
 /// not positive definite somewhere. What the field throws passes through.
-MmgRun mesh_with_mmg(const TetMesh& start, const MetricField& field, const MmgOptions& options);
+MmgRun mesh_with_mmg(const TetMesh& start, const ControlSpace& field, const MmgOptions& options);
 
 }  // namespace controlspace

@@ -35,7 +35,7 @@ void require_metric(const Metric& m, const Point& p) {
                                  to_string(m)));
 }
 
-SizeQuery::SizeQuery(const MetricField& field, const UnitFrame& frame, double factor)
+SizeQuery::SizeQuery(const ControlSpace& field, const UnitFrame& frame, double factor)
     : field_(field), frame_(frame), factor_(factor), clock_cost_(cost_of_clock()) {}
 
 double SizeQuery::operator()(double x, double y, double z) noexcept {
@@ -68,7 +68,7 @@ double SizeQuery::scaled_length(double x, double y, double z) noexcept {
 }
 
 double SizeQuery::smallest_length(const Point& p) {
-    const Metric m = metric_at(field_, p);
+    const Metric m = sample_at(field_, p);
     require_metric(m, p);
     if (is_isotropic(m)) return m.xx;
     const auto lengths = eigen_frame(m).lengths;

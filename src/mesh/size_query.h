@@ -8,7 +8,7 @@
 #include <mutex>
 
 #include "controlspace/geometry/box.h"
-#include "controlspace/metric/metric_field.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 
@@ -46,7 +46,7 @@ void require_metric(const Metric& m, const Point& p);
 class SizeQuery {
 public:
     /// The field must outlive this.
-    SizeQuery(const MetricField& field, const UnitFrame& frame, double factor);
+    SizeQuery(const ControlSpace& field, const UnitFrame& frame, double factor);
 
     double operator()(double x, double y, double z) noexcept;
 
@@ -63,7 +63,7 @@ private:
     double scaled_length(double x, double y, double z) noexcept;
     double smallest_length(const Point& p);
 
-    const MetricField& field_;
+    const ControlSpace& field_;
     const UnitFrame frame_;
     const double factor_;
     const std::int64_t clock_cost_;

@@ -1,5 +1,6 @@
 #include "controlspace/mesh/conformity.h"
 #include "controlspace/mesh/mesh_files.h"
+#include "controlspace/space/sample_parallel.h"
 #include "io/text/vtk_xml.h"
 
 namespace controlspace {
@@ -19,9 +20,9 @@ double mean_edge_length(const TetMesh& mesh, const Tetrahedron& tet,
 
 }  // namespace
 
-void write_vtu(const std::filesystem::path& path, const TetMesh& mesh, const MetricField& field) {
+void write_vtu(const std::filesystem::path& path, const TetMesh& mesh, const ControlSpace& field) {
     std::vector<Metric> metrics(mesh.vertices.size());
-    field.evaluate(mesh.vertices, metrics);
+    sample_parallel(field, mesh.vertices, metrics);
     VtkArray tensor{"length_tensor", 6, {}}, h_min{"h_min", 1, {}};
     for (const Metric& m : metrics) {
         tensor.values.insert(tensor.values.end(), {m.xx, m.yy, m.zz, m.xy, m.yz, m.xz});

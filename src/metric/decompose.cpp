@@ -86,9 +86,10 @@ EigenFrame eigen_frame(const Metric& m) {
 }
 
 Svd svd(const Eigen::Matrix3d& matrix) {
-    Svd result{matrix, {}, Eigen::Matrix3d::Identity()};
-    auto& [b, s, v] = result;
-    for (int i = 0; i < 3; ++i) s[index(i)] = b.col(i).squaredNorm();
+    Eigen::Matrix3d b = matrix;
+    Eigen::Matrix3d v = Eigen::Matrix3d::Identity();
+    std::array<double, 3> s{b.col(0).squaredNorm(), b.col(1).squaredNorm(),
+                            b.col(2).squaredNorm()};
     // Rotates columns p and q until they are orthogonal; false if they were.
     const auto orthogonalise = [&](int p, int q) {
         constexpr double cosine = 4e-16;  // of columns that rounding alone keeps apart
@@ -112,7 +113,7 @@ Svd svd(const Eigen::Matrix3d& matrix) {
         v.col(i).swap(v.col(j));
     });
     for (int i = 0; i < 3; ++i) b.col(i) /= s[index(i)];
-    return result;
+    return {b, s, v};
 }
 
 Metric left_polar_factor(const Eigen::Matrix3d& b) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "controlspace/error.h"
+#include "controlspace/space/sample_parallel.h"
 #include "space/goal_field.h"
 
 namespace controlspace {
@@ -24,7 +25,7 @@ GradationReport NodeBuilder::grade(const GradationOptions& options) {
 AdaptationReport NodeBuilder::adapt(const AdaptationGoal& goal) {
     const GoalField field(goal, domain());
     ControlNodes nodes = control_nodes(Neighbourhood::faces);
-    field.evaluate(positions(nodes.graph), nodes.metrics);
+    sample_parallel(field, positions(nodes.graph), nodes.metrics);
     assign(nodes.metrics);
     AdaptationReport report;
     const auto space = build();

@@ -1,8 +1,6 @@
 #include "space/goal_field.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/sample_parallel.h"
 #include "controlspace/space/space_options.h"
 #include "geometry/place_sequence.h"
 
@@ -42,13 +41,8 @@ GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
       largest_(largest_metric(domain)),
       cones_(goal.sources, goal.ratio, largest_, negligible(goal.target)) {}
 
-void GoalField::evaluate(std::span<const Point> x, std::span<Metric> out) const {
-    constexpr std::size_t places_per_task = 64;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, x.size(), places_per_task),
-                      [&](const tbb::blocked_range<std::size_t>& part) {
-                          cones_.evaluate(x.subspan(part.begin(), part.size()),
-                                          out.subspan(part.begin(), part.size()));
-                      });
+void GoalField::sample(std::span<const Point> x, std::span<Metric> out) const {
+    cones_.evaluate(x, out);
     add_continuous(x, out);
 }
 
@@ -79,11 +73,11 @@ double GoalField::evaluate_roughly(std::span<const Point> x, std::span<Metric> o
 void GoalField::add_continuous(std::span<const Point> x, std::span<Metric> out) const {
     if (!continuous_) return;
     std::vector<Metric> own(x.size());
-    continuous_->evaluate(x, own);
+    continuous_->sample(x, own);
     for (std::size_t i = 0; i < x.size(); ++i) out[i] = intersection(out[i], own[i]);
 }
 
-double GoalField::largest_departure(const Box& domain, const Sample& sample) const {
+double GoalField::largest_departure(const Box& domain, const Sample& sample_space) const {
     constexpr std::uint64_t everywhere = 100000, near_sources = 100000;
     std::vector<Point> x;
     x.reserve(everywhere + near_sources);
@@ -96,8 +90,8 @@ double GoalField::largest_departure(const Box& domain, const Sample& sample) con
     }
     std::vector<Metric> own(x.size());
     std::vector<Metric> exact(x.size());
-    sample(x, own);
-    evaluate(x, exact);
+    sample_space(x, own);
+    sample_parallel(*this, x, exact);
     double largest = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
         largest = std::max(largest, nonconformity(own[i], exact[i]));

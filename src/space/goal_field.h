@@ -6,21 +6,21 @@
 
 #include "cones/cone_field.h"
 #include "controlspace/geometry/box.h"
-#include "controlspace/metric/metric_field.h"
 #include "controlspace/space/adaptation.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 
 /// The field of a goal, whose sources must outlive it, as exact as the target needs: cones of
 /// tensors that would make a difference of some hundredth of it are passed over.
-class GoalField final : public MetricField {
+class GoalField final : public ControlSpace {
 public:
     /// Throws InputError for sources outside of `domain` or with bad metrics, a ratio below 1, a
     /// target that is not positive.
     GoalField(const AdaptationGoal& goal, const Box& domain);
 
-    void evaluate(std::span<const Point> x, std::span<Metric> out) const override;
-    /// The same on the calling thread, for places near to each other; `memory` should be kept from
+    void sample(std::span<const Point> x, std::span<Metric> out) const override;
+    /// The same for places near to each other; `memory` should be kept from
     /// one call to the next.
     void evaluate_here(std::span<const Point> x, std::span<Metric> out,
                        ConeField::Memory& memory) const;
@@ -54,7 +54,7 @@ private:
 
     double target_;
     std::span<const PointSource> sources_;
-    std::shared_ptr<const MetricField> continuous_;
+    std::shared_ptr<const ControlSpace> continuous_;
     Metric largest_;
     ConeField cones_;
 };

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "controlspace/error.h"
+#include "controlspace/space/sample_parallel.h"
 #include "study/equal_setting.h"
 
 namespace controlspace {
@@ -66,9 +67,9 @@ void require_follows(const Case& c, const CatalogueEntry& entry) {
     throw InputError("an analytic field is followed by adaptation: set target_delta, for trees");
 }
 
-void follow_at_nodes(NodeBuilder& builder, const MetricField& field) {
+void follow_at_nodes(NodeBuilder& builder, const ControlSpace& field) {
     ControlNodes nodes = builder.control_nodes(Neighbourhood::faces);
-    field.evaluate(positions(nodes.graph), nodes.metrics);
+    sample_parallel(field, positions(nodes.graph), nodes.metrics);
     builder.assign(nodes.metrics);
 }
 

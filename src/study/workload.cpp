@@ -83,7 +83,9 @@ AnalyticField field_of(const FieldChoice& choice, const FileReaders& readers) {
 
 Box domain_of(const Study& study, const SourcesChoice& choice, const Workload& workload) {
     if (study.domain) return *study.domain;
-    if (workload.field.definition != everywhere()) return workload.field.definition;
+    if (workload.field.field && workload.field.field->domain() != Box::everywhere()) {
+        return workload.field.field->domain();
+    }
     if (choice.kind != SourcesKind::file) return {Point::Constant(-1), Point::Constant(1)};
     std::vector<Point> positions;
     positions.reserve(workload.sources.size());
@@ -141,14 +143,14 @@ SpaceOptions space_options(const Study& study, const Case& c, const Workload& wo
     return options;
 }
 
-std::shared_ptr<const MetricField> make_reference(const Study& study, const Case& c,
+std::shared_ptr<const ControlSpace> make_reference(const Study& study, const Case& c,
                                                   const Workload& workload) {
     const double largest = workload.domain.half_diagonal();
     if (c.reference == ReferenceKind::published_sphere) {
         const SourcesChoice& s = c.sources;
         return published_sphere_reference(s.radius, s.h * s.s_a, c.g_r, largest);
     }
-    std::shared_ptr<const MetricField> cones = exact_reference(
+    std::shared_ptr<const ControlSpace> cones = exact_reference(
         workload.sources, c.g_r, Metric::isotropic(largest), study.reference_tolerance);
     if (!workload.field.field) return cones;
     return mixture({std::move(cones), workload.field.field});

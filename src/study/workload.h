@@ -41,7 +41,7 @@ struct ReferenceProbes {
 /// What δ_R of `c` is measured against; a structure that follows a field follows this one. Depends
 /// on the sources, the kind of reference and g_r of `c`, and on the study's reference_tolerance,
 /// only.
-std::shared_ptr<const MetricField> make_reference(const Study& study, const Case& c,
+std::shared_ptr<const ControlSpace> make_reference(const Study& study, const Case& c,
                                                   const Workload& workload);
 
 /// The same at the probes.

@@ -44,7 +44,7 @@ std::vector<Metric> by_definition(const SpaceOptions& options,
                                   const std::vector<PointSource>& sources, double ratio,
                                   const std::vector<Point>& x) {
     std::vector<Metric> out(x.size());
-    brute_force_reference(sources, ratio, largest_metric(options.domain))->evaluate(x, out);
+    brute_force_reference(sources, ratio, largest_metric(options.domain))->sample(x, out);
     return out;
 }
 

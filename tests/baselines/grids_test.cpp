@@ -317,7 +317,7 @@ TEST_CASE("on the paper's sphere sizes are 63 % too large over faces, 11 % with 
         const ControlNodes nodes = grid->control_nodes(neighbourhood);
         std::vector<Point> x = positions(nodes.graph);
         std::vector<Metric> expected(x.size());
-        exact->evaluate(x, expected);
+        exact->sample(x, expected);
         double largest = 0;
         double sum = 0;
         for (std::size_t i = 0; i < x.size(); ++i) {

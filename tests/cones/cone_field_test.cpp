@@ -44,7 +44,7 @@ std::vector<Metric> evaluated(const ConeField& field, const std::vector<Point>& 
 std::vector<Metric> by_definition(const std::vector<PointSource>& sources,
                                   const std::vector<Point>& points) {
     std::vector<Metric> out(points.size());
-    brute_force_reference(sources, g, wide)->evaluate(points, out);
+    brute_force_reference(sources, g, wide)->sample(points, out);
     return out;
 }
 

@@ -41,7 +41,7 @@ TEST_CASE("all structures agree with the exact field and with each other") {
     const std::vector<Point> x = random_points(work.domain, 2000, 21);
     const Metric largest = Metric::isotropic(work.domain.half_diagonal());
     std::vector<Metric> exact(x.size());
-    exact_reference(work.sources, g, largest)->evaluate(x, exact);
+    exact_reference(work.sources, g, largest)->sample(x, exact);
 
     std::vector<Field> fields;
     for (const Structure& structure : all_structures())
@@ -95,7 +95,7 @@ TEST_CASE("where elements are small against the size asked for, agreement is clo
     REQUIRE(x.size() > 100);
     std::vector<Metric> exact(x.size());
     exact_reference(work.sources, g, Metric::isotropic(work.domain.half_diagonal()))
-        ->evaluate(x, exact);
+        ->sample(x, exact);
     for (const Structure& structure : all_structures()) {
         if (structure.split == SplitRule::metric) continue;  // slabs are never small
         CAPTURE(structure.name());

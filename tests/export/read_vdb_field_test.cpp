@@ -13,9 +13,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Metric at(const MetricField& field, const Point& x) {
+Metric at(const ControlSpace& field, const Point& x) {
     Metric m;
-    field.evaluate({&x, 1}, {&m, 1});
+    field.sample({&x, 1}, {&m, 1});
     return m;
 }
 
@@ -60,11 +60,11 @@ TEST_CASE("what was written comes back at all voxels' centres, to the precision 
     write_vdb(path, FormulaField(wavy), two_cube,
               {.voxel = 0.1, .tolerance = 0, .compression = compression});
     const AnalyticField read = read_vdb_field(path);
-    CHECK((read.definition.low - two_cube.low).norm() < 1e-12);
-    CHECK((read.definition.high - two_cube.high).norm() < 1e-12);
+    CHECK((read.field->domain().low - two_cube.low).norm() < 1e-12);
+    CHECK((read.field->domain().high - two_cube.high).norm() < 1e-12);
     const std::vector<Point> points = centres(20);
     std::vector<Metric> metrics(points.size());
-    read.field->evaluate(points, metrics);
+    read.field->sample(points, metrics);
     double finest = 1;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Metric wanted = wavy(points[i]);
@@ -89,7 +89,7 @@ TEST_CASE("every structure comes back as it answered") {
         space->grade({});
         space->sample(points, wanted);
         write_vdb(path, *space, {.voxel = 0.125, .tolerance = 0});
-        read_vdb_field(path).field->evaluate(points, read);
+        read_vdb_field(path).field->sample(points, read);
         double exact = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
             exact = std::max(exact, largest_relative_difference(read[i], wanted[i]));
@@ -97,7 +97,7 @@ TEST_CASE("every structure comes back as it answered") {
         CHECK(exact < 1e-6);
 
         write_vdb(path, *space, {.voxel = 0.125, .tolerance = 0.02});
-        read_vdb_field(path).field->evaluate(points, read);
+        read_vdb_field(path).field->sample(points, read);
         double delta = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
             delta = std::max(delta, nonconformity(read[i], wanted[i]));
@@ -138,7 +138,7 @@ TEST_CASE("a grid of lengths of somebody else's, under any linear transform") {
     CHECK(at(*read.field, world(3, 3, 3)).xx == Approx(0.75));
     CHECK(at(*read.field, world(2.5, 3, 3)).xx == Approx(0.5));
     CHECK(at(*read.field, world(9, 9, 9)).xx == Approx(0.75));
-    CHECK(read.definition.contains(world(3.4, 3.4, 3.4)));
+    CHECK(read.field->domain().contains(world(3.4, 3.4, 3.4)));
 }
 
 TEST_CASE("voxels that are not active do not count") {

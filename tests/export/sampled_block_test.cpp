@@ -12,7 +12,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-SampledBlock sampled(const MetricField& field, const VoxelLattice& lattice,
+SampledBlock sampled(const ControlSpace& field, const VoxelLattice& lattice,
                      const std::array<std::int32_t, 3>& first, double tolerance) {
     SampledBlock block;
     sample_block(field, lattice, first, tolerance, block);

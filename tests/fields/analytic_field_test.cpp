@@ -16,7 +16,7 @@ TEST_CASE("a function field answers its function, in the order of the places") {
     std::vector<Point> points;
     for (int i = 0; i < 1000; ++i) points.emplace_back(i, 0, 0);
     std::vector<Metric> metrics(points.size());
-    field.field->evaluate(points, metrics);
+    field.field->sample(points, metrics);
     for (int i = 0; i < 1000; ++i) {
         REQUIRE(metrics[static_cast<std::size_t>(i)] == Metric::isotropic(1 + i));
     }

@@ -83,9 +83,9 @@ TEST_CASE("UGAWG fields are 0.001 long at least, and positive definite up to the
     CHECK(at_layer == Metric{0.001, 0.025, 0.1, 0, 0, 0});
     for (const auto& field : {ugawg_linear(), ugawg_polar_1(), ugawg_polar_2()}) {
         CHECK(field.finest_length == 0.001);
-        CHECK(field.definition == Box{Point::Zero(), Point::Ones()});
+        CHECK(field.field->domain() == Box{Point::Zero(), Point::Ones()});
         for (int i = 0; i < 8; ++i) {
-            CHECK(is_positive_definite(value_at(*field.field, corner(field.definition, i))));
+            CHECK(is_positive_definite(value_at(*field.field, corner(field.field->domain(), i))));
         }
         Draw draw(4);
         double least = 1;

@@ -1,12 +1,13 @@
 #pragma once
 
-#include "controlspace/metric/metric_field.h"
+#include "controlspace/space/control_space.h"
+
 
 namespace controlspace {
 
-inline Metric value_at(const MetricField& field, const Point& p) {
+inline Metric value_at(const ControlSpace& field, const Point& p) {
     Metric m;
-    field.evaluate({&p, 1}, {&m, 1});
+    field.sample({&p, 1}, {&m, 1});
     return m;
 }
 

@@ -76,7 +76,7 @@ TEST_CASE("Probes carry the reference's own values") {
     REQUIRE(probes.reference.size() == 27);
     for (std::size_t i = 0; i < 27; ++i) {
         Metric expected;
-        field->evaluate({&probes.points[i], 1}, {&expected, 1});
+        field->sample({&probes.points[i], 1}, {&expected, 1});
         CHECK(probes.reference[i] == expected);
     }
 }

@@ -16,13 +16,13 @@ namespace {
 
 const Metric wide = Metric::isotropic(2);
 
-std::vector<Metric> evaluated(const MetricField& field, const std::vector<Point>& points) {
+std::vector<Metric> evaluated(const ControlSpace& field, const std::vector<Point>& points) {
     std::vector<Metric> out(points.size());
-    field.evaluate(points, out);
+    field.sample(points, out);
     return out;
 }
 
-Metric at(const MetricField& field, const Point& p) { return evaluated(field, {p})[0]; }
+Metric at(const ControlSpace& field, const Point& p) { return evaluated(field, {p})[0]; }
 
 Point in_cube(Draw& draw) {
     const double x = draw.uniform(-1, 1);

@@ -35,7 +35,7 @@ fs::path fake_mmg(const ScratchDirectory& folder, const std::string& commands) {
 }
 
 std::string error_with(const ScratchDirectory& folder, const fs::path& program,
-                       const MetricField& field = uniform, double time_limit_s = 60) {
+                       const ControlSpace& field = uniform, double time_limit_s = 60) {
     return error_of([&] {
         mesh_with_mmg(start_mesh(), field,
                       {.program = program, .time_limit_s = time_limit_s, .folder = folder.path()});

@@ -19,7 +19,7 @@ const FormulaField skew(skew_metric);
 
 std::vector<Metric> metrics_of(const TetMesh& mesh) {
     std::vector<Metric> metrics(mesh.vertices.size());
-    skew.evaluate(mesh.vertices, metrics);
+    skew.sample(mesh.vertices, metrics);
     return metrics;
 }
 

@@ -22,9 +22,9 @@ const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
 constexpr double g = 1.25;
 
 // h grows from 0.1 by 0.2 per unit length towards +x.
-class Ramp final : public MetricField {
+class Ramp final : public ControlSpace {
 public:
-    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
         for (std::size_t i = 0; i < x.size(); ++i) {
             out[i] = Metric::isotropic(0.3 + 0.2 * x[i].x());
         }
@@ -46,12 +46,12 @@ std::vector<PointSource> tensors(std::size_t n) {
 }
 
 // Share of random places where δ to the field is beyond `target`.
-double share_beyond(double target, const ControlSpace& space, const MetricField& field) {
+double share_beyond(double target, const ControlSpace& space, const ControlSpace& field) {
     const std::vector<Point> x = random_points(domain, 20000, 11);
     std::vector<Metric> own(x.size());
     std::vector<Metric> exact(x.size());
     space.sample(x, own);
-    field.evaluate(x, exact);
+    field.sample(x, exact);
     std::size_t beyond = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
         if (nonconformity(own[i], exact[i]) > target) ++beyond;

@@ -105,7 +105,7 @@ std::vector<PointSource> read_surface_sources(const fs::path& path, const Curvat
     return cgal().read_surface_sources(path, sizes);
 }
 
-GmshRun mesh_with_gmsh(const Box& domain, const MetricField& field, const GmshOptions& options) {
+GmshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshOptions& options) {
     return gmsh().mesh_with_gmsh(domain, field, options);
 }
 

@@ -10,7 +10,6 @@
 #include "controlspace/io/metric_grids.h"
 #include "controlspace/io/read_vdb.h"
 #include "controlspace/metric/blend.h"
-#include "controlspace/metric/evaluate.h"
 #include "controlspace/sources/point_source.h"
 #include "io/openvdb/vdb_file.h"
 
@@ -68,35 +67,35 @@ struct Grids {
     }
 };
 
-class VoxelField final : public MetricField {
+class VoxelField final : public ControlSpace {
 public:
     VoxelField(Grids grids, double elsewhere)
         : grids_(std::move(grids)),
+          domain_(active_box(grids_.base())),
           voxels_(grids_.base().evalActiveVoxelBoundingBox()),
           elsewhere_(Metric::isotropic(elsewhere)) {}
 
-    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
-        evaluate_blocks(x, out, [this](auto points, auto metrics) {
-            if (grids_.lengths) {
-                const auto nodes = grids_.lengths->getConstUnsafeAccessor();
-                interpolate(points, metrics, [&](const Coord& voxel, Metric& metric) {
-                    float h = 0;
-                    if (!nodes.probeValue(voxel, h)) return false;
-                    metric = Metric::isotropic(h);
-                    return true;
-                });
-            } else {
-                const auto a = grids_.diagonal->getConstUnsafeAccessor();
-                const auto b = grids_.off_diagonal->getConstUnsafeAccessor();
-                interpolate(points, metrics, [&](const Coord& voxel, Metric& metric) {
-                    openvdb::Vec3s d;
-                    if (!a.probeValue(voxel, d)) return false;
-                    metric = metric_from(d, b.getValue(voxel));
-                    return true;
-                });
-            }
-        });
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+        if (grids_.lengths) {
+            const auto nodes = grids_.lengths->getConstUnsafeAccessor();
+            interpolate(x, out, [&](const Coord& voxel, Metric& metric) {
+                float h = 0;
+                if (!nodes.probeValue(voxel, h)) return false;
+                metric = Metric::isotropic(h);
+                return true;
+            });
+        } else {
+            const auto a = grids_.diagonal->getConstUnsafeAccessor();
+            const auto b = grids_.off_diagonal->getConstUnsafeAccessor();
+            interpolate(x, out, [&](const Coord& voxel, Metric& metric) {
+                openvdb::Vec3s d;
+                if (!a.probeValue(voxel, d)) return false;
+                metric = metric_from(d, b.getValue(voxel));
+                return true;
+            });
+        }
     }
+    Box domain() const override { return domain_; }
 
 private:
     /// `read`(voxel, metric) answers whether the voxel is active, and its metric.
@@ -125,6 +124,7 @@ private:
     }
 
     Grids grids_;
+    Box domain_;
     openvdb::CoordBBox voxels_;
     Metric elsewhere_;
 };
@@ -134,8 +134,7 @@ std::string name_of(const Coord& voxel) {
 }
 
 AnalyticField field_of(Grids grids, double elsewhere, double finest) {
-    const Box domain = active_box(grids.base());
-    return {std::make_shared<VoxelField>(std::move(grids), elsewhere), domain, finest};
+    return {std::make_shared<VoxelField>(std::move(grids), elsewhere), finest};
 }
 
 AnalyticField tensor_field(const VdbFile& file) {

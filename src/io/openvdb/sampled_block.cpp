@@ -99,7 +99,7 @@ VoxelLattice voxel_lattice(const Box& domain, double voxel) {
     return lattice;
 }
 
-void sample_block(const MetricField& field, const VoxelLattice& lattice,
+void sample_block(const ControlSpace& field, const VoxelLattice& lattice,
                   const std::array<std::int32_t, 3>& first, double tolerance, SampledBlock& block) {
     constexpr Cube whole{0, 0, 0, side};
     std::array<Point, SampledBlock::size> points;
@@ -109,7 +109,7 @@ void sample_block(const MetricField& field, const VoxelLattice& lattice,
     whole.for_each([&](std::size_t v, std::int32_t i, std::int32_t j, std::int32_t k) {
         points[v] = lattice.centre(at(0, i), at(1, j), at(2, k));
     });
-    field.evaluate(points, block.metrics);
+    field.sample(points, block.metrics);
     for (std::size_t v = 0; v < SampledBlock::size; ++v) {
         if (is_positive_definite(block.metrics[v])) continue;
         const Point& x = points[v];

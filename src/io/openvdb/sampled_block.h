@@ -6,7 +6,7 @@
 
 #include "controlspace/geometry/box.h"
 #include "controlspace/metric/metric.h"
-#include "controlspace/metric/metric_field.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 
@@ -49,7 +49,7 @@ struct SampledBlock {
 /// beyond the lattice repeat the last one within). Then cubes of 8^3, 4^3 and 2^3 voxels whose
 /// metrics all are within `tolerance` (δ) of their mean take the mean; cubes that hold one metric
 /// keep it. Throws InputError where the field answers something that is no metric.
-void sample_block(const MetricField& field, const VoxelLattice& lattice,
+void sample_block(const ControlSpace& field, const VoxelLattice& lattice,
                   const std::array<std::int32_t, 3>& first, double tolerance, SampledBlock& block);
 
 }  // namespace controlspace

@@ -17,7 +17,6 @@
 #include <utility>
 
 #include "controlspace/error.h"
-#include "controlspace/space/space_field.h"
 #include "io/openvdb/vdb_builder.h"
 #include "io/openvdb/vdb_file.h"
 
@@ -59,7 +58,7 @@ struct Extremes {
 };
 
 /// Samples all blocks. Returns the bytes of the grids, and what the lengths are.
-std::pair<std::size_t, Extremes> fill(const Builders& builders, const MetricField& field,
+std::pair<std::size_t, Extremes> fill(const Builders& builders, const ControlSpace& field,
                                       const VoxelLattice& lattice, const VdbOptions& options) {
     const auto blocks = [&](std::size_t axis) -> std::int64_t {
         return (lattice.counts[axis] + side - 1) / side;
@@ -180,7 +179,7 @@ void share_trees(const std::vector<MetricGrid>& kinds, const openvdb::GridPtrVec
 
 }  // namespace
 
-VdbReport write_vdb(const std::filesystem::path& path, const MetricField& field, const Box& domain,
+VdbReport write_vdb(const std::filesystem::path& path, const ControlSpace& field, const Box& domain,
                     const VdbOptions& options) {
     if (!std::isfinite(options.tolerance) || options.tolerance < 0) {
         throw InputError(
@@ -224,7 +223,7 @@ VdbReport write_vdb(const std::filesystem::path& path, const MetricField& field,
 
 VdbReport write_vdb(const std::filesystem::path& path, const ControlSpace& space,
                     const VdbOptions& options) {
-    return write_vdb(path, SpaceAsField(space), space.domain(), options);
+    return write_vdb(path, space, space.domain(), options);
 }
 
 }  // namespace controlspace

@@ -11,6 +11,7 @@
 #include "controlspace/error.h"
 #include "controlspace/geometry/subdivision.h"
 #include "controlspace/space/control_nodes.h"
+#include "controlspace/space/sample_parallel.h"
 #include "geometry/point_order.h"
 #include "io/text/cells.h"
 #include "io/text/vtk_xml.h"
@@ -92,7 +93,7 @@ void write_octree(const std::filesystem::path& path, const ControlSpace& space) 
                      metric_arrays(metrics));
 }
 
-void write_slice(const std::filesystem::path& path, const MetricField& field, const Box& domain,
+void write_slice(const std::filesystem::path& path, const ControlSpace& field, const Box& domain,
                  const Slice& slice) {
     if (slice.samples < 2 || slice.samples > 8192) {
         throw InputError(fmt::format("{} samples: give 2 to 8192", slice.samples));
@@ -123,7 +124,7 @@ void write_slice(const std::filesystem::path& path, const MetricField& field, co
         }
     }
     std::vector<Metric> metrics(places.size());
-    field.evaluate(places, metrics);
+    sample_parallel(field, places, metrics);
     write_vtk_image(path, origin, spacing, counts, metric_arrays(metrics));
 }
 

@@ -13,6 +13,7 @@
 
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
+#include "controlspace/space/sample_parallel.h"
 #include "space/goal_field.h"
 #include "trees/adaptation/leaf_judge.h"
 #include "trees/adaptation/nearby_field.h"
@@ -46,7 +47,7 @@ public:
         } else {
             for (const PointSource& source : goal.sources) sources_.push_back(source.position);
             at_sources_.resize(sources_.size());
-            field.evaluate(sources_, at_sources_);
+            sample_parallel(field, sources_, at_sources_);
         }
         leaf_of_source_.resize(sources_.size(), 0);
     }

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "controlspace/metric/intersection.h"
-#include "controlspace/metric/metric_field.h"
 #include "controlspace/space/control_nodes.h"
+#include "controlspace/space/control_space.h"
 #include "controlspace/space/space_options.h"
 #include "space/state.h"
 #include "trees/adaptation/adapt_tree.h"
@@ -43,7 +43,7 @@ public:
     Metric value_in(const Topology<Node>& tree, LeafIndex leaf, const Point& place) const {
         const Point x = place.cwiseMax(tree.domain().low).cwiseMin(tree.domain().high);
         const Metric m = cones_at(x, anchors_.of(leaf));
-        return continuous_ ? intersection(m, metric_at(*continuous_, x)) : m;
+        return continuous_ ? intersection(m, sample_at(*continuous_, x)) : m;
     }
     void prefetch(LeafIndex leaf) const { anchors_.prefetch(leaf); }
     template <class Node>
@@ -66,7 +66,7 @@ public:
     }
 
     const SourceTable& sources() const { return sources_; }
-    const std::shared_ptr<const MetricField>& continuous() const { return continuous_; }
+    const std::shared_ptr<const ControlSpace>& continuous() const { return continuous_; }
     /// Anchors are from now on taken from the sources of `goal`, with its ratio.
     void take_over(const AdaptationGoal& goal);
     /// Anchors for these leaves, out of the sources of `field`'s goal.
@@ -111,7 +111,7 @@ private:
 
     AnchorLists anchors_;
     SourceTable sources_;
-    std::shared_ptr<const MetricField> continuous_;
+    std::shared_ptr<const ControlSpace> continuous_;
     Metric largest_;
     double ratio_;
     bool fits_tensors_loosely_ = false;

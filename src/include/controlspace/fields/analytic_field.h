@@ -1,35 +1,29 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <memory>
 #include <string>
 
 #include "controlspace/geometry/box.h"
-#include "controlspace/metric/metric_field.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 
-/// A box without bounds.
-inline Box everywhere() {
-    const double infinity = std::numeric_limits<double>::infinity();
-    return {Point::Constant(-infinity), Point::Constant(infinity)};
-}
-
-/// A source of metrics that is given by a formula, with what its values do not show.
+/// A continuous source: a field given by a formula or a file, with what its values do not show. The
+/// field's domain is where it is defined.
 struct AnalyticField {
-    std::shared_ptr<const MetricField> field;
-    Box definition = everywhere();  ///< where the formula holds
-    double finest_length = 0;       ///< no length that it asks for is smaller
+    std::shared_ptr<const ControlSpace> field;
+    double finest_length = 0;  ///< lower bound of its lengths, in any direction
 };
 
-/// Whatever `formula` answers; it is called from several threads at once. Evaluating throws
-/// InputError, naming the place, where that is not positive definite. Throws InputError for a
-/// `finest_length` that is not a positive number.
+/// The field whose metric at p is formula(p), for p in `domain`. `formula` is called from several
+/// threads at once; `finest_length` is a lower bound of its lengths. Throws InputError for a
+/// `finest_length` that is not positive; sampling throws it, with the place, where the formula
+/// gives a metric that is not positive definite.
 AnalyticField function_field(std::function<Metric(const Point&)> formula, double finest_length,
-                             const Box& definition = everywhere());
+                             const Box& domain = Box::everywhere());
 
-/// Throws InputError where `domain` goes beyond the field's definition; `name` is for the message.
+/// Throws InputError if `domain` extends beyond the field's domain; `name` is for the message.
 void require_defined(const AnalyticField& field, const Box& domain, const std::string& name);
 
 }  // namespace controlspace

@@ -1,24 +1,32 @@
 #pragma once
 
+#include <cassert>
+#include <cstddef>
 #include <utility>
 
-#include "controlspace/metric/evaluate.h"
-#include "controlspace/metric/metric_field.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 
-/// The field whose metric at `p` is `formula(p)`.
+/// The field whose metric at `p` is `formula(p)`, for p in `domain`. The formula is called from
+/// several threads at once where the field is sampled so.
 template <class Formula>
-class FormulaField final : public MetricField {
+class FormulaField final : public ControlSpace {
 public:
-    explicit FormulaField(Formula formula) : formula_(std::move(formula)) {}
+    explicit FormulaField(Formula formula, const Box& domain = Box::everywhere())
+        : formula_(std::move(formula)), domain_(domain) {}
 
-    void evaluate(std::span<const Point> x, std::span<Metric> out) const override {
-        evaluate_each(x, out, [this](const Point& p) { return formula_(p); });
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+        assert(x.size() == out.size());
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            out[i] = formula_(Point(x[i].cwiseMax(domain_.low).cwiseMin(domain_.high)));
+        }
     }
+    Box domain() const override { return domain_; }
 
 private:
     Formula formula_;
+    Box domain_;
 };
 
 }  // namespace controlspace

@@ -5,7 +5,7 @@
 
 #include "controlspace/geometry/box.h"
 #include "controlspace/mesh/tet_mesh.h"
-#include "controlspace/metric/metric_field.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 
@@ -52,7 +52,7 @@ struct GmshRun {
 /// Runs in a GmshSession: what else a program has open in Gmsh is closed. Throws InputError for
 /// options out of range, a field that is not positive definite somewhere or asks for too many
 /// tetrahedra, and what Gmsh could not do, in its words. What the field throws passes through.
-GmshRun mesh_with_gmsh(const Box& domain, const MetricField& field,
+GmshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field,
                        const GmshOptions& options = {});
 
 }  // namespace controlspace

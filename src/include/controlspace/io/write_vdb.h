@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "controlspace/geometry/box.h"
-#include "controlspace/metric/metric_field.h"
 #include "controlspace/sources/point_source.h"
 #include "controlspace/space/control_space.h"
 
@@ -58,7 +57,7 @@ struct VdbReport {
 /// Throws InputError for options out of range, names of grids that are not known, a field that is
 /// no metric somewhere, lengths that the file's numbers cannot hold, grids beyond the cap, and a
 /// file that cannot be written, of which nothing is left.
-VdbReport write_vdb(const std::filesystem::path& path, const MetricField& field, const Box& domain,
+VdbReport write_vdb(const std::filesystem::path& path, const ControlSpace& field, const Box& domain,
                     const VdbOptions& options);
 
 /// The same for what `space` answers in its domain.

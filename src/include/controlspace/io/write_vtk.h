@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <span>
 
-#include "controlspace/metric/metric_field.h"
 #include "controlspace/sources/point_source.h"
 #include "controlspace/space/control_space.h"
 
@@ -36,7 +35,7 @@ struct Slice {
 /// The field on a slice through `domain` as an image (.vti), with data of points; points along the
 /// shorter edge have the same distance as along the longer one, or nearly. Throws InputError for a
 /// slice outside the domain, and unless there are from 2 to 8192 samples.
-void write_slice(const std::filesystem::path& path, const MetricField& field, const Box& domain,
+void write_slice(const std::filesystem::path& path, const ControlSpace& field, const Box& domain,
                  const Slice& slice);
 
 /// `sources` as vertices with data of points, which read_vtk_sources reads again: .vtu or .vtp by

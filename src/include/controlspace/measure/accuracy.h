@@ -20,7 +20,7 @@ struct Probes {
     std::vector<Point> points;
     std::vector<Metric> reference;
 };
-Probes make_probes(const MetricField& field, std::vector<Point> points);
+Probes make_probes(const ControlSpace& field, std::vector<Point> points);
 
 /// A point counts as coarser if a length of the structure's metric exceeds the reference's by more
 /// than this fraction. Beyond rounding, and far below the scatter of a mesh's edge lengths.

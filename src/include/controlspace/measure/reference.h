@@ -4,36 +4,36 @@
 #include <vector>
 
 #include "controlspace/metric/metric.h"
-#include "controlspace/metric/metric_field.h"
 #include "controlspace/sources/point_source.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 
-/// The exact field of paper §5.2: at p, the intersection of `largest` with the cones
-/// M_i (1 + (g-1) |M_i^-1 (p - Q_i)|) of all sources i, one after the other, by their smallest
-/// length at p, ascending, and by index where equal: of three or more tensors the order matters.
+/// The exact graded field of paper §5.2, defined everywhere: at p, the intersection of `largest`
+/// with the cones M_i (1 + (g-1) |M_i^-1 (p - Q_i)|) of all sources i, one after the other, in the
+/// order of their smallest lengths at p, ascending, and of their indices where equal: the
+/// intersection of three or more tensors depends on the order.
 ///
-/// Isotropic sources cost microseconds a query, whatever their number. Anisotropic ones cost what
-/// the definition asks for: about one source in thirty of a thin-layered sphere really shortens the
-/// metric at a place, each by its own small amount (a quarter of a millisecond a query for 36186
-/// sources). A `tolerance` t above 0 passes over those that would shorten it by less than that
-/// fraction; the non-conformity to the exact field was at most 2.3 t^2 in all fields it was tried
-/// on.
+/// A query takes microseconds for isotropic sources, whatever their number. For anisotropic ones it
+/// takes what the definition asks for: about one source in thirty of a thin-layered sphere really
+/// shortens the metric at a place, each by its own small amount (a quarter of a millisecond a query
+/// for 36186 sources). A `tolerance` t above 0 omits those that would shorten it by less than that
+/// fraction; the non-conformity to the exact field was at most 2.3 t^2 in all fields tested.
 ///
 /// Throws InputError, naming the source by its index (0-based), for a position that is not finite
-/// or a metric that is not positive definite; for g < 1 or not finite; for such a `largest`; for a
-/// tolerance that is negative or not finite.
-std::unique_ptr<MetricField> exact_reference(std::vector<PointSource> sources, double g,
-                                             const Metric& largest, double tolerance = 0);
+/// or a metric that is not positive definite; for a gradation ratio g < 1 or not finite; for such a
+/// `largest`; for a tolerance that is negative or not finite.
+std::unique_ptr<ControlSpace> exact_reference(std::vector<PointSource> sources, double g,
+                                              const Metric& largest, double tolerance = 0);
 
-/// The same by intersecting with every source, without a search: the oracle of the tests.
-std::unique_ptr<MetricField> brute_force_reference(std::vector<PointSource> sources, double g,
-                                                   const Metric& largest);
+/// The same field by intersecting with every source, without a search: the oracle of the tests.
+std::unique_ptr<ControlSpace> brute_force_reference(std::vector<PointSource> sources, double g,
+                                                    const Metric& largest);
 
 /// What the paper's Table 4 was measured against, for spheres around the origin: the isotropic
 /// field h(p) = min(largest, h + s ||p| - radius|), s = 2 (g-1) / (g+1).
 /// Throws InputError for lengths that are not positive or finite, and for g as above.
-std::shared_ptr<const MetricField> published_sphere_reference(double radius, double h, double g,
-                                                              double largest);
+std::shared_ptr<const ControlSpace> published_sphere_reference(double radius, double h, double g,
+                                                               double largest);
 
 }  // namespace controlspace

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "controlspace/mesh/tet_mesh.h"
-#include "controlspace/metric/metric_field.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 
@@ -40,7 +40,7 @@ struct Conformity {
 /// Measures `mesh` against `field`, the exact one where structures are compared. Asks it at every
 /// vertex and every edge's middle, on all of TBB's threads. Throws InputError for a mesh without
 /// tetrahedra.
-Conformity conformity(const TetMesh& mesh, const MetricField& field);
+Conformity conformity(const TetMesh& mesh, const ControlSpace& field);
 
 /// Metric length of the edge from `a` to `b` by Simpson's rule: `at_a`, `at_middle` and `at_b` are
 /// the metrics at its ends and its middle.

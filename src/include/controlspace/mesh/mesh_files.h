@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "controlspace/mesh/tet_mesh.h"
-#include "controlspace/metric/metric_field.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 
@@ -27,6 +27,6 @@ void write_msh(const std::filesystem::path& path, const TetMesh& mesh);
 /// At points: `length_tensor`, the metric M whose eigenvalues are lengths (not M^-2), by the
 /// components XX YY ZZ XY YZ XZ, and `h_min`, its smallest length. At cells: `quality` (see
 /// Conformity) and `edge_length`, the mean metric length of the six edges.
-void write_vtu(const std::filesystem::path& path, const TetMesh& mesh, const MetricField& field);
+void write_vtu(const std::filesystem::path& path, const TetMesh& mesh, const ControlSpace& field);
 
 }  // namespace controlspace

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "controlspace/metric/metric_field.h"
 #include "controlspace/sources/point_source.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 
@@ -16,7 +16,7 @@ namespace controlspace {
 /// it stands, `continuous`.
 struct AdaptationGoal {
     std::span<const PointSource> sources;
-    std::shared_ptr<const MetricField> continuous;  ///< or none
+    std::shared_ptr<const ControlSpace> continuous;  ///< or none
     double ratio = 1.25;                            ///< g_r of the sources' cones
     double target = 0.1;                            ///< largest δ to the field; 0 is out of reach
 };
