@@ -23,7 +23,7 @@ namespace {
 
 constexpr int readable = 0, refused = 1, failed = 2;
 
-/// Sanitizers map terabytes.
+/// Sanitizers reserve terabytes of addresses.
 constexpr bool limits_memory =
 #ifdef __SANITIZE_ADDRESS__
     false;
@@ -36,7 +36,8 @@ void limit(int resource, rlim_t most) {
     ::setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
 
-/// Most that reading the file may take beside what the program holds already.
+/// Limit of addresses for reading the file: what the program has mapped, and what the file can
+/// justify.
 rlim_t memory_limit(const std::filesystem::path& file) {
     constexpr rlim_t libraries = rlim_t{1} << 30;  // the stacks and heaps of threads among them
     constexpr rlim_t bytes_per_byte = 1000;
@@ -48,7 +49,7 @@ rlim_t memory_limit(const std::filesystem::path& file) {
            bytes_per_byte * (none ? 0 : size);
 }
 
-/// Seconds of processors that reading the file may take: far more than the slowest reader does.
+/// Limit of processor time for reading the file [s]: far more than the slowest reader takes.
 rlim_t time_limit(const std::filesystem::path& file) {
     constexpr std::uintmax_t bytes_per_second = 100'000;
     std::error_code none;
@@ -59,7 +60,7 @@ rlim_t time_limit(const std::filesystem::path& file) {
 [[noreturn]] void read_in_child(const std::filesystem::path& file,
                                 const std::function<void()>& read, int answer) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    // What libraries have to say of a crash is no line of ours.
+    // Libraries report crashes on standard error: not part of the program's output.
     const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
     ::dup2(nowhere, STDOUT_FILENO);
     ::dup2(nowhere, STDERR_FILENO);

@@ -1,8 +1,12 @@
 #include "cli/formats.h"
 
 #include "cli/child_reading.h"
-#include "cli/modules/module.h"
 #include "controlspace/io/read_sources.h"
+#include "controlspace/io/read_surface_sources.h"
+#include "controlspace/io/read_vdb.h"
+#include "controlspace/io/read_vtk_sources.h"
+#include "io/surface/surface_mesh.h"
+#include "modules/load.h"
 
 namespace controlspace {
 namespace {

@@ -12,13 +12,13 @@
 #include "cli/input_study.h"
 #include "cli/mesh_field.h"
 #include "cli/mesh_folder.h"
-#include "cli/modules/module.h"
 #include "cli/options.h"
 #include "cli/standard_output.h"
 #include "cli/threads.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/space/control_space_file.h"
+#include "modules/load.h"
 #include "study/run.h"
 
 namespace controlspace {

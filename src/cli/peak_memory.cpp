@@ -8,7 +8,7 @@
 namespace controlspace {
 
 void restart_peak_memory() {
-    // What was freed but is still held would count for what comes.
+    // Memory that was freed but not returned to the system would count.
     ::malloc_trim(0);
     std::ofstream("/proc/self/clear_refs") << "5";
 }

@@ -4,11 +4,11 @@
 
 namespace controlspace {
 
-/// Counts the peak of memory anew from here, where the system allows it; otherwise it stays that of
-/// the whole program so far.
+/// Restarts the peak of memory, where the system allows it; otherwise it remains that of the whole
+/// run.
 void restart_peak_memory();
 
-/// Most memory that the program has held since, in bytes, without its children's.
+/// Largest resident memory of the program since then [bytes], without child processes.
 std::size_t peak_memory();
 
 }  // namespace controlspace

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "cli/formats.h"
-#include "cli/modules/module.h"
 #include "cli/progress.h"
 #include "cli/standard_output.h"
 #include "cli/threads.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
+#include "modules/load.h"
 #include "study/results.h"
 #include "study/resume.h"
 #include "study/run.h"

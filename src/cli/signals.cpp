@@ -54,7 +54,7 @@ void Interruption::wait(const std::stop_token& stop) {
         const auto lock = postpone();
         if (signal > 0) {
             if (last_words_) last_words_();
-            // The main thread cannot be asked to leave a long computation: leave without it.
+            // The main thread may be inside a long computation, which cannot be cancelled.
             std::_Exit(128 + signal);
         }
         if (tick_) tick_();

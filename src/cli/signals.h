@@ -6,10 +6,10 @@
 
 namespace controlspace {
 
-/// Ends the program at SIGINT (Ctrl-C) or SIGTERM with status 128 + signal, whatever it computes at
-/// that time, but not while something is being written. A thread of its own waits for the signals,
-/// so what it calls may do anything. Made before any other thread, which inherit that signals are
-/// left to this one.
+/// Ends the program on SIGINT (Ctrl-C) or SIGTERM with status 128 + signal, at any time except
+/// while files are being written. A thread of its own waits for the signals, so that the functions
+/// it calls need not be async-signal-safe. To be constructed before any other thread starts:
+/// threads inherit that the signals are blocked.
 class Interruption {
 public:
     Interruption();
@@ -17,11 +17,11 @@ public:
     Interruption(const Interruption&) = delete;
     Interruption& operator=(const Interruption&) = delete;
 
-    /// While the lock is held, the program is not ended.
+    /// The program is not ended while the lock is held.
     std::unique_lock<std::mutex> postpone() { return std::unique_lock(mutex_); }
 
-    /// As long as it lives, `tick` is called several times a second, and `last_words` before the
-    /// end.
+    /// During its lifetime, `tick` is called several times a second, and `last_words` before the
+    /// program is ended.
     class Watch {
     public:
         Watch(Interruption& interruption, std::function<void()> tick,

@@ -6,7 +6,7 @@
 
 namespace controlspace {
 
-/// Holds TBB to that many threads for as long as it lives; 0: all processors, no limit.
+/// Limits TBB to that many threads during its lifetime; 0: all processors, no limit.
 std::unique_ptr<tbb::global_control> limit_threads(int threads);
 
 }  // namespace controlspace

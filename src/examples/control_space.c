@@ -1,5 +1,5 @@
-/* A control space from C: sources say how long edges are to be at some places, and the control
- * space says it everywhere, before and after it was saved. */
+/* A control space from C: sources request edge lengths at some points, and the control space gives
+ * them at every point, before and after it is saved. */
 #include <controlspace/controlspace.h>
 #include <stdio.h>
 

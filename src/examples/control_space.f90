@@ -1,6 +1,6 @@
-! A control space from Fortran: sources say how long edges are to be at some places, and the control
-! space says it everywhere, before and after it was saved. The interfaces are those of
-! controlspace.h, as many of them as are used here.
+! A control space from Fortran: sources request edge lengths at some points, and the control space
+! gives them at every point, before and after it is saved. The interfaces are those of
+! controlspace.h that are used here.
 module controlspace
   use, intrinsic :: iso_c_binding
   use, intrinsic :: iso_fortran_env, only: error_unit

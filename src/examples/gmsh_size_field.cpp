@@ -1,5 +1,5 @@
-// A control space as the size field of a Gmsh program of one's own: sources say how long edges are
-// to be at some places, and the control space says it everywhere.
+// A control space as the size field of a Gmsh program: sources request edge lengths at some points,
+// and the control space gives them at every point.
 #include <controlspace/space/catalogue.h>
 #include <gmsh.h>
 
@@ -18,8 +18,8 @@ int main() {
     gmsh::model::occ::synchronize();
     gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
     gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 0);
-    // Gmsh's edges are longer than it is told: 0.77 of the length brings them to it. From 4.9 on a
-    // sixth argument holds the other sizes, which are none here. Threads may ask at once.
+    // Gmsh makes edges longer than its size field: 0.77 times the length compensates. From 4.9 on a
+    // sixth argument holds the other sizes; there are none here. Several threads may call this.
     gmsh::model::mesh::setSizeCallback([&](int, int, double x, double y, double z, auto...) {
         return 0.77 * sample_at(*space, {x, y, z}).xx;
     });

@@ -1,6 +1,11 @@
 # Installation of libraries and their public headers, as a package for CMake.
 include(GNUInstallDirs)
 set(controlspace_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/controlspace)
+# Shared libraries that are loaded when they are needed (src/modules): the same place relative to the program
+# where it is installed and in the build folder.
+file(RELATIVE_PATH controlspace_modules_from_program
+    ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/controlspace)
+set(controlspace_modules_folder ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/${controlspace_modules_from_program})
 # The public headers, which include nothing but each other.
 set(controlspace_headers ${PROJECT_SOURCE_DIR}/src/include)
 

@@ -1,7 +1,8 @@
-#include "cli/modules/module.h"
 #include "controlspace/version.h"
+#include "modules/load.h"
+#include "modules/tables.h"
 
-CONTROLSPACE_MODULE(OpenvdbModule) {
+CONTROLSPACE_MODULE {
     static const controlspace::OpenvdbModule table{
         .version = controlspace::version(),
         .make_openvdb_grid = controlspace::make_openvdb_grid,

@@ -1,7 +1,8 @@
-#include "cli/modules/module.h"
 #include "controlspace/version.h"
+#include "modules/load.h"
+#include "modules/tables.h"
 
-CONTROLSPACE_MODULE(GmshModule) {
+CONTROLSPACE_MODULE {
     static const controlspace::GmshModule table{.version = controlspace::version(),
                                                 .mesh_with_gmsh = controlspace::mesh_with_gmsh};
     return &table;

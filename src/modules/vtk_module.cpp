@@ -1,7 +1,8 @@
-#include "cli/modules/module.h"
 #include "controlspace/version.h"
+#include "modules/load.h"
+#include "modules/tables.h"
 
-CONTROLSPACE_MODULE(VtkModule) {
+CONTROLSPACE_MODULE {
     static const controlspace::VtkModule table{.version = controlspace::version(),
                                                .read_vtk_sources = controlspace::read_vtk_sources};
     return &table;

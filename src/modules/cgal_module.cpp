@@ -1,7 +1,8 @@
-#include "cli/modules/module.h"
 #include "controlspace/version.h"
+#include "modules/load.h"
+#include "modules/tables.h"
 
-CONTROLSPACE_MODULE(CgalModule) {
+CONTROLSPACE_MODULE {
     static const controlspace::CgalModule table{
         .version = controlspace::version(),
         .read_surface_mesh = controlspace::read_surface_mesh,

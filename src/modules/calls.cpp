@@ -1,0 +1,26 @@
+#include <filesystem>
+
+#include "modules/load.h"
+#include "modules/tables.h"
+
+namespace controlspace {
+
+namespace fs = std::filesystem;
+
+std::vector<PointSource> read_vtk_sources(const fs::path& path, const std::string& array) {
+    return module_table<VtkModule>("vtk").read_vtk_sources(path, array);
+}
+
+SurfaceMesh read_surface_mesh(const fs::path& path) {
+    return module_table<CgalModule>("cgal").read_surface_mesh(path);
+}
+
+std::vector<PointSource> read_surface_sources(const fs::path& path, const CurvatureSizes& sizes) {
+    return module_table<CgalModule>("cgal").read_surface_sources(path, sizes);
+}
+
+GmshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshOptions& options) {
+    return module_table<GmshModule>("gmsh").mesh_with_gmsh(domain, field, options);
+}
+
+}  // namespace controlspace

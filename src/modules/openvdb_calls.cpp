@@ -1,0 +1,41 @@
+#include <filesystem>
+
+#include "modules/load.h"
+#include "modules/tables.h"
+
+namespace controlspace {
+namespace {
+
+namespace fs = std::filesystem;
+
+const OpenvdbModule& openvdb() { return module_table<OpenvdbModule>("openvdb"); }
+
+}  // namespace
+
+std::unique_ptr<ControlSpaceBuilder> make_openvdb_grid(const SpaceOptions& options,
+                                                       Interpolation interpolation) {
+    return openvdb().make_openvdb_grid(options, interpolation);
+}
+
+std::unique_ptr<ControlSpaceBuilder> make_openvdb_levels(const SpaceOptions& options,
+                                                         Interpolation interpolation) {
+    return openvdb().make_openvdb_levels(options, interpolation);
+}
+
+std::unique_ptr<ControlSpaceBuilder> make_openvdb_vec3s(const SpaceOptions& options) {
+    return openvdb().make_openvdb_vec3s(options);
+}
+
+std::vector<PointSource> read_vdb_sources(const fs::path& path, const VdbSurface& surface) {
+    return openvdb().read_vdb_sources(path, surface);
+}
+
+AnalyticField read_vdb_field(const fs::path& path, const VdbLengths& what) {
+    return openvdb().read_vdb_field(path, what);
+}
+
+VdbReport write_vdb(const fs::path& path, const ControlSpace& space, const VdbOptions& options) {
+    return openvdb().write_vdb(path, space, options);
+}
+
+}  // namespace controlspace

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string_view>
+
+#include "baselines/openvdb/openvdb_grid.h"
+#include "baselines/openvdb/openvdb_levels.h"
+#include "baselines/openvdb/openvdb_vec3s.h"
+#include "controlspace/gmsh/gmsh_mesher.h"
+#include "controlspace/io/read_surface_sources.h"
+#include "controlspace/io/read_vdb.h"
+#include "controlspace/io/read_vtk_sources.h"
+#include "controlspace/io/write_vdb.h"
+#include "io/surface/surface_mesh.h"
+
+namespace controlspace {
+
+// What the modules export (see load.h).
+
+/// The module of OpenVDB: its structures, and .vdb files.
+struct OpenvdbModule {
+    std::string_view version;
+    decltype(&controlspace::make_openvdb_grid) make_openvdb_grid;
+    decltype(&controlspace::make_openvdb_levels) make_openvdb_levels;
+    decltype(&controlspace::make_openvdb_vec3s) make_openvdb_vec3s;
+    decltype(&controlspace::read_vdb_sources) read_vdb_sources;
+    decltype(&controlspace::read_vdb_field) read_vdb_field;
+    VdbReport (*write_vdb)(const std::filesystem::path&, const ControlSpace&, const VdbOptions&);
+};
+
+/// The module of VTK: files for ParaView.
+struct VtkModule {
+    std::string_view version;
+    decltype(&controlspace::read_vtk_sources) read_vtk_sources;
+};
+
+/// The module of CGAL: sources from surfaces.
+struct CgalModule {
+    std::string_view version;
+    decltype(&controlspace::read_surface_mesh) read_surface_mesh;
+    decltype(&controlspace::read_surface_sources) read_surface_sources;
+};
+
+/// The module of Gmsh, which is under the GPL: meshes and .msh files.
+struct GmshModule {
+    std::string_view version;
+    decltype(&controlspace::mesh_with_gmsh) mesh_with_gmsh;
+};
+
+}  // namespace controlspace
