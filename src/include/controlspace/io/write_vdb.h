@@ -35,7 +35,7 @@ struct VdbOptions {
     /// but draws no points.
     std::span<const PointSource> sources = {};
     std::size_t max_bytes = std::size_t{4} << 30;  ///< cap on the memory of the grids
-    /// Told how many of all voxels have been sampled, now and then; none: nobody.
+    /// Called, by one thread at a time, with the number of voxels sampled so far; may be empty.
     std::function<void(std::size_t done, std::size_t all)> progress = {};
 };
 
@@ -49,10 +49,10 @@ struct VdbReport {
     std::uintmax_t file = 0;               ///< bytes
 };
 
-/// Samples `field` over `domain` at the centres of cubic voxels and writes the grids of
-/// export/metric_grids.h to the .vdb file `path`, in the units of the domain. Every active voxel is
-/// within `tolerance` of the field at its centre; 8^3 voxels that share a metric become a tile.
-/// Runs on all of TBB's threads, with the same grids whatever their number.
+/// Samples `field` over `domain` at the centres of cubic voxels and writes metric_grids() to the
+/// .vdb file `path`, in the units of the domain; tensors are M, whose eigenvalues are lengths.
+/// Every active voxel is within `tolerance` of the field at its centre; 8^3 voxels that share a
+/// metric become a tile. Runs on all of TBB's threads, with the same grids whatever their number.
 ///
 /// Throws InputError for options out of range, names of grids that are not known, a field that is
 /// no metric somewhere, lengths that the file's numbers cannot hold, grids beyond the cap, and a

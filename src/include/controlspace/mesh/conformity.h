@@ -37,9 +37,9 @@ struct Conformity {
     double quality_mean = 0;
 };
 
-/// Measures `mesh` against `field`, the exact one where structures are compared. Asks it at every
-/// vertex and every edge's middle, on all of TBB's threads. Throws InputError for a mesh without
-/// tetrahedra.
+/// Measures `mesh` against `field`, the exact one where structures are compared. Samples it at
+/// every vertex and the middle of every edge, on all of TBB's threads. Throws InputError for a mesh
+/// without tetrahedra.
 Conformity conformity(const TetMesh& mesh, const ControlSpace& field);
 
 /// Metric length of the edge from `a` to `b` by Simpson's rule: `at_a`, `at_middle` and `at_b` are
