@@ -99,10 +99,9 @@ AnisotropicCones::AnisotropicCones(std::span<const PointSource> sources, double 
     tbb::parallel_sort(
         items.begin(), items.end(),
         [&](const ConeTreeItem& a, const ConeTreeItem& b) { return key(a) < key(b); });
-    const auto end = std::unique(items.begin(), items.end(),
-                                 [&](const ConeTreeItem& a, const ConeTreeItem& b) {
-                                     return source_of(a) == source_of(b);
-                                 });
+    const auto end = std::unique(
+        items.begin(), items.end(),
+        [&](const ConeTreeItem& a, const ConeTreeItem& b) { return source_of(a) == source_of(b); });
     items.erase(end, items.end());
     const std::size_t kept = build_without_dominated(
         items,
@@ -195,7 +194,8 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double
             const double exactly = is_axis_aligned(metric)
                                        ? cone_factor({leaf.position[lane], metric}, g_, p)
                                        : factor[lane];
-            queue.push(exactly * leaf.length[lane], 1 + tree_.indices()[first_item + static_cast<std::size_t>(lane)],
+            queue.push(exactly * leaf.length[lane],
+                       1 + tree_.indices()[first_item + static_cast<std::size_t>(lane)],
                        static_cast<std::uint32_t>(cones.size()));
             cones.push_back(exactly * metric);
         }

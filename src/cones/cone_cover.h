@@ -26,7 +26,8 @@ public:
     void reset(const Box& box, double slope, double cap, double tolerance);
 
     /// Which sources at these distances from the centre of the box, with these lengths (lower
-    /// bounds of both will do), are covered. `apart(q)` is their distance from the point q, or more.
+    /// bounds of both will do), are covered. `apart(q)` is their distance from the point q, or
+    /// more.
     template <class Numbers, class Apart>
     auto covered(const Numbers& distances, const Numbers& lengths, const Apart& apart) const {
         const Numbers away = (distances - radius_).max(0);

@@ -30,8 +30,7 @@ double IsotropicCones::length_at(const Leaf& leaf, Eigen::Index lane, const Poin
     return cone_factor({leaf.position[lane], Metric::isotropic(h)}, g_, p) * h;
 }
 
-void IsotropicCones::visit_leaf(Hint index, const Point& p, double& smallest,
-                                Hint& hint) const {
+void IsotropicCones::visit_leaf(Hint index, const Point& p, double& smallest, Hint& hint) const {
     // First as bounds have them, all lanes: only those near to the least may have the smallest.
     const Leaf& leaf = tree_.leaves()[index];
     const LanesOf<leaf_size> lengths = leaf.lengths_at(p, slope_);
@@ -166,8 +165,7 @@ IsotropicCones::Range IsotropicCones::range_in(const Box& box, Hint& hint) const
             });
     };
     const double most = smallest_at(
-        cap_,
-        [&](const Lanes& away) -> Lanes { return (away.square() + radius * radius).sqrt(); },
+        cap_, [&](const Lanes& away) -> Lanes { return (away.square() + radius * radius).sqrt(); },
         [](const Numbers& away, double edge) -> Numbers { return away + edge; });
     const double least = smallest_at(
         most, [&](const Lanes& away) -> Lanes { return (away - radius).max(0); },
@@ -184,10 +182,11 @@ double IsotropicCones::search(double cap, double tolerance, Hint& hint,
     const double enough = 1 / (1 + tolerance);
     double smallest = cap;
     visit_leaf(std::min(hint, static_cast<Hint>(tree_.leaves().size() - 1)), smallest);
-    tree_.search([&] { return enough * smallest; }, lower_bounds, [&](std::uint32_t number) {
-        visit_leaf(tree_.leaf_number(number), smallest);
-        return true;
-    });
+    tree_.search([&] { return enough * smallest; }, lower_bounds,
+                 [&](std::uint32_t number) {
+                     visit_leaf(tree_.leaf_number(number), smallest);
+                     return true;
+                 });
     return smallest;
 }
 

@@ -22,12 +22,12 @@ namespace controlspace {
 
 // The schedules of gradation. All but the passes end where no pair of neighbours breaks the law.
 //
-// | function          | threads | for                          | result                             |
+// | function          | threads | for                          | result |
 // |-------------------|---------|------------------------------|------------------------------------|
-// | grade_by_queue    | one     | any metrics and law          | the paper's queue (§3.2)           |
-// | grade_in_levels   | all     | any metrics and law          | that of the queue, to the bit      |
-// | grade_in_rounds   | all     | isotropic metrics, cone law  | that of the queue, to the bit      |
-// | grade_by_passes   | one     | any metrics and law          | the paper's tables (§5)            |
+// | grade_by_queue    | one     | any metrics and law          | the paper's queue (§3.2) | |
+// grade_in_levels   | all     | any metrics and law          | that of the queue, to the bit      |
+// | grade_in_rounds   | all     | isotropic metrics, cone law  | that of the queue, to the bit | |
+// grade_by_passes   | one     | any metrics and law          | the paper's tables (§5)            |
 
 /// What is graded, and how. Neighbours must be mutual for all schedules but the passes.
 template <class Graph>
@@ -95,8 +95,8 @@ std::uint64_t grade_in_levels(const Grading<Graph>& grading) {
         for (Turn& turn : batch) {
             turn.node = queue.take();
             std::uint64_t level = std::max(base, next_level[turn.node]);
-            graph.for_each_neighbour(
-                turn.node, [&](NodeIndex j) { level = std::max(level, next_level[j]); });
+            graph.for_each_neighbour(turn.node,
+                                     [&](NodeIndex j) { level = std::max(level, next_level[j]); });
             if (level - base == levels.size()) levels.emplace_back();
             levels[level - base].push_back(&turn);
             next_level[turn.node] = level + 1;

@@ -97,7 +97,7 @@ private:
 }  // namespace
 
 std::unique_ptr<ControlSpace> exact_reference(std::vector<PointSource> sources, double g,
-                                             const Metric& largest, double tolerance) {
+                                              const Metric& largest, double tolerance) {
     require_usable(sources, g, largest);
     if (!std::isfinite(tolerance) || tolerance < 0) {
         throw InputError(
@@ -107,13 +107,13 @@ std::unique_ptr<ControlSpace> exact_reference(std::vector<PointSource> sources, 
 }
 
 std::unique_ptr<ControlSpace> brute_force_reference(std::vector<PointSource> sources, double g,
-                                                   const Metric& largest) {
+                                                    const Metric& largest) {
     require_usable(sources, g, largest);
     return std::make_unique<BruteForceReference>(std::move(sources), g, largest);
 }
 
 std::shared_ptr<const ControlSpace> published_sphere_reference(double radius, double h, double g,
-                                                              double largest) {
+                                                               double largest) {
     require_valid(GradationOptions{.ratio = g});
     return sphere_field({.radius = radius, .lengths = {h, h, 2 * (g - 1) / (g + 1), largest}})
         .field;

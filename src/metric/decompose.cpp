@@ -88,8 +88,7 @@ EigenFrame eigen_frame(const Metric& m) {
 Svd svd(const Eigen::Matrix3d& matrix) {
     Eigen::Matrix3d b = matrix;
     Eigen::Matrix3d v = Eigen::Matrix3d::Identity();
-    std::array<double, 3> s{b.col(0).squaredNorm(), b.col(1).squaredNorm(),
-                            b.col(2).squaredNorm()};
+    std::array<double, 3> s{b.col(0).squaredNorm(), b.col(1).squaredNorm(), b.col(2).squaredNorm()};
     // Rotates columns p and q until they are orthogonal; false if they were.
     const auto orthogonalise = [&](int p, int q) {
         constexpr double cosine = 4e-16;  // of columns that rounding alone keeps apart

@@ -33,8 +33,8 @@ void require_length(std::string_view name, double value) {
 
 void require_coordinates(std::string_view name, const Point& p) {
     if (std::all_of(p.begin(), p.end(), is_coordinate)) return;
-    throw InputError(fmt::format("{} = ({}, {}, {}): give three finite coordinates", name, p.x(),
-                                 p.y(), p.z()));
+    throw InputError(
+        fmt::format("{} = ({}, {}, {}): give three finite coordinates", name, p.x(), p.y(), p.z()));
 }
 
 }  // namespace controlspace

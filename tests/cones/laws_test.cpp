@@ -99,6 +99,7 @@ TEST_CASE("With axes renamed, the exact field has renamed axes") {
     const std::vector<Metric> expected = setup.answers();
     const std::vector<Metric> found = renamed.answers();
     for (std::size_t i = 0; i < found.size(); ++i) {
-        REQUIRE(difference(found[i], rotated(expected[i], turn)) < (anisotropy > 1 ? 1e-10 : 1e-14));
+        REQUIRE(difference(found[i], rotated(expected[i], turn)) <
+                (anisotropy > 1 ? 1e-10 : 1e-14));
     }
 }

@@ -100,6 +100,7 @@ TEST_CASE("surface fields refuse what they cannot do") {
         if (bad != 0) CHECK_THROWS_AS(planes_field({.lengths = {.growth = bad}}), InputError);
     }
     CHECK_NOTHROW(sphere_field({.lengths = {.growth = 0}}));
-    CHECK_THROWS_WITH(sphere_field({.centre = {nan, 0, 0}}), Contains("centre of a field = (nan, 0, 0)"));
+    CHECK_THROWS_WITH(sphere_field({.centre = {nan, 0, 0}}),
+                      Contains("centre of a field = (nan, 0, 0)"));
     CHECK_THROWS_WITH(planes_field({.slope = nan}), Contains("slope nan"));
 }

@@ -2,7 +2,6 @@
 
 #include "controlspace/space/control_space.h"
 
-
 namespace controlspace {
 
 inline Metric value_at(const ControlSpace& field, const Point& p) {

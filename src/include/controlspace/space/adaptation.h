@@ -17,8 +17,8 @@ namespace controlspace {
 struct AdaptationGoal {
     std::span<const PointSource> sources;
     std::shared_ptr<const ControlSpace> continuous;  ///< or none
-    double ratio = 1.25;                            ///< g_r of the sources' cones
-    double target = 0.1;                            ///< largest δ to the field; 0 is out of reach
+    double ratio = 1.25;                             ///< g_r of the sources' cones
+    double target = 0.1;                             ///< largest δ to the field; 0 is out of reach
 };
 
 struct AdaptationReport {

@@ -6,8 +6,8 @@
 
 namespace controlspace {
 
-/// As space.sample, with the same bits, on all of TBB's threads, in blocks of 64 to 2048 points whose
-/// answers share no cache line. Smaller batches stay on the calling thread. Exceptions of
+/// As space.sample, with the same bits, on all of TBB's threads, in blocks of 64 to 2048 points
+/// whose answers share no cache line. Smaller batches stay on the calling thread. Exceptions of
 /// space.sample pass through.
 void sample_parallel(const ControlSpace& space, std::span<const Point> x, std::span<Metric> out);
 
