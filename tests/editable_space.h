@@ -1,8 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
+#include "controlspace/space/catalogue.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/control_space_builder.h"
 #include "controlspace/space/control_space_file.h"
@@ -66,6 +71,19 @@ inline std::unique_ptr<EditableSpace> load_editable(const std::filesystem::path&
     return editable(load_builder(file, structures));
 }
 
+/// Trees whose control nodes carry metrics, then those whose leaves keep sources.
+inline std::vector<CatalogueEntry> all_trees() {
+    std::vector<CatalogueEntry> all(tree_catalogue().begin(), tree_catalogue().end());
+    all.insert(all.end(), anchored_catalogue().begin(), anchored_catalogue().end());
+    return all;
+}
+/// The tree called `id`.
+inline const CatalogueEntry& tree_named(std::string_view id) {
+    for (const auto& rows : {tree_catalogue(), anchored_catalogue()}) {
+        if (const CatalogueEntry* entry = find_entry(rows, id)) return *entry;
+    }
+    throw std::out_of_range("no tree is called " + std::string(id));
+}
 /// Answers by searching its sources, without any cells.
 inline bool is_direct(const CatalogueEntry& entry) {
     return entry.has<KeptSources>() && !entry.has<SourceLeaves>();

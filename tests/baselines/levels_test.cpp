@@ -79,7 +79,7 @@ TEST_CASE("before gradation, a grid in levels answers as the octree does, to the
     // of leaves that no source has touched.
     const SpaceOptions options = cube();
     const std::vector<PointSource> sources = random_sources(400, options);
-    const auto octree = editable(tree_catalogue()[3].make(options));
+    const auto octree = editable(tree_named("K_oL").make(options));
     const auto levels = editable(make_openvdb_levels(options, Interpolation::nearest));
     CHECK(octree->insert(sources).inserted == levels->insert(sources).inserted);
     const std::vector<Point> x = random_points(20000, options.domain);

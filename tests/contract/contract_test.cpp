@@ -5,7 +5,7 @@
 #include <random>
 #include <thread>
 
-#include "contract/structures_under_test.h"
+#include "contract/structure_case.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
@@ -25,6 +25,12 @@ std::vector<Metric> answers(const ControlSpace& space, std::span<const Point> x)
     return out;
 }
 
+Work any_work() {
+    return GENERATE(isotropic_sphere(), anisotropic_sphere(), oblong_box(),
+                    anisotropic_oblong_box());
+}
+Work any_isotropic_work() { return GENERATE(isotropic_sphere(), oblong_box()); }
+
 // How much larger `held` is than `asked` allows: δ to what it should at most be.
 double coarser_than_asked(const Metric& held, const Metric& asked) {
     return nonconformity(held, intersection(held, asked));
@@ -37,273 +43,269 @@ double axis_path_length(const Metric& m, const Vector& v) {
     return lengths[0] + lengths[1] + lengths[2];
 }
 
-// Whether `p` is a corner of `element`, up to rounding of the positions.
-bool is_corner(const Box& element, const Point& p) {
-    return ((p - element.low).cwiseAbs().array().min((p - element.high).cwiseAbs().array()) < 1e-12)
-        .all();
-}
+// Of positions.
+double rounding(const Work& work) { return 1e-12 * std::max(1.0, work.domain.high.norm()); }
 
-template <class Check>
-void for_each_structure(const Work& work, Check&& check) {
-    for (const Structure& structure : all_structures()) {
-        CAPTURE(structure.name(), work.name);
-        check(structure);
-    }
+// Whether `p` is a corner of `element`, up to `rounding`.
+bool is_corner(const Box& element, const Point& p, double rounding) {
+    return ((p - element.low).cwiseAbs().array().min((p - element.high).cwiseAbs().array()) <
+            rounding)
+        .all();
 }
 
 }  // namespace
 
-TEST_CASE("a new control space holds H I everywhere, H half of the domain's diagonal") {
-    const Work work = isotropic_sphere();
-    for_each_structure(work, [&](const Structure& structure) {
-        const auto space = editable(structure.entry->make(work.options(structure.split)));
-        for (const Metric& m : answers(*space, random_points(work.domain, 100, 1))) {
-            CHECK(nonconformity(m, Metric::isotropic(std::sqrt(3))) < 1e-12);
-        }
-        CHECK(space->domain() == work.domain);
-    });
+STRUCTURE_CASE(does_not_round,
+               "a new control space holds H I everywhere, H half of the domain's diagonal") {
+    const Work work = any_isotropic_work();
+    CAPTURE(work.name);
+    const auto space = editable(structure.entry->make(work.options(structure.split)));
+    for (const Metric& m : answers(*space, random_points(work.domain, 100, 1))) {
+        CHECK(nonconformity(m, Metric::isotropic(work.domain.half_diagonal())) < 1e-12);
+    }
+    CHECK(space->domain() == work.domain);
 }
 
-TEST_CASE("answers are positive definite everywhere, before and after gradation") {
-    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+STRUCTURE_CASE(does_not_round,
+               "answers are positive definite everywhere, before and after gradation") {
+    const Work work = any_work();
+    CAPTURE(work.name);
     const std::vector<Point> x = random_points(work.domain, 3000, 2);
-    for_each_structure(work, [&](const Structure& structure) {
-        const auto space = work.inserted(structure);
-        const auto all_positive = [&] {
-            const std::vector<Metric> m = answers(*space, x);
-            return std::all_of(m.begin(), m.end(), is_positive_definite);
-        };
-        CHECK(all_positive());
-        space->grade({});
-        CHECK(all_positive());
-    });
+    const auto space = work.inserted(structure);
+    const auto all_positive = [&] {
+        const std::vector<Metric> m = answers(*space, x);
+        return std::all_of(m.begin(), m.end(), is_positive_definite);
+    };
+    CHECK(all_positive());
+    space->grade({});
+    CHECK(all_positive());
 }
 
-TEST_CASE("at its place a source is met: never coarser than asked by epsilon") {
-    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
-    for_each_structure(work, [&](const Structure& structure) {
-        const auto space = work.graded(structure);
-        double worst = 0;
-        for (const PointSource& source : work.sources) {
-            worst = std::max(worst,
-                             coarser_than_asked(sample_at(*space, source.position), source.metric));
-        }
-        CHECK(worst < 0.2);
-    });
+STRUCTURE_CASE(does_not_round,
+               "at its place a source is met: never coarser than asked by epsilon") {
+    const Work work = any_work();
+    CAPTURE(work.name);
+    const auto space = work.graded(structure);
+    double worst = 0;
+    for (const PointSource& source : work.sources) {
+        worst =
+            std::max(worst, coarser_than_asked(sample_at(*space, source.position), source.metric));
+    }
+    CHECK(worst < 0.2);
 }
 
-TEST_CASE("gradation only makes smaller, and holds afterwards") {
+STRUCTURE_CASE(does_not_round, "gradation only makes smaller, and holds afterwards") {
     const auto law = GENERATE(GradationLaw::cone, GradationLaw::mean_length);
-    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+    const Work work = any_work();
+    CAPTURE(work.name);
     const std::vector<Point> x = random_points(work.domain, 3000, 10);
-    for_each_structure(work, [&](const Structure& structure) {
-        const auto space = work.inserted(structure);
-        const std::vector<Metric> before = answers(*space, x);
-        const GradationReport report = space->grade({.law = law, .ratio = g});
-        // Three sources cannot stand for all tensors that cut a leaf.
-        const bool holds = keeps_values(*structure.entry) || work.name == "isotropic";
-        if (holds) CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
-        const std::vector<Metric> after = answers(*space, x);
-        std::size_t larger = 0;
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            larger += !is_within(after[i], 1 + 1e-9, before[i]);
-        }
-        // Quadratic functions undershoot where a neighbour is far larger, which gradation ends; and
-        // blends of smaller tensors are smaller as matrices, not always along each direction.
-        const int order = structure.entry->order;
-        if (holds && (order == 0 || (order == 1 && work.name == "isotropic"))) CHECK(larger == 0);
-        CHECK((after != before) != is_direct(*structure.entry));
-    });
+    const auto space = work.inserted(structure);
+    const std::vector<Metric> before = answers(*space, x);
+    const GradationReport report = space->grade({.law = law, .ratio = g});
+    // Three sources cannot stand for all tensors that cut a leaf.
+    const bool holds = keeps_values(*structure.entry) || work.isotropic();
+    if (holds) CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
+    const std::vector<Metric> after = answers(*space, x);
+    std::size_t larger = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        larger += !is_within(after[i], 1 + 1e-9, before[i]);
+    }
+    // Quadratic functions undershoot where a neighbour is far larger, which gradation ends; and
+    // blends of smaller tensors are smaller as matrices, not always along each direction.
+    const int order = structure.entry->order;
+    if (holds && (order == 0 || (order == 1 && work.isotropic()))) CHECK(larger == 0);
+    CHECK((after != before) != is_direct(*structure.entry));
 }
 
-TEST_CASE("with all neighbours, no node is larger than with those across faces alone") {
-    const Work work = isotropic_sphere();
-    for_each_structure(work, [&](const Structure& structure) {
-        SpaceOptions options = work.options(structure.split);
-        options.voxel_factor = 1000;  // no voxel is refined because its neighbours are smaller
-        const auto graded = [&](Neighbourhood neighbourhood) {
-            auto space = editable(structure.entry->make(options));
-            space->insert(work.sources);
-            const auto report = space->grade({.ratio = g, .neighbourhood = neighbourhood});
-            CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
-            return space;
-        };
-        const ControlNodes few = graded(Neighbourhood::faces)->control_nodes(Neighbourhood::all);
-        const ControlNodes all = graded(Neighbourhood::all)->control_nodes(Neighbourhood::all);
-        REQUIRE(few.metrics.size() == all.metrics.size());
-        if (structure.entry->has<KeptSources>()) {
-            CHECK(few.metrics == all.metrics);
-            return;
-        }
-        CHECK(largest_gradation(few.graph, few.metrics, GradationLaw::cone) > 1.01 * g);
-        CHECK(largest_gradation(all.graph, all.metrics, GradationLaw::cone) <= g * (1 + 1e-4));
-        std::size_t larger = 0;
-        std::size_t smaller = 0;
-        for (std::size_t i = 0; i < all.metrics.size(); ++i) {
-            larger += all.metrics[i].xx > few.metrics[i].xx;
-            smaller += all.metrics[i].xx < 0.99 * few.metrics[i].xx;
-        }
-        CHECK(larger == 0);
-        CHECK(smaller > 0);
-    });
+STRUCTURE_CASE(does_not_round,
+               "with all neighbours, no node is larger than with those across faces alone") {
+    const Work work = any_isotropic_work();
+    CAPTURE(work.name);
+    SpaceOptions options = work.options(structure.split);
+    options.voxel_factor = 1000;  // no voxel is refined because its neighbours are smaller
+    const auto graded = [&](Neighbourhood neighbourhood) {
+        auto space = editable(structure.entry->make(options));
+        space->insert(work.sources);
+        const auto report = space->grade({.ratio = g, .neighbourhood = neighbourhood});
+        CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
+        return space;
+    };
+    const ControlNodes few = graded(Neighbourhood::faces)->control_nodes(Neighbourhood::all);
+    const ControlNodes all = graded(Neighbourhood::all)->control_nodes(Neighbourhood::all);
+    REQUIRE(few.metrics.size() == all.metrics.size());
+    if (structure.entry->has<KeptSources>()) {
+        CHECK(few.metrics == all.metrics);
+        return;
+    }
+    CHECK(largest_gradation(few.graph, few.metrics, GradationLaw::cone) > 1.01 * g);
+    CHECK(largest_gradation(all.graph, all.metrics, GradationLaw::cone) <= g * (1 + 1e-4));
+    std::size_t larger = 0;
+    std::size_t smaller = 0;
+    for (std::size_t i = 0; i < all.metrics.size(); ++i) {
+        larger += all.metrics[i].xx > few.metrics[i].xx;
+        smaller += all.metrics[i].xx < 0.99 * few.metrics[i].xx;
+    }
+    CHECK(larger == 0);
+    CHECK(smaller > 0);
 }
 
 // Not so for tensors: a node that is thin along the way lets all its lengths grow fast, those too
 // that a source further back holds down. The cone of that source is lost in the intersection.
-TEST_CASE("under the cone law, no larger than the cones of the sources allow along a path") {
-    const Work work = isotropic_sphere();
+STRUCTURE_CASE(does_not_round,
+               "under the cone law, no larger than the cones of the sources allow along a path") {
+    const Work work = any_isotropic_work();
+    CAPTURE(work.name);
     const std::vector<Point> x = random_points(work.domain, 400, 3);
-    for_each_structure(work, [&](const Structure& structure) {
-        const auto space = editable(structure.entry->make(work.options(structure.split)));
-        std::vector<PointSource> inserted;
-        for (const PointSource& source : work.sources) {
-            if (space->insert(source) == Insertion::inserted) inserted.push_back(source);
+    const auto space = editable(structure.entry->make(work.options(structure.split)));
+    std::vector<PointSource> inserted;
+    for (const PointSource& source : work.sources) {
+        if (space->insert(source) == Insertion::inserted) inserted.push_back(source);
+    }
+    space->grade({.ratio = g});
+    const std::vector<Metric> m = answers(*space, x);
+    double worst = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        const Vector here = space->cell_at(x[k]).value().edges();
+        for (std::size_t i = 0; i < inserted.size(); i += 5) {
+            const PointSource& source = inserted[i];
+            const Vector there = space->cell_at(source.position).value().edges();
+            // From the source to a control node of its element, along a path of control nodes
+            // that may stray by a part of the elements it passes, to one of the element here.
+            const double path = axis_path_length(source.metric, x[k] - source.position) +
+                                axis_path_length(source.metric, here) +
+                                axis_path_length(source.metric, there);
+            worst = std::max(worst, growth(m[k], (1 + (g - 1) * path) * source.metric));
         }
-        space->grade({.ratio = g});
-        const std::vector<Metric> m = answers(*space, x);
-        double worst = 0;
-        for (std::size_t k = 0; k < x.size(); ++k) {
-            const Vector here = space->cell_at(x[k]).value().edges();
-            for (std::size_t i = 0; i < inserted.size(); i += 5) {
-                const PointSource& source = inserted[i];
-                const Vector there = space->cell_at(source.position).value().edges();
-                // From the source to a control node of its element, along a path of control nodes
-                // that may stray by a part of the elements it passes, to one of the element here.
-                const double path = axis_path_length(source.metric, x[k] - source.position) +
-                                    axis_path_length(source.metric, here) +
-                                    axis_path_length(source.metric, there);
-                worst = std::max(worst, growth(m[k], (1 + (g - 1) * path) * source.metric));
+    }
+    CHECK(worst <= 1);
+}
+
+STRUCTURE_CASE(does_not_round, "a control node's own metric at its own place") {
+    const Work work = any_isotropic_work();
+    CAPTURE(work.name);
+    if (is_direct(*structure.entry)) return;
+    const auto space = work.graded(structure);
+    const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
+    std::visit(
+        [&](const auto& graph) {
+            double worst = 0;
+            std::size_t asked = 0;
+            for (NodeIndex i = 0; i < graph.size(); i += 5) {
+                const Point p = graph.position(i);
+                // A hanging vertex counts in the finer elements at it only.
+                if (structure.entry->order == 1 &&
+                    !is_corner(space->cell_at(p).value(), p, rounding(work)))
+                    continue;
+                const double delta = nonconformity(sample_at(*space, p), nodes.metrics[i]);
+                worst = std::max(worst, delta);
+                ++asked;
             }
-        }
-        CHECK(worst <= 1);
-    });
+            CHECK(asked > graph.size() / 50);
+            CHECK(worst < 1e-12);
+        },
+        nodes.graph);
 }
 
-TEST_CASE("a control node's own metric at its own place") {
-    const Work work = isotropic_sphere();
-    for_each_structure(work, [&](const Structure& structure) {
-        if (is_direct(*structure.entry)) return;
-        const auto space = work.graded(structure);
-        const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
-        std::visit(
-            [&](const auto& graph) {
-                double worst = 0;
-                std::size_t asked = 0;
-                for (NodeIndex i = 0; i < graph.size(); i += 5) {
-                    const Point p = graph.position(i);
-                    // A hanging vertex counts in the finer elements at it only.
-                    if (structure.entry->order == 1 && !is_corner(space->cell_at(p).value(), p))
-                        continue;
-                    const double delta = nonconformity(sample_at(*space, p), nodes.metrics[i]);
-                    worst = std::max(worst, delta);
-                    ++asked;
-                }
-                CHECK(asked > graph.size() / 50);
-                CHECK(worst < 1e-12);
-            },
-            nodes.graph);
-    });
-}
-
-TEST_CASE("a constant is answered as such; assigning what was read changes nothing") {
-    const Work work = anisotropic_sphere();
+STRUCTURE_CASE(does_not_round,
+               "a constant is answered as such; assigning what was read changes nothing") {
+    const Work work = GENERATE(anisotropic_sphere(), anisotropic_oblong_box());
+    CAPTURE(work.name);
     const std::vector<Point> x = random_points(work.domain, 500, 4);
     const Metric constant{0.2, 0.3, 0.25, 0.01, -0.02, 0.03};
-    for_each_structure(work, [&](const Structure& structure) {
-        const auto space = work.graded(structure);
-        const std::vector<Metric> before = answers(*space, x);
-        ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
-        const bool has_nodes = dynamic_cast<NodeBuilder*>(&space->builder()) != nullptr;
-        REQUIRE(has_nodes == structure.entry->has<MetricNodes>());
-        if (!has_nodes) return;
-        space->assign(nodes.metrics);
-        CHECK(answers(*space, x) == before);
-        nodes.metrics.push_back(constant);
-        CHECK_THROWS_WITH(space->assign(nodes.metrics), Contains("give one for each"));
-        nodes.metrics.resize(nodes.metrics.size() - 2);
-        CHECK_THROWS_AS(space->assign(nodes.metrics), InputError);
-        CHECK_THROWS_AS(space->assign({}), InputError);
-        CHECK(answers(*space, x) == before);
-        nodes.metrics.push_back(constant);
-        std::fill(nodes.metrics.begin(), nodes.metrics.end(), constant);
-        space->assign(nodes.metrics);
-        for (const Metric& m : answers(*space, x)) CHECK(nonconformity(m, constant) < 1e-12);
-    });
+    const auto space = work.graded(structure);
+    const std::vector<Metric> before = answers(*space, x);
+    ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
+    const bool has_nodes = dynamic_cast<NodeBuilder*>(&space->builder()) != nullptr;
+    REQUIRE(has_nodes == structure.entry->has<MetricNodes>());
+    if (!has_nodes) return;
+    space->assign(nodes.metrics);
+    CHECK(answers(*space, x) == before);
+    nodes.metrics.push_back(constant);
+    CHECK_THROWS_WITH(space->assign(nodes.metrics), Contains("give one for each"));
+    nodes.metrics.resize(nodes.metrics.size() - 2);
+    CHECK_THROWS_AS(space->assign(nodes.metrics), InputError);
+    CHECK_THROWS_AS(space->assign({}), InputError);
+    CHECK(answers(*space, x) == before);
+    nodes.metrics.push_back(constant);
+    std::fill(nodes.metrics.begin(), nodes.metrics.end(), constant);
+    space->assign(nodes.metrics);
+    for (const Metric& m : answers(*space, x)) CHECK(nonconformity(m, constant) < 1e-12);
 }
 
-TEST_CASE("one by one, in a batch, in any order, from many threads: the same answers") {
-    const Work work = anisotropic_sphere();
+STRUCTURE_CASE(does_not_round,
+               "one by one, in a batch, in any order, from many threads: the same answers") {
+    const Work work = GENERATE(anisotropic_sphere(), anisotropic_oblong_box());
+    CAPTURE(work.name);
     const std::vector<Point> x = random_points(work.domain, 4000, 5);
     std::vector<std::size_t> order(x.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::shuffle(order.begin(), order.end(), std::mt19937(6));
-    for_each_structure(work, [&](const Structure& structure) {
-        const auto space = work.graded(structure);
-        const std::vector<Metric> batch = answers(*space, x);
-        for (std::size_t i = 0; i < x.size(); i += 10) CHECK(sample_at(*space, x[i]) == batch[i]);
+    const auto space = work.graded(structure);
+    const std::vector<Metric> batch = answers(*space, x);
+    for (std::size_t i = 0; i < x.size(); i += 10) CHECK(sample_at(*space, x[i]) == batch[i]);
 
-        std::vector<Point> shuffled;
-        for (const std::size_t i : order) shuffled.push_back(x[i]);
-        const std::vector<Metric> other = answers(*space, shuffled);
-        bool same = true;
-        for (std::size_t i = 0; i < order.size(); ++i) same = same && other[i] == batch[order[i]];
-        CHECK(same);
+    std::vector<Point> shuffled;
+    for (const std::size_t i : order) shuffled.push_back(x[i]);
+    const std::vector<Metric> other = answers(*space, shuffled);
+    bool same = true;
+    for (std::size_t i = 0; i < order.size(); ++i) same = same && other[i] == batch[order[i]];
+    CHECK(same);
 
-        std::vector<std::vector<Metric>> concurrent(4);
-        std::vector<std::thread> threads;
-        for (auto& out : concurrent) threads.emplace_back([&] { out = answers(*space, x); });
-        for (std::thread& thread : threads) thread.join();
-        for (const auto& out : concurrent) CHECK(out == batch);
-    });
+    std::vector<std::vector<Metric>> concurrent(4);
+    std::vector<std::thread> threads;
+    for (auto& out : concurrent) threads.emplace_back([&] { out = answers(*space, x); });
+    for (std::thread& thread : threads) thread.join();
+    for (const auto& out : concurrent) CHECK(out == batch);
 }
 
-TEST_CASE("outside the domain, the answer of the nearest place inside") {
-    const Work work = isotropic_sphere();
-    for_each_structure(work, [&](const Structure& structure) {
-        const auto space = work.graded(structure);
-        for (const Point& x : random_points({Point::Constant(-3), Point::Constant(3)}, 300, 7)) {
-            const Point inside = x.cwiseMax(work.domain.low).cwiseMin(work.domain.high);
-            CHECK(sample_at(*space, x) == sample_at(*space, inside));
-        }
-    });
+STRUCTURE_CASE(does_not_round, "outside the domain, the answer of the nearest place inside") {
+    const Work work = any_isotropic_work();
+    CAPTURE(work.name);
+    const auto space = work.graded(structure);
+    const Vector edges = work.domain.edges();
+    const Box around{work.domain.low - edges, work.domain.high + edges};
+    for (const Point& x : random_points(around, 300, 7)) {
+        const Point inside = x.cwiseMax(work.domain.low).cwiseMin(work.domain.high);
+        CHECK(sample_at(*space, x) == sample_at(*space, inside));
+    }
 }
 
-TEST_CASE("the same run gives the same bits, one by one as well as in a batch") {
-    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+STRUCTURE_CASE(does_not_round,
+               "the same run gives the same bits, one by one as well as in a batch") {
+    const Work work = any_work();
+    CAPTURE(work.name);
     const std::vector<Point> x = random_points(work.domain, 2000, 8);
-    for_each_structure(work, [&](const Structure& structure) {
-        const auto first = work.graded(structure);
-        const auto second = editable(structure.entry->make(work.options(structure.split)));
-        for (const PointSource& source : work.sources) second->insert(source);
-        second->grade({});
-        CHECK(checksum(answers(*first, x)) == checksum(answers(*second, x)));
-    });
+    const auto first = work.graded(structure);
+    const auto second = editable(structure.entry->make(work.options(structure.split)));
+    for (const PointSource& source : work.sources) second->insert(source);
+    second->grade({});
+    CHECK(checksum(answers(*first, x)) == checksum(answers(*second, x)));
 }
 
-TEST_CASE("elements hold the places that they answer for, and lie in the domain") {
-    const Work work = isotropic_sphere();
-    for_each_structure(work, [&](const Structure& structure) {
-        const auto space = work.inserted(structure);
-        for (const Point& x : random_points(work.domain, 300, 9)) {
-            const Box element = space->cell_at(x).value();
-            CHECK((x.array() >= element.low.array() - 1e-12).all());
-            CHECK((x.array() <= element.high.array() + 1e-12).all());
-            CHECK((element.edges().array() > 0).all());
-            CHECK((element.low.array() >= work.domain.low.array() - 1e-12).all());
-            CHECK((element.high.array() <= work.domain.high.array() + 1e-12).all());
-        }
-    });
+STRUCTURE_CASE(does_not_round,
+               "elements hold the places that they answer for, and lie in the domain") {
+    const Work work = any_isotropic_work();
+    CAPTURE(work.name);
+    const auto space = work.inserted(structure);
+    for (const Point& x : random_points(work.domain, 300, 9)) {
+        const Box element = space->cell_at(x).value();
+        CHECK((x.array() >= element.low.array() - rounding(work)).all());
+        CHECK((x.array() <= element.high.array() + rounding(work)).all());
+        CHECK((element.edges().array() > 0).all());
+        CHECK((element.low.array() >= work.domain.low.array() - rounding(work)).all());
+        CHECK((element.high.array() <= work.domain.high.array() + rounding(work)).all());
+    }
 }
 
-TEST_CASE("sources of no use are not sources: refused by every structure") {
-    const Work work = isotropic_sphere();
-    for_each_structure(work, [&](const Structure& structure) {
-        const auto space = editable(structure.entry->make(work.options(structure.split)));
-        CHECK_THROWS_WITH(space->insert({Point(1.5, 0, 0), {}}), Catch::Contains("outside"));
-        CHECK_THROWS_WITH(space->insert({Point::Zero(), {1, 1, 1, 3, 0, 0}}),
-                          Catch::Contains("not positive definite"));
-        CHECK(answers(*space, random_points(work.domain, 10, 1)) ==
-              answers(*editable(structure.entry->make(work.options(structure.split))),
-                      random_points(work.domain, 10, 1)));
-    });
+STRUCTURE_CASE(does_not_round, "sources of no use are not sources: refused by every structure") {
+    const Work work = any_isotropic_work();
+    CAPTURE(work.name);
+    const auto space = editable(structure.entry->make(work.options(structure.split)));
+    CHECK_THROWS_WITH(space->insert({work.domain.high + Vector(0.5, 0, 0), {}}),
+                      Catch::Contains("outside"));
+    CHECK_THROWS_WITH(space->insert({work.domain.centre(), {1, 1, 1, 3, 0, 0}}),
+                      Catch::Contains("not positive definite"));
+    CHECK(answers(*space, random_points(work.domain, 10, 1)) ==
+          answers(*editable(structure.entry->make(work.options(structure.split))),
+                  random_points(work.domain, 10, 1)));
 }

@@ -1,7 +1,7 @@
 // Sources that lie anyhow and ask for 50:1: every structure must take them.
 #include <catch2/catch.hpp>
 
-#include "contract/structures_under_test.h"
+#include "contract/structure_case.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/sources/scattered_surfaces.h"
 #include "editable_space.h"
@@ -29,29 +29,27 @@ double largest_growth(const ControlSpace& space, const std::vector<PointSource>&
 
 }  // namespace
 
-TEST_CASE("irregular sources of 50:1 give metrics everywhere, and are met at their places") {
+STRUCTURE_CASE(has_no_slabs,
+               "irregular sources of 50:1 give metrics everywhere, and are met at their places") {
     const Sampling sampling = GENERATE(Sampling::random, Sampling::clustered, Sampling::poisson);
     const Work work{"irregular",
                     scatter_sphere({.h = 0.06, .s_a = 10, .s_n = 0.02, .rho = 4}, sampling, 7)};
     const double largest = work.domain.half_diagonal();
     const std::vector<Point> x = random_points(work.domain, 500, 3);
     std::vector<Metric> m(x.size());
-    for (const Structure& structure : all_structures()) {
-        if (structure.split == SplitRule::metric) continue;  // as the others, and slow
-        CAPTURE(structure.name(), static_cast<int>(sampling));
-        const auto space = made(structure, work);
-        CHECK(space->insert(std::span(work.sources)).inserted > 0);
-        space->grade({});
-        space->sample(x, m);
-        for (const Metric& metric : m) {
-            REQUIRE(is_positive_definite(metric));
-            REQUIRE(eigen_frame(metric).lengths[2] <= largest * (1 + 1e-9));
-        }
-        // A δ of 0.2, which insertion lets pass, is a length 1.56 times as long in one direction.
-        // Quadratic interpolation may leave the range of its nodes, and leaves that keep three
-        // sources may hold more: they have no such bound at this anisotropy.
-        if (structure.entry->order < 2 && keeps_values(*structure.entry)) {
-            CHECK(largest_growth(*space, work.sources) <= 1.56);
-        }
+    CAPTURE(static_cast<int>(sampling));
+    const auto space = made(structure, work);
+    CHECK(space->insert(std::span(work.sources)).inserted > 0);
+    space->grade({});
+    space->sample(x, m);
+    for (const Metric& metric : m) {
+        REQUIRE(is_positive_definite(metric));
+        REQUIRE(eigen_frame(metric).lengths[2] <= largest * (1 + 1e-9));
+    }
+    // A δ of 0.2, which insertion lets pass, is a length 1.56 times as long in one direction.
+    // Quadratic interpolation may leave the range of its nodes, and leaves that keep three
+    // sources may hold more: they have no such bound at this anisotropy.
+    if (structure.entry->order < 2 && keeps_values(*structure.entry)) {
+        CHECK(largest_growth(*space, work.sources) <= 1.56);
     }
 }

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "contract/structures_under_test.h"
+#include "contract/structure_case.h"
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"
 #include "measure/access_time.h"
@@ -71,16 +71,6 @@ std::unique_ptr<EditableSpace> all_at_once(const Structure& structure,
     return space;
 }
 
-// Structures that hold metrics, and those whose every answer is the exact field anyway.
-template <class Check>
-void for_each_exact_structure(Check&& check) {
-    for (const Structure& structure : all_structures()) {
-        if (!keeps_values(*structure.entry)) continue;
-        CAPTURE(structure.name());
-        check(structure);
-    }
-}
-
 // Batch after batch, graded each time.
 std::unique_ptr<EditableSpace> in_turn(const Structure& structure,
                                        const std::vector<Batch>& batches,
@@ -100,157 +90,143 @@ void require_same(const ControlSpace& a, const ControlSpace& b) {
 
 }  // namespace
 
-TEST_CASE("later sources, graded again: to the bit the field of all at once") {
+STRUCTURE_CASE(keeps_node_values,
+               "later sources, graded again: to the bit the field of all at once") {
     const double g = GENERATE(1.0, 1.1, 1.25, 2.0);
     const unsigned seed = GENERATE(1u, 2u);
     const GradationOptions gradation{.ratio = g, .neighbourhood = GENERATE(values(either))};
     const std::vector<Batch> batches{scattered(150, seed), scattered(8, seed + 10),
                                      scattered(1, seed + 20), scattered(60, seed + 30)};
-    for_each_exact_structure([&](const Structure& structure) {
-        CAPTURE(g, seed);
-        require_same(*in_turn(structure, batches, gradation),
-                     *all_at_once(structure, batches, gradation));
-    });
+    CAPTURE(g, seed);
+    require_same(*in_turn(structure, batches, gradation),
+                 *all_at_once(structure, batches, gradation));
 }
 
 // Leaves are cut, yet nothing gets smaller there: the nodes that hung on the leaf that is no more
 // must grow.
-TEST_CASE("later sources that are coarser than the field cut leaves, and sizes grow") {
+STRUCTURE_CASE(keeps_node_values,
+               "later sources that are coarser than the field cut leaves, and sizes grow") {
     const double g = GENERATE(1.1, 1.25, 1.6);
     const GradationOptions gradation{.ratio = g, .neighbourhood = GENERATE(values(either))};
     Batch fine = scattered(6, 3);
     for (PointSource& source : fine) source.metric = Metric::isotropic(0.05);
-    for_each_exact_structure([&](const Structure& structure) {
-        std::vector<Batch> batches{fine};
-        for (unsigned seed = 1; seed <= 40; ++seed) {
-            batches.push_back(scattered(2, seed));
-            for (PointSource& source : batches.back()) {
-                source.metric = Metric::isotropic(0.2 + source.metric.xx);
-            }
+    std::vector<Batch> batches{fine};
+    for (unsigned seed = 1; seed <= 40; ++seed) {
+        batches.push_back(scattered(2, seed));
+        for (PointSource& source : batches.back()) {
+            source.metric = Metric::isotropic(0.2 + source.metric.xx);
         }
-        CAPTURE(g);
-        require_same(*in_turn(structure, batches, gradation),
-                     *all_at_once(structure, batches, gradation));
-    });
+    }
+    CAPTURE(g);
+    require_same(*in_turn(structure, batches, gradation),
+                 *all_at_once(structure, batches, gradation));
 }
 
-TEST_CASE("what makes no difference is not followed; what does is followed alone") {
+STRUCTURE_CASE(keeps_node_values,
+               "what makes no difference is not followed; what does is followed alone") {
     const Batch fine = scattered(100, 5);
     const Batch near = scattered(3, 6);
-    for_each_exact_structure([&](const Structure& structure) {
-        if (is_direct(*structure.entry)) return;
-        const auto space = editable(structure.entry->make(later(structure.split)));
-        space->insert(fine);
-        CHECK_FALSE(space->grade({}).visits.has_value());
-        const std::vector<Metric> before = answers(*space);
+    if (is_direct(*structure.entry)) return;
+    const auto space = editable(structure.entry->make(later(structure.split)));
+    space->insert(fine);
+    CHECK_FALSE(space->grade({}).visits.has_value());
+    const std::vector<Metric> before = answers(*space);
 
-        CHECK(space->grade({}).visits == 0u);
-        CHECK(space->insert({Point::Zero(), Metric::isotropic(1.8)}) == Insertion::already_met);
-        if (structure.entry->order < 2) {  // quadratic functions overshoot: some are wanted again
-            CHECK(space->insert(fine).inserted == 0);
-        }
-        CHECK(space->grade({}).visits == 0u);
-        CHECK(answers(*space) == before);
+    CHECK(space->grade({}).visits == 0u);
+    CHECK(space->insert({Point::Zero(), Metric::isotropic(1.8)}) == Insertion::already_met);
+    if (structure.entry->order < 2) {  // quadratic functions overshoot: some are wanted again
+        CHECK(space->insert(fine).inserted == 0);
+    }
+    CHECK(space->grade({}).visits == 0u);
+    CHECK(answers(*space) == before);
 
-        if (structure.entry->has<VoxelLevels>())
-            return;  // graded anew, as other voxels may be wanted
-        space->insert(near);
-        const GradationReport report = space->grade({});
-        const std::size_t nodes = space->footprint().control_nodes;
-        CHECK(report.visits > 0u);
-        CHECK(report.visits < nodes);
-        // Never less than what is left, up to the steps of a lattice that positions round.
-        const ControlNodes graded = space->control_nodes(Neighbourhood::faces);
-        CHECK(report.largest_ratio_left * (1 + 1e-9) >=
-              largest_gradation(graded.graph, graded.metrics, GradationLaw::cone));
-        CHECK(report.largest_ratio_left <= 1.25);
-    });
+    if (structure.entry->has<VoxelLevels>()) return;  // graded anew, as other voxels may be wanted
+    space->insert(near);
+    const GradationReport report = space->grade({});
+    const std::size_t nodes = space->footprint().control_nodes;
+    CHECK(report.visits > 0u);
+    CHECK(report.visits < nodes);
+    // Never less than what is left, up to the steps of a lattice that positions round.
+    const ControlNodes graded = space->control_nodes(Neighbourhood::faces);
+    CHECK(report.largest_ratio_left * (1 + 1e-9) >=
+          largest_gradation(graded.graph, graded.metrics, GradationLaw::cone));
+    CHECK(report.largest_ratio_left <= 1.25);
 }
 
-TEST_CASE("tensors, other laws, passes: all graded anew, with the bits of all at once") {
+STRUCTURE_CASE(keeps_node_values,
+               "tensors, other laws, passes: all graded anew, with the bits of all at once") {
     const std::vector<Batch> batches{scattered(30, 7), layered(15, 8), scattered(15, 9)};
     const GradationOptions gradation =
         GENERATE(GradationOptions{},
                  GradationOptions{GradationLaw::mean_length, GradationSchedule::passes, 1.25});
-    for_each_exact_structure([&](const Structure& structure) {
-        require_same(*in_turn(structure, batches, gradation),
-                     *all_at_once(structure, batches, gradation));
-    });
+    require_same(*in_turn(structure, batches, gradation),
+                 *all_at_once(structure, batches, gradation));
 }
 
-TEST_CASE("another neighbourhood grades what the sources ask for, not what was graded") {
+STRUCTURE_CASE(keeps_node_values,
+               "another neighbourhood grades what the sources ask for, not what was graded") {
     const std::vector<Batch> batches{scattered(100, 12)};
-    for_each_exact_structure([&](const Structure& structure) {
-        const auto space = all_at_once(structure, batches, {.neighbourhood = Neighbourhood::all});
-        space->grade({});
-        require_same(*space, *all_at_once(structure, batches, {}));
-    });
+    const auto space = all_at_once(structure, batches, {.neighbourhood = Neighbourhood::all});
+    space->grade({});
+    require_same(*space, *all_at_once(structure, batches, {}));
 }
 
-TEST_CASE("another ratio grades what the sources ask for, not what was graded") {
+STRUCTURE_CASE(keeps_node_values,
+               "another ratio grades what the sources ask for, not what was graded") {
     const std::vector<Batch> batches{scattered(100, 12)};
-    for_each_exact_structure([&](const Structure& structure) {
-        const auto space = all_at_once(structure, batches, {.ratio = 1.1});
-        space->grade({.ratio = 1.5});
-        require_same(*space, *all_at_once(structure, batches, {.ratio = 1.5}));
-    });
+    const auto space = all_at_once(structure, batches, {.ratio = 1.1});
+    space->grade({.ratio = 1.5});
+    require_same(*space, *all_at_once(structure, batches, {.ratio = 1.5}));
 }
 
 // Quadratic functions overshoot, and cutting a leaf makes finer neighbours' vertices count.
-TEST_CASE("between insertion and gradation: the source is met, and nothing grows") {
+STRUCTURE_CASE(keeps_node_values,
+               "between insertion and gradation: the source is met, and nothing grows") {
     const Batch fine = scattered(100, 13);
-    for_each_exact_structure([&](const Structure& structure) {
-        if (structure.entry->order == 2) return;
-        const auto space = all_at_once(structure, {fine}, {});
-        const std::vector<Metric> before = answers(*space);
-        double worst = 0;
-        for (const PointSource& source : scattered(30, 14)) {
-            space->insert(source);
-            worst = std::max(worst, sample_at(*space, source.position).xx / source.metric.xx);
-        }
-        CHECK(worst < 1.42);  // δ < 0.2
-        if (structure.entry->id == "K_V" || structure.entry->id == "K_oV") return;
-        const std::vector<Metric> after = answers(*space);
-        double growth = 0;
-        for (std::size_t i = 0; i < before.size(); ++i) {
-            growth = std::max(growth, after[i].xx / before[i].xx);
-        }
-        CHECK(growth < 1 + 1e-12);
-    });
+    if (structure.entry->order == 2) return;
+    const auto space = all_at_once(structure, {fine}, {});
+    const std::vector<Metric> before = answers(*space);
+    double worst = 0;
+    for (const PointSource& source : scattered(30, 14)) {
+        space->insert(source);
+        worst = std::max(worst, sample_at(*space, source.position).xx / source.metric.xx);
+    }
+    CHECK(worst < 1.42);  // δ < 0.2
+    if (structure.entry->id == "K_V" || structure.entry->id == "K_oV") return;
+    const std::vector<Metric> after = answers(*space);
+    double growth = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        growth = std::max(growth, after[i].xx / before[i].xx);
+    }
+    CHECK(growth < 1 + 1e-12);
 }
 
-TEST_CASE("an assigned field is what is asked for from then on") {
-    for_each_exact_structure([&](const Structure& structure) {
-        if (is_direct(*structure.entry)) return;
-        const auto space = all_at_once(structure, {scattered(100, 15)}, {});
-        std::vector<Metric> metrics = node_metrics(*space);
-        std::fill(metrics.begin(), metrics.end(), Metric::isotropic(0.5));
-        space->assign(metrics);
-        space->insert({Point::Zero(), Metric::isotropic(0.2)});
-        space->grade({});
-        double largest = 0;
-        for (const Metric& m : node_metrics(*space)) largest = std::max(largest, m.xx);
-        CHECK(largest == 0.5);
-        CHECK(sample_at(*space, Point::Zero()).xx < 0.28);
-    });
+STRUCTURE_CASE(keeps_node_values, "an assigned field is what is asked for from then on") {
+    if (is_direct(*structure.entry)) return;
+    const auto space = all_at_once(structure, {scattered(100, 15)}, {});
+    std::vector<Metric> metrics = node_metrics(*space);
+    std::fill(metrics.begin(), metrics.end(), Metric::isotropic(0.5));
+    space->assign(metrics);
+    space->insert({Point::Zero(), Metric::isotropic(0.2)});
+    space->grade({});
+    double largest = 0;
+    for (const Metric& m : node_metrics(*space)) largest = std::max(largest, m.xx);
+    CHECK(largest == 0.5);
+    CHECK(sample_at(*space, Point::Zero()).xx < 0.28);
 }
 
 // Their field hangs on the order in which leaves take up sources.
-TEST_CASE("structures that keep sources: close to all at once") {
+STRUCTURE_CASE(keeps_sources_in_leaves, "structures that keep sources: close to all at once") {
     const std::vector<Batch> batches{scattered(150, 1), scattered(8, 11), scattered(60, 31)};
-    for (const Structure& structure : all_structures()) {
-        if (keeps_values(*structure.entry)) continue;
-        CAPTURE(structure.name());
-        const std::vector<Metric> once = answers(*all_at_once(structure, batches, {}));
-        const std::vector<Metric> turns = answers(*in_turn(structure, batches, {}));
-        double worst = 0;
-        double sum = 0;
-        for (std::size_t i = 0; i < once.size(); ++i) {
-            const double delta = nonconformity(once[i], turns[i]);
-            worst = std::max(worst, delta);
-            sum += delta;
-        }
-        CHECK(worst < 0.25);
-        CHECK(sum < 0.003 * static_cast<double>(once.size()));
+    const std::vector<Metric> once = answers(*all_at_once(structure, batches, {}));
+    const std::vector<Metric> turns = answers(*in_turn(structure, batches, {}));
+    double worst = 0;
+    double sum = 0;
+    for (std::size_t i = 0; i < once.size(); ++i) {
+        const double delta = nonconformity(once[i], turns[i]);
+        worst = std::max(worst, delta);
+        sum += delta;
     }
+    CHECK(worst < 0.25);
+    CHECK(sum < 0.003 * static_cast<double>(once.size()));
 }

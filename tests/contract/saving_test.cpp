@@ -1,7 +1,7 @@
 // A control space that was saved and loaded is the same, now and later.
 #include <catch2/catch.hpp>
 
-#include "contract/structures_under_test.h"
+#include "contract/structure_case.h"
 #include "controlspace/error.h"
 #include "controlspace/space/control_space_file.h"
 #include "editable_space.h"
@@ -17,15 +17,6 @@ std::vector<Metric> answers(const ControlSpace& space) {
     std::vector<Metric> out(x.size());
     space.sample(x, out);
     return out;
-}
-
-// With every split rule; those too that round.
-std::vector<Structure> whole_catalogue() {
-    std::vector<Structure> all = all_structures();
-    for (const CatalogueEntry& entry : structures()) {
-        if (is_rounding(entry)) all.push_back({&entry, SplitRule::middle});
-    }
-    return all;
 }
 
 const PointSource later{Point(0.1, -0.2, 0.3), Metric::isotropic(0.06)};
@@ -59,72 +50,63 @@ void check_saving(EditableSpace& space, const ScratchDirectory& scratch) {
 
 }  // namespace
 
-TEST_CASE("saved and loaded: the same answers, and the same after more sources") {
+STRUCTURE_CASE(every_structure,
+               "saved and loaded: the same answers, and the same after more sources") {
     const ScratchDirectory scratch("saving");
     const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
-    for (const Structure& structure : whole_catalogue()) {
-        CAPTURE(structure.name(), work.name);
-        const auto space = work.graded(structure);
-        check_saving(*space, scratch);
-    }
+    CAPTURE(work.name);
+    const auto space = work.graded(structure);
+    check_saving(*space, scratch);
 }
 
-TEST_CASE("saved between a later source and the gradation that it waits for") {
+STRUCTURE_CASE(does_not_round, "saved between a later source and the gradation that it waits for") {
     const ScratchDirectory scratch("saving");
     const Work work = isotropic_sphere();
-    for (const Structure& structure : whole_catalogue()) {
-        if (is_rounding(*structure.entry)) continue;
-        CAPTURE(structure.name());
-        SpaceOptions options = work.options(structure.split);
-        options.takes_later_sources = true;
-        const auto space = editable(structure.entry->make(options));
-        space->insert(work.sources);
-        space->grade({});
-        space->insert({Point(-0.3, 0.5, 0.2), Metric::isotropic(0.05)});
-        check_saving(*space, scratch);
-    }
+    SpaceOptions options = work.options(structure.split);
+    options.takes_later_sources = true;
+    const auto space = editable(structure.entry->make(options));
+    space->insert(work.sources);
+    space->grade({});
+    space->insert({Point(-0.3, 0.5, 0.2), Metric::isotropic(0.05)});
+    check_saving(*space, scratch);
 }
 
-TEST_CASE("a frozen control space is frozen again after loading, with the same bits") {
+STRUCTURE_CASE(has_compact_form,
+               "a frozen control space is frozen again after loading, with the same bits") {
     const ScratchDirectory scratch("saving");
     const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
     const Precision precision = GENERATE(Precision::doubles, Precision::floats);
-    for (const Structure& structure : whole_catalogue()) {
-        if (!structure.entry->has<CompactForm>()) continue;
-        CAPTURE(structure.name(), work.name, static_cast<int>(precision));
-        const auto frozen = work.graded(structure)->compact(precision);
-        save_control_space(scratch / "frozen.ctrl", *frozen);
-        const auto loaded = load_control_space(scratch / "frozen.ctrl", structures());
-        CHECK(recipe_of(*loaded)->precision == precision);
-        CHECK(answers(*loaded) == answers(*frozen));
-        const auto nodes = [](const ControlSpace& space) {
-            return control_nodes(space, Neighbourhood::faces).value();
-        };
-        CHECK(positions(nodes(*loaded).graph) == positions(nodes(*frozen).graph));
-        CHECK(nodes(*loaded).metrics == nodes(*frozen).metrics);
-        check_alike(loaded->footprint(), frozen->footprint());
-        CHECK(loaded->footprint().bytes_total() == frozen->footprint().bytes_total());
-        CHECK_THROWS_AS(load_builder(scratch / "frozen.ctrl", structures()), InputError);
-        save_control_space(scratch / "again.ctrl", *loaded);
-        CHECK(file_text(scratch / "again.ctrl") == file_text(scratch / "frozen.ctrl"));
-    }
+    CAPTURE(work.name, static_cast<int>(precision));
+    const auto frozen = work.graded(structure)->compact(precision);
+    save_control_space(scratch / "frozen.ctrl", *frozen);
+    const auto loaded = load_control_space(scratch / "frozen.ctrl", structures());
+    CHECK(recipe_of(*loaded)->precision == precision);
+    CHECK(answers(*loaded) == answers(*frozen));
+    const auto nodes = [](const ControlSpace& space) {
+        return control_nodes(space, Neighbourhood::faces).value();
+    };
+    CHECK(positions(nodes(*loaded).graph) == positions(nodes(*frozen).graph));
+    CHECK(nodes(*loaded).metrics == nodes(*frozen).metrics);
+    check_alike(loaded->footprint(), frozen->footprint());
+    CHECK(loaded->footprint().bytes_total() == frozen->footprint().bytes_total());
+    CHECK_THROWS_AS(load_builder(scratch / "frozen.ctrl", structures()), InputError);
+    save_control_space(scratch / "again.ctrl", *loaded);
+    CHECK(file_text(scratch / "again.ctrl") == file_text(scratch / "frozen.ctrl"));
 }
 
-TEST_CASE("a new control space, an adapted and a pruned one can be saved too") {
+STRUCTURE_CASE(every_structure,
+               "a new control space, an adapted and a pruned one can be saved too") {
     const ScratchDirectory scratch("saving");
     const Work work = isotropic_sphere();
-    for (const Structure& structure : whole_catalogue()) {
-        CAPTURE(structure.name());
-        SpaceOptions options = work.options(structure.split);
-        if (structure.entry->has<Pruning>()) options.prune_delta = 0.05;
-        const auto space = editable(structure.entry->make(options));
-        save_control_space(scratch / "new.ctrl", *space);
-        const auto loaded = load_control_space(scratch / "new.ctrl", structures());
-        CHECK(answers(*loaded) == answers(*space));
-        space->adapt({.sources = work.sources, .continuous = nullptr, .target = 0.2});
-        save_control_space(scratch / "adapted.ctrl", *space);
-        const auto adapted = load_control_space(scratch / "adapted.ctrl", structures());
-        CHECK(checksum(answers(*adapted)) == checksum(answers(*space)));
-        check_alike(adapted->footprint(), space->footprint());
-    }
+    SpaceOptions options = work.options(structure.split);
+    if (structure.entry->has<Pruning>()) options.prune_delta = 0.05;
+    const auto space = editable(structure.entry->make(options));
+    save_control_space(scratch / "new.ctrl", *space);
+    const auto loaded = load_control_space(scratch / "new.ctrl", structures());
+    CHECK(answers(*loaded) == answers(*space));
+    space->adapt({.sources = work.sources, .continuous = nullptr, .target = 0.2});
+    save_control_space(scratch / "adapted.ctrl", *space);
+    const auto adapted = load_control_space(scratch / "adapted.ctrl", structures());
+    CHECK(checksum(answers(*adapted)) == checksum(answers(*space)));
+    check_alike(adapted->footprint(), space->footprint());
 }

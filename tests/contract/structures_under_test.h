@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,25 +25,53 @@ struct Structure {
     }
 };
 
-/// All structures with all their split rules; but for those that round, which promise less.
-inline std::vector<Structure> all_structures() {
-    std::vector<Structure> all;
+inline std::string case_name(const Structure& structure) { return structure.name(); }
+
+/// Of the whole catalogue with all split rules, what passes the filter.
+template <class Filter>
+std::vector<Structure> structures_that(const Filter& filter) {
+    std::vector<Structure> found;
     for (const CatalogueEntry& entry : structures()) {
-        if (is_rounding(entry)) continue;
-        all.push_back({&entry, SplitRule::middle});
-        if (!entry.has<SplitRules>()) continue;
-        all.push_back({&entry, SplitRule::golden});
-        all.push_back({&entry, SplitRule::metric});
+        for (const SplitRule split : {SplitRule::middle, SplitRule::golden, SplitRule::metric}) {
+            if (split != SplitRule::middle && !entry.has<SplitRules>()) break;
+            if (filter(Structure{&entry, split})) found.push_back({&entry, split});
+        }
     }
-    return all;
+    return found;
 }
 
-/// A sphere small enough to test many structures on it.
+// Filters of structures.
+inline bool every_structure(const Structure&) { return true; }
+/// Those that round promise less.
+inline bool does_not_round(const Structure& structure) { return !is_rounding(*structure.entry); }
+/// Structures that hold metrics, and those whose every answer is the exact field anyway.
+inline bool keeps_node_values(const Structure& structure) {
+    return does_not_round(structure) && keeps_values(*structure.entry);
+}
+inline bool keeps_sources_in_leaves(const Structure& structure) {
+    return !keeps_values(*structure.entry);
+}
+inline bool has_compact_form(const Structure& structure) {
+    return structure.entry->has<CompactForm>();
+}
+/// One split rule is enough where others only take longer.
+inline bool splits_in_the_middle(const Structure& structure) {
+    return does_not_round(structure) && structure.split == SplitRule::middle;
+}
+inline bool has_no_slabs(const Structure& structure) {
+    return does_not_round(structure) && structure.split != SplitRule::metric;
+}
+
+/// Sources few enough to test many structures on them.
 struct Work {
     std::string name;
     std::vector<PointSource> sources;
     Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
 
+    bool isotropic() const {
+        return std::all_of(sources.begin(), sources.end(),
+                           [](const PointSource& s) { return is_isotropic(s.metric); });
+    }
     SpaceOptions options(SplitRule split) const {
         // Deep enough that no rule is stopped by the depth: s_M peels slab after slab.
         return {.domain = domain,
@@ -67,6 +97,39 @@ inline Work isotropic_sphere() {
 }
 inline Work anisotropic_sphere() {
     return {"anisotropic", sample_sphere({.h = 0.1, .s_a = 4, .s_n = 0.25, .rho = 2})};
+}
+/// An oblong box far from the origin, none of its edges a multiple of another: sources without any
+/// symmetry on a tilted patch of a paraboloid near one end, and a few that are coarser at the
+/// other.
+inline Work oblong_box() {
+    Work work{"oblong", {}, {Point(1000, -300, 57), Point(1003.7, -298.9, 57.83)}};
+    const auto place = [&](double x, double y, double z) {
+        return Point(work.domain.low + Vector(x, y, z));
+    };
+    for (int i = 0; i < 24; ++i) {
+        for (int j = 0; j < 18; ++j) {
+            const double u = 0.041 * i, v = 0.053 * j;
+            const double h = 0.06 + 0.03 * u + 0.02 * v * v;
+            work.sources.push_back(
+                {place(0.31 + u, 0.07 + v, 0.2 + 0.3 * u + 0.2 * v * v), Metric::isotropic(h)});
+        }
+    }
+    work.sources.push_back({place(3.1, 0.2, 0.7), Metric::isotropic(0.11)});
+    work.sources.push_back({place(3.6, 1.05, 0.03), Metric::isotropic(0.23)});
+    return work;
+}
+/// The same with tensors, turned and up to 1:4 thin.
+inline Work anisotropic_oblong_box() {
+    Work work = oblong_box();
+    work.name = "anisotropic oblong";
+    for (std::size_t i = 0; i < work.sources.size(); ++i) {
+        const double h = work.sources[i].metric.xx, angle = 0.05 * static_cast<double>(i % 7);
+        const Eigen::Matrix3d frame = (Eigen::AngleAxisd(0.4 + angle, Vector::UnitX()) *
+                                       Eigen::AngleAxisd(0.7 - angle, Vector::UnitZ()))
+                                          .toRotationMatrix();
+        work.sources[i].metric = metric_from_frame({h, 2 * h, 4 * h}, frame);
+    }
+    return work;
 }
 
 }  // namespace controlspace

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "contract/structures_under_test.h"
+#include "contract/structure_case.h"
 #include "editable_space.h"
 #include "measure/access_time.h"
 
@@ -36,23 +36,21 @@ Answers answers(const Structure& structure, const Work& work, const GradationOpt
 
 }  // namespace
 
-TEST_CASE("one, two and seven threads make the same field, to the bit") {
+STRUCTURE_CASE(splits_in_the_middle, "one, two and seven threads make the same field, to the bit",
+               "[threads]") {
     const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
     const GradationOptions options =
         GENERATE(GradationOptions{}, GradationOptions{.law = GradationLaw::mean_length},
                  GradationOptions{.schedule = GradationSchedule::passes},
                  GradationOptions{.neighbourhood = Neighbourhood::all});
-    for (const Structure& structure : all_structures()) {
-        if (structure.split != SplitRule::middle) continue;
-        CAPTURE(structure.name(), work.name);
-        const Answers one = answers(structure, work, options, 1);
-        for (const int threads : {2, 7}) {
-            const Answers many = answers(structure, work, options, threads);
-            CHECK(many.insertion.inserted == one.insertion.inserted);
-            CHECK(many.gradation.operations == one.gradation.operations);
-            CHECK(many.gradation.largest_ratio_left == one.gradation.largest_ratio_left);
-            CHECK(many.nodes == one.nodes);
-            CHECK(many.places == one.places);
-        }
+    CAPTURE(work.name);
+    const Answers one = answers(structure, work, options, 1);
+    for (const int threads : {2, 7}) {
+        const Answers many = answers(structure, work, options, threads);
+        CHECK(many.insertion.inserted == one.insertion.inserted);
+        CHECK(many.gradation.operations == one.gradation.operations);
+        CHECK(many.gradation.largest_ratio_left == one.gradation.largest_ratio_left);
+        CHECK(many.nodes == one.nodes);
+        CHECK(many.places == one.places);
     }
 }

@@ -1,7 +1,7 @@
 // Elements found by asking, against what structures say of themselves.
 #include <catch2/catch.hpp>
 
-#include "contract/structures_under_test.h"
+#include "contract/structure_case.h"
 #include "io/text/cells.h"
 
 using namespace controlspace;
@@ -12,9 +12,7 @@ double volume_of(const Box& box) { return box.edges().prod(); }
 
 }  // namespace
 
-TEST_CASE("the elements of every structure fill its domain, each once") {
-    const Structure structure = GENERATE(from_range(all_structures()));
-    CAPTURE(structure.name());
+STRUCTURE_CASE(does_not_round, "the elements of a structure fill its domain, each once") {
     Work work{"sphere", sample_sphere({.h = 0.15})};
     work.domain.high.z() = 2;
     const auto space = work.inserted(structure);

@@ -1,5 +1,6 @@
 #include <limits>
 
+#include "case_of_each.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/io/read_vdb.h"
 #include "controlspace/io/write_vdb.h"
@@ -74,7 +75,7 @@ TEST_CASE("what was written comes back at all voxels' centres, to the precision 
     CHECK(read.finest_length == Approx(finest).epsilon(1e-6));
 }
 
-TEST_CASE("every structure comes back as it answered") {
+CASE_OF_EACH(entry, structures(), "every structure comes back as it answered") {
     const ScratchDirectory folder;
     const fs::path path = folder.path() / "field.vdb";
     const PointSource sources[] = {{{0.2, 0.1, 0}, Metric::isotropic(0.1)},
@@ -82,28 +83,25 @@ TEST_CASE("every structure comes back as it answered") {
     const std::vector<Point> points = centres(16);
     std::vector<Metric> read(points.size());
     std::vector<Metric> wanted(points.size());
-    for (const CatalogueEntry& entry : structures()) {
-        CAPTURE(entry.id);
-        const auto space = editable(entry.make({.domain = two_cube, .finest_length = 0.1}));
-        space->insert(std::span<const PointSource>(sources));
-        space->grade({});
-        space->sample(points, wanted);
-        write_vdb(path, *space, {.voxel = 0.125, .tolerance = 0});
-        read_vdb_field(path).field->sample(points, read);
-        double exact = 0;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            exact = std::max(exact, largest_relative_difference(read[i], wanted[i]));
-        }
-        CHECK(exact < 1e-6);
-
-        write_vdb(path, *space, {.voxel = 0.125, .tolerance = 0.02});
-        read_vdb_field(path).field->sample(points, read);
-        double delta = 0;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            delta = std::max(delta, nonconformity(read[i], wanted[i]));
-        }
-        CHECK(delta <= 0.02 + 1e-5);
+    const auto space = editable(entry.make({.domain = two_cube, .finest_length = 0.1}));
+    space->insert(std::span<const PointSource>(sources));
+    space->grade({});
+    space->sample(points, wanted);
+    write_vdb(path, *space, {.voxel = 0.125, .tolerance = 0});
+    read_vdb_field(path).field->sample(points, read);
+    double exact = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        exact = std::max(exact, largest_relative_difference(read[i], wanted[i]));
     }
+    CHECK(exact < 1e-6);
+
+    write_vdb(path, *space, {.voxel = 0.125, .tolerance = 0.02});
+    read_vdb_field(path).field->sample(points, read);
+    double delta = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        delta = std::max(delta, nonconformity(read[i], wanted[i]));
+    }
+    CHECK(delta <= 0.02 + 1e-5);
 }
 
 TEST_CASE("between centres fields are linear, and beyond the box as at its nearest point") {

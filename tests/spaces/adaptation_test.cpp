@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "case_of_each.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
 #include "controlspace/measure/accuracy.h"
@@ -102,13 +103,13 @@ TEST_CASE("sphere at a tenth: the paper's trees and the anchored ones, on 101^3 
         CHECK(space->footprint().bytes_total() <= static_cast<std::size_t>(most_megabytes * 1e6));
         return accuracy(*space, probes).max;
     };
-    CHECK(adapted(tree_catalogue()[0], 4) <= 0.1);      // K_L
-    CHECK(adapted(tree_catalogue()[3], 4) <= 0.1);      // K_oL
-    CHECK(adapted(tree_catalogue()[2], 1) <= 0.1);      // K_V
-    CHECK(adapted(anchored_catalogue()[1], 2) <= 0.1);  // K_oLA
-    CHECK(adapted(anchored_catalogue()[0], 2) <= 0.1);  // K_LA
-    CHECK(adapted(anchored_catalogue()[1], 4, 0.02) <= 0.02);
-    CHECK(adapted(anchored_catalogue()[0], 4, 0.02) <= 0.02);
+    CHECK(adapted(tree_named("K_L"), 4) <= 0.1);
+    CHECK(adapted(tree_named("K_oL"), 4) <= 0.1);
+    CHECK(adapted(tree_named("K_V"), 1) <= 0.1);
+    CHECK(adapted(tree_named("K_oLA"), 2) <= 0.1);
+    CHECK(adapted(tree_named("K_LA"), 2) <= 0.1);
+    CHECK(adapted(tree_named("K_oLA"), 4, 0.02) <= 0.02);
+    CHECK(adapted(tree_named("K_LA"), 4, 0.02) <= 0.02);
 }
 
 TEST_CASE("leaves of constants and of sources keep the target everywhere, as bounds prove") {
@@ -134,83 +135,71 @@ TEST_CASE("leaves of constants and of sources keep the target everywhere, as bou
     }
 }
 
-TEST_CASE("the same tree, whatever the number of threads") {
+CASE_OF_EACH(entry, trees(), "the same tree, whatever the number of threads") {
     const std::vector<PointSource> sources = sample_sphere({.h = 0.08});
     const std::vector<Point> x = random_points(domain, 2000, 23);
-    for (const CatalogueEntry& entry : trees()) {
-        CAPTURE(entry.id);
-        std::vector<Metric> one(x.size());
-        std::vector<Metric> many(x.size());
-        const auto fill = [&](std::size_t threads, std::span<Metric> out) {
-            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-            const auto space = editable(entry.make({.domain = domain}));
-            const double reached = space->adapt({sources, nullptr, g, 0.2}).reached;
-            space->sample(x, out);
-            return reached;
-        };
-        CHECK(fill(1, one) == fill(4, many));
-        CHECK(one == many);
-    }
+    std::vector<Metric> one(x.size());
+    std::vector<Metric> many(x.size());
+    const auto fill = [&](std::size_t threads, std::span<Metric> out) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        const auto space = editable(entry.make({.domain = domain}));
+        const double reached = space->adapt({sources, nullptr, g, 0.2}).reached;
+        space->sample(x, out);
+        return reached;
+    };
+    CHECK(fill(1, one) == fill(4, many));
+    CHECK(one == many);
 }
 
-TEST_CASE("a source too small to be seen from a leaf's own places is found") {
+CASE_OF_EACH(entry, trees(), "a source too small to be seen from a leaf's own places is found") {
     const PointSource source{Point(0.31, 0.17, -0.43), Metric::isotropic(1e-4)};
-    for (const CatalogueEntry& entry : trees()) {
-        CAPTURE(entry.id);
-        const auto space = editable(entry.make({.domain = domain}));
-        CHECK(space->adapt({{&source, 1}, nullptr, g, 0.1}).met);
-        CHECK(nonconformity(sample_at(*space, source.position), source.metric) <= 0.1);
-    }
+    const auto space = editable(entry.make({.domain = domain}));
+    CHECK(space->adapt({{&source, 1}, nullptr, g, 0.1}).met);
+    CHECK(nonconformity(sample_at(*space, source.position), source.metric) <= 0.1);
 }
 
-TEST_CASE("without sources the root is enough") {
-    for (const CatalogueEntry& entry : trees()) {
-        CAPTURE(entry.id);
-        const auto space = editable(entry.make({.domain = domain}));
-        CHECK(space->adapt({{}, nullptr, g, 0.1}).reached < 1e-12);
-        CHECK(space->footprint().leaves == 1);
-    }
+CASE_OF_EACH(entry, trees(), "without sources the root is enough") {
+    const auto space = editable(entry.make({.domain = domain}));
+    CHECK(space->adapt({{}, nullptr, g, 0.1}).reached < 1e-12);
+    CHECK(space->footprint().leaves == 1);
 }
 
-TEST_CASE("a continuous source: vertices carry a linear field, anchored trees the field itself") {
+CASE_OF_EACH(
+    entry, structures(),
+    "a continuous source: vertices carry a linear field, anchored trees the field itself") {
     const auto ramp = std::make_shared<Ramp>();
-    for (const CatalogueEntry& entry : structures()) {
-        CAPTURE(entry.id);
-        const auto space = editable(entry.make({.domain = domain, .finest_length = 0.05}));
-        const AdaptationReport report = space->adapt({{}, ramp, g, 0.05});
-        const bool keeps_it = share_beyond(0.05, *space, *ramp) == 0;
-        CHECK(report.met == keeps_it);
-        // Sources alone make grids in levels finer.
-        CHECK((keeps_it || entry.has<VoxelLevels>()));
-        if (entry.id == "K_V" || entry.id == "K_oV" || entry.family == "anchored") {
-            CHECK(space->footprint().leaves == 1);
-            CHECK(report.reached < 1e-12);
-        }
+    const auto space = editable(entry.make({.domain = domain, .finest_length = 0.05}));
+    const AdaptationReport report = space->adapt({{}, ramp, g, 0.05});
+    const bool keeps_it = share_beyond(0.05, *space, *ramp) == 0;
+    CHECK(report.met == keeps_it);
+    // Sources alone make grids in levels finer.
+    CHECK((keeps_it || entry.has<VoxelLevels>()));
+    if (entry.id == "K_V" || entry.id == "K_oV" || entry.family == "anchored") {
+        CHECK(space->footprint().leaves == 1);
+        CHECK(report.reached < 1e-12);
     }
 }
 
-TEST_CASE("mixture: sources and a continuous one, each where it is smaller; insertion goes on") {
+CASE_OF_EACH(entry, trees(),
+             "mixture: sources and a continuous one, each where it is smaller; insertion goes on") {
     const auto ramp = std::make_shared<Ramp>();
     const PointSource source{Point(0.5, 0.2, 0.1), Metric::isotropic(0.02)};
     const PointSource later{Point(-0.4, -0.3, 0.6), Metric::isotropic(0.03)};
-    for (const CatalogueEntry& entry : trees()) {
-        CAPTURE(entry.id);
-        const auto space = editable(entry.make({.domain = domain}));
-        CHECK(space->adapt({{&source, 1}, ramp, g, 0.1}).met);
-        for (const Point& x : random_points(domain, 500, 5)) {
-            const double cone = 0.02 + (g - 1) * (x - source.position).norm();
-            const Metric exact = Metric::isotropic(std::min(cone, 0.3 + 0.2 * x.x()));
-            CHECK(nonconformity(sample_at(*space, x), exact) <= 0.1);
-        }
-        space->insert(later);
-        if (entry.order == 2) continue;  // at a border between leaves K_Li follows the neighbour
-        CHECK(nonconformity(sample_at(*space, later.position), later.metric) <= 0.2);
+    const auto space = editable(entry.make({.domain = domain}));
+    CHECK(space->adapt({{&source, 1}, ramp, g, 0.1}).met);
+    for (const Point& x : random_points(domain, 500, 5)) {
+        const double cone = 0.02 + (g - 1) * (x - source.position).norm();
+        const Metric exact = Metric::isotropic(std::min(cone, 0.3 + 0.2 * x.x()));
+        CHECK(nonconformity(sample_at(*space, x), exact) <= 0.1);
     }
+    space->insert(later);
+    if (entry.order == 2) return;  // at a border between leaves K_Li follows the neighbour
+    CHECK(nonconformity(sample_at(*space, later.position), later.metric) <= 0.2);
 }
 
 TEST_CASE("a target out of reach is told, with what was reached") {
     const std::vector<PointSource> sources = sample_sphere({.h = 0.06});
-    for (const CatalogueEntry& entry : {tree_catalogue()[0], tree_catalogue()[3]}) {
+    for (const CatalogueEntry& entry : {tree_named("K_L"), tree_named("K_oL")}) {
         CAPTURE(entry.id);
         const auto space =
             editable(entry.make({.domain = domain, .kd_depth = 6, .octree_depth = 2}));
@@ -227,12 +216,12 @@ TEST_CASE("a target out of reach is told, with what was reached") {
         CHECK_FALSE(report.met);
         CHECK(report.shortfall.find("voxels") != std::string::npos);
     }
-    const auto small = editable(tree_catalogue()[3].make({.domain = domain, .max_bytes = 1000000}));
+    const auto small = editable(tree_named("K_oL").make({.domain = domain, .max_bytes = 1000000}));
     CHECK_THROWS_AS(small->adapt({sources, nullptr, g, 0.01}), InputError);
 }
 
 TEST_CASE("bad goals are refused") {
-    const auto space = editable(tree_catalogue()[0].make({.domain = domain}));
+    const auto space = editable(tree_named("K_L").make({.domain = domain}));
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const double target : {0.0, -1.0, nan}) {
         CHECK_THROWS_AS(space->adapt({{}, nullptr, g, target}), InputError);

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "case_of_each.h"
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/sampled_surfaces.h"
@@ -17,58 +18,51 @@ constexpr double g = 1.25;
 
 }  // namespace
 
-TEST_CASE("one source: its cone everywhere, to rounding, where leaf values give steps") {
+CASE_OF_EACH(entry, anchored_catalogue(),
+             "one source: its cone everywhere, to rounding, where leaf values give steps") {
     const PointSource source{Point(0.3, -0.2, 0.1), Metric::isotropic(0.05)};
-    for (const CatalogueEntry& entry : anchored_catalogue()) {
-        CAPTURE(entry.id);
-        const auto space = editable(entry.make({.domain = domain}));
-        space->insert(source);
-        space->grade({});
-        for (const Point& x : cell_centres(domain, 9)) {
-            const double h = 0.05 + (g - 1) * (x - source.position).norm();
-            CHECK(sample_at(*space, x).xx == Approx(h).epsilon(1e-14));
-        }
+    const auto space = editable(entry.make({.domain = domain}));
+    space->insert(source);
+    space->grade({});
+    for (const Point& x : cell_centres(domain, 9)) {
+        const double h = 0.05 + (g - 1) * (x - source.position).norm();
+        CHECK(sample_at(*space, x).xx == Approx(h).epsilon(1e-14));
     }
 }
 
-TEST_CASE("one tensor: its cone everywhere") {
+CASE_OF_EACH(entry, anchored_catalogue(), "one tensor: its cone everywhere") {
     const PointSource source{Point(0.3, -0.2, 0.1), {0.1, 0.3, 0.2, 0.02, -0.03, 0.05}};
-    for (const CatalogueEntry& entry : anchored_catalogue()) {
-        CAPTURE(entry.id);
-        const auto space = editable(entry.make({.domain = domain}));
-        space->insert(source);
-        space->grade({});
-        const Metric largest = largest_metric(domain);
-        for (const Point& x : cell_centres(domain, 9)) {
-            const double factor = 1 + (g - 1) * metric_length(source.metric, x - source.position);
-            const Metric cone = intersection(largest, factor * source.metric);
-            CHECK(nonconformity(sample_at(*space, x), cone) < 1e-12);
-        }
+    const auto space = editable(entry.make({.domain = domain}));
+    space->insert(source);
+    space->grade({});
+    const Metric largest = largest_metric(domain);
+    for (const Point& x : cell_centres(domain, 9)) {
+        const double factor = 1 + (g - 1) * metric_length(source.metric, x - source.position);
+        const Metric cone = intersection(largest, factor * source.metric);
+        CHECK(nonconformity(sample_at(*space, x), cone) < 1e-12);
     }
 }
 
-TEST_CASE("sphere: nearer to the exact field than the other trees, with fewer bytes than K_L") {
+CASE_OF_EACH(entry, anchored_catalogue(),
+             "sphere: nearer to the exact field than the other trees, with fewer bytes than K_L") {
     const std::vector<PointSource> sources = sample_sphere({.rho = 1});
     const auto field = exact_reference(sources, g, largest_metric(domain));
     const Probes coarse = make_probes(*field, cell_centres(domain, 30));
     const Probes fine = make_probes(*field, cell_centres(domain, 101));
-    const auto k_l = editable(tree_catalogue()[0].make({.domain = domain}));
+    const auto k_l = editable(tree_named("K_L").make({.domain = domain}));
     k_l->insert(sources);
-    for (const CatalogueEntry& entry : anchored_catalogue()) {
-        CAPTURE(entry.id);
-        const auto space = editable(entry.make({.domain = domain}));
-        space->insert(sources);
-        const GradationReport report = space->grade({});
-        CHECK(accuracy(*space, coarse).max <= 0.10);
-        const Accuracy everywhere = accuracy(*space, fine);
-        CHECK(everywhere.max <= 0.15);
-        CHECK(everywhere.mean <= 0.005);
-        CHECK(space->footprint().bytes_total() < k_l->footprint().bytes_total());
-        CHECK(report.largest_ratio_left <= g * (1 + 1e-9));
-    }
+    const auto space = editable(entry.make({.domain = domain}));
+    space->insert(sources);
+    const GradationReport report = space->grade({});
+    CHECK(accuracy(*space, coarse).max <= 0.10);
+    const Accuracy everywhere = accuracy(*space, fine);
+    CHECK(everywhere.max <= 0.15);
+    CHECK(everywhere.mean <= 0.005);
+    CHECK(space->footprint().bytes_total() < k_l->footprint().bytes_total());
+    CHECK(report.largest_ratio_left <= g * (1 + 1e-9));
 }
 
-TEST_CASE("more sources than anchors at one place: all are met") {
+CASE_OF_EACH(entry, anchored_catalogue(), "more sources than anchors at one place: all are met") {
     // Five discs that cross at one place, each 0.1 across and 1 along.
     std::vector<PointSource> sources;
     const Point place(0.1, 0.2, 0.3);
@@ -77,14 +71,11 @@ TEST_CASE("more sources than anchors at one place: all are met") {
         Metric m = Metric::from_matrix(Eigen::Matrix3d::Identity() - 0.9 * n * n.transpose());
         sources.push_back({place + 1e-4 * n, m});
     }
-    for (const CatalogueEntry& entry : anchored_catalogue()) {
-        CAPTURE(entry.id);
-        const auto space = editable(entry.make({.domain = domain}));
-        space->insert(sources);
-        for (const PointSource& s : sources) {
-            const Metric held = sample_at(*space, s.position);
-            CHECK(nonconformity(held, intersection(held, s.metric)) < 0.2);
-        }
+    const auto space = editable(entry.make({.domain = domain}));
+    space->insert(sources);
+    for (const PointSource& s : sources) {
+        const Metric held = sample_at(*space, s.position);
+        CHECK(nonconformity(held, intersection(held, s.metric)) < 0.2);
     }
 }
 

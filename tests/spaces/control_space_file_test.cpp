@@ -1,5 +1,7 @@
 #include "controlspace/space/control_space_file.h"
 
+#include "case_of_each.h"
+
 #define XXH_INLINE_ALL
 #include <tbb/global_control.h>
 #include <xxhash.h>
@@ -105,12 +107,13 @@ TEST_CASE("files of control spaces: what is refused, and why") {
     std::vector<CatalogueEntry> octrees(structures().begin() + 3, structures().begin() + 6);
     CHECK_THAT(error_of([&] { load_control_space(scratch / "field.ctrl", octrees); }),
                Contains("'K_V', which is not known"));
-    const auto bare = editable(structures()[0].construct({.domain = domain}));
+    const auto bare = editable(tree_named("K_L").construct({.domain = domain}));
     CHECK_THAT(error_of([&] { save_control_space(scratch / "bare.ctrl", *bare); }),
                Contains("an entry of the catalogue"));
 }
 
-TEST_CASE("forged files end in an error or in metrics, never in a crash or in much memory") {
+CASE_OF_EACH(entry, structures(),
+             "forged files end in an error or in metrics, never in a crash or in much memory") {
     const ScratchDirectory scratch("ctrl");
     const auto read = [](const std::filesystem::path& file) {
         std::string bytes = file_text(file);
@@ -124,17 +127,14 @@ TEST_CASE("forged files end in an error or in metrics, never in a crash or in mu
         check_damaged_files(scratch.path(), "forged.ctrl", file_text(scratch / "field.ctrl"), 2000,
                             read);
     };
-    for (const CatalogueEntry& entry : structures()) {
-        CAPTURE(entry.id);
-        const auto space = small_tree(entry.id);
-        check(*space);
-        if (entry.has<CompactForm>()) check(*space->compact(Precision::floats));
-    }
+    const auto space = small_tree(entry.id);
+    check(*space);
+    if (entry.has<CompactForm>()) check(*space->compact(Precision::floats));
 }
 
 TEST_CASE("files are the same to the bit however many threads there are, and read by any number") {
     const ScratchDirectory scratch("ctrl");
-    const auto space = editable(structures()[3].make({.domain = domain, .l_min = 1}));
+    const auto space = editable(tree_named("K_oL").make({.domain = domain, .l_min = 1}));
     space->insert(sample_sphere({.rho = 0.5}));
     REQUIRE(space->control_nodes(Neighbourhood::faces).metrics.size() > 50'000);  // some ten chunks
     const auto all_threads = [](std::size_t threads) {

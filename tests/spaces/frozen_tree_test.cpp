@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "case_of_each.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/sampled_surfaces.h"
@@ -148,12 +149,10 @@ TEST_CASE("frozen trees are small, and their footprint is what they have allocat
     }
 }
 
-TEST_CASE("a tree of one leaf is frozen like any other") {
-    for (const CatalogueEntry& entry : tree_catalogue()) {
-        const auto frozen = editable(entry.make({.domain = domain}))->compact(Precision::floats);
-        const double all = largest_metric(domain).xx;
-        CHECK(sample_at(*frozen, Point(0.3, 0.1, 0.2)).xx == Approx(all).epsilon(1e-7));
-    }
+CASE_OF_EACH(entry, tree_catalogue(), "a tree of one leaf is frozen like any other") {
+    const auto frozen = editable(entry.make({.domain = domain}))->compact(Precision::floats);
+    const double all = largest_metric(domain).xx;
+    CHECK(sample_at(*frozen, Point(0.3, 0.1, 0.2)).xx == Approx(all).epsilon(1e-7));
 }
 
 TEST_CASE("trees with more planes than 16 bits can number are frozen too") {
@@ -164,7 +163,7 @@ TEST_CASE("trees with more planes than 16 bits can number are frozen too") {
         const Point x(within(), within(), within());
         sources.push_back({x, Metric::isotropic(1e-4)});
     }
-    const CatalogueEntry& kd_vertices = tree_catalogue()[2];
+    const CatalogueEntry& kd_vertices = tree_named("K_V");
     REQUIRE(kd_vertices.id == "K_V");
     const auto space = editable(kd_vertices.make({.domain = domain, .split = SplitRule::golden}));
     space->insert(sources);
@@ -177,7 +176,7 @@ TEST_CASE("trees with more planes than 16 bits can number are frozen too") {
 
 TEST_CASE("what cannot be frozen is refused, with what would help") {
     const auto with = [](const Metric& metric) {
-        auto space = editable(tree_catalogue()[3].make({.domain = domain, .octree_depth = 2}));
+        auto space = editable(tree_named("K_oL").make({.domain = domain, .octree_depth = 2}));
         space->insert(PointSource{Point::Zero(), metric});
         return space;
     };
@@ -188,6 +187,6 @@ TEST_CASE("what cannot be frozen is refused, with what would help") {
         CHECK_NOTHROW(space->compact(Precision::doubles));
     }
     CHECK_NOTHROW(with(layer_metric(slanted, 1e-3, 1))->compact(Precision::floats));
-    const auto anchored = editable(anchored_catalogue()[0].make({.domain = domain}));
+    const auto anchored = editable(tree_named("K_LA").make({.domain = domain}));
     CHECK_THROWS_WITH(anchored->compact(Precision::doubles), Contains("choose a tree"));
 }

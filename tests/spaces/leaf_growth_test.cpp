@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "case_of_each.h"
 #include "controlspace/error.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
@@ -65,44 +66,41 @@ std::vector<PointSource> too_long_to_matter() {
 
 }  // namespace
 
-TEST_CASE("many sources at once make the tree of one by one, whatever the number of threads") {
+CASE_OF_EACH(entry, tree_catalogue(),
+             "many sources at once make the tree of one by one, whatever the number of threads") {
     const std::vector<PointSource> sources = GENERATE(
         too_long_to_matter(), sample_sphere({.h = 0.05, .rho = 0.5}),
         shuffled(sample_sphere({.h = 0.05})),
         shuffled(sample_sphere({.h = 0.05, .s_a = 4, .s_n = 0.25, .rho = 2})), on_planes());
     const SplitRule split = GENERATE(SplitRule::middle, SplitRule::metric);
-    for (const CatalogueEntry& entry : tree_catalogue()) {
-        if (split != SplitRule::middle && !entry.has<SplitRules>()) continue;
-        CAPTURE(entry.id, sources.size(), static_cast<int>(split));
-        const SpaceOptions options{.domain = domain, .split = split, .l_min = 0.7};
-        const auto one_by_one = editable(entry.make(options));
-        std::uint64_t inserted = 0;
-        for (const PointSource& source : sources) {
-            inserted += one_by_one->insert(source) == Insertion::inserted ? 1 : 0;
-        }
-        const auto all = editable(entry.make(options));
-        CHECK(all->insert(sources).inserted == inserted);
-        CHECK(all->footprint().depth == one_by_one->footprint().depth);
-        for (const int threads : {1, 2, 3, 7}) {
-            CAPTURE(threads);
-            CHECK((at_once(entry, options, sources, threads) == state_of(*one_by_one)));
-        }
+    if (split != SplitRule::middle && !entry.has<SplitRules>()) return;
+    CAPTURE(sources.size(), static_cast<int>(split));
+    const SpaceOptions options{.domain = domain, .split = split, .l_min = 0.7};
+    const auto one_by_one = editable(entry.make(options));
+    std::uint64_t inserted = 0;
+    for (const PointSource& source : sources) {
+        inserted += one_by_one->insert(source) == Insertion::inserted ? 1 : 0;
+    }
+    const auto all = editable(entry.make(options));
+    CHECK(all->insert(sources).inserted == inserted);
+    CHECK(all->footprint().depth == one_by_one->footprint().depth);
+    for (const int threads : {1, 2, 3, 7}) {
+        CAPTURE(threads);
+        CHECK((at_once(entry, options, sources, threads) == state_of(*one_by_one)));
     }
 }
 
-TEST_CASE("a source that is not valid stops those after it alone, whatever their number") {
+CASE_OF_EACH(entry, tree_catalogue(),
+             "a source that is not valid stops those after it alone, whatever their number") {
     std::vector<PointSource> sources = sample_sphere({.h = 0.1});
     const std::size_t bad = sources.size() / 2;
     const std::vector<PointSource> before(sources.begin(),
                                           sources.begin() + static_cast<std::ptrdiff_t>(bad));
     sources[bad].metric = GENERATE(Metric{1, 1, 1, 3, 0, 0}, Metric::isotropic(-1));
     sources[bad + 9].position = Point(2, 0, 0);
-    for (const CatalogueEntry& entry : tree_catalogue()) {
-        CAPTURE(entry.id);
-        const SpaceOptions options{.domain = domain};
-        const auto space = editable(entry.make(options));
-        CHECK_THROWS_WITH(space->insert(sources),
-                          Catch::Contains("source " + std::to_string(bad) + " "));
-        CHECK((state_of(*space) == at_once(entry, options, before, 1)));
-    }
+    const SpaceOptions options{.domain = domain};
+    const auto space = editable(entry.make(options));
+    CHECK_THROWS_WITH(space->insert(sources),
+                      Catch::Contains("source " + std::to_string(bad) + " "));
+    CHECK((state_of(*space) == at_once(entry, options, before, 1)));
 }

@@ -17,7 +17,7 @@ const Box domain{Point::Constant(-1), Point::Constant(1)};
 constexpr double ratio = 1.25;
 
 std::unique_ptr<EditableSpace> quadratic(SplitRule split) {
-    const CatalogueEntry& entry = tree_catalogue()[1];
+    const CatalogueEntry& entry = tree_named("K_Li");
     REQUIRE(entry.id == "K_Li");
     return editable(entry.make({.domain = domain, .split = split, .ratio = ratio}));
 }
@@ -94,8 +94,7 @@ TEST_CASE("a source at a leaf's face is met by K_Li, before gradation and after"
     for (const Point& p : {Point(0, 0, 0), Point(1e-9, 0.3, -0.5), Point(-1, -1, -1)}) {
         const PointSource source{p, Metric::isotropic(0.01)};
         const Box domain{Point::Constant(-1), Point::Constant(1)};
-        const auto space = editable(tree_catalogue()[1].make({.domain = domain}));
-        REQUIRE(tree_catalogue()[1].id == "K_Li");
+        const auto space = editable(tree_named("K_Li").make({.domain = domain}));
         space->insert(source);
         // Along a leaf's half diagonal, at most sqrt(3) / 2 of its size, sizes grow by 0.25.
         CHECK(sample_at(*space, p).xx <= 0.01 * (1 + 0.25 * std::sqrt(0.75)));

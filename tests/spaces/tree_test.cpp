@@ -2,6 +2,7 @@
 #include <random>
 #include <set>
 
+#include "case_of_each.h"
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"
 #include "trees/topology/face_pairs.h"
@@ -111,33 +112,32 @@ TEST_CASE("a split alone changes nothing in a vertex storage, but for hanging ve
     }
 }
 
-TEST_CASE("vertices of leaves are shared: as many control nodes as distinct places") {
-    for (const CatalogueEntry& entry : tree_catalogue()) {
-        if (entry.order != 1) continue;
-        for (const SplitRule split : {SplitRule::middle, SplitRule::golden, SplitRule::metric}) {
-            CAPTURE(entry.id, static_cast<int>(split));
-            const auto space = editable(entry.make({.domain = domain, .split = split}));
-            space->insert(scattered(300, 4));
-            const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
-            const auto& graph = std::get<NodeGraph>(nodes.graph);
-            std::set<std::array<double, 3>> distinct;
-            for (const Point& p : graph.positions) distinct.insert({p.x(), p.y(), p.z()});
-            CHECK(distinct.size() == graph.size());
-            CHECK(space->footprint().control_nodes == graph.size());
-            // Every corner of every element that answers somewhere is one of them.
-            for (const Point& x : places(500, 5)) {
-                const Box leaf = space->cell_at(x).value();
-                for (int i = 0; i < 8; ++i) {
-                    const Point c = corner(leaf, i);
-                    CHECK(distinct.count({c.x(), c.y(), c.z()}) == 1);
-                }
+CASE_OF_EACH(entry, tree_catalogue(),
+             "vertices of leaves are shared: as many control nodes as distinct places") {
+    if (entry.order != 1) return;
+    for (const SplitRule split : {SplitRule::middle, SplitRule::golden, SplitRule::metric}) {
+        CAPTURE(static_cast<int>(split));
+        const auto space = editable(entry.make({.domain = domain, .split = split}));
+        space->insert(scattered(300, 4));
+        const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
+        const auto& graph = std::get<NodeGraph>(nodes.graph);
+        std::set<std::array<double, 3>> distinct;
+        for (const Point& p : graph.positions) distinct.insert({p.x(), p.y(), p.z()});
+        CHECK(distinct.size() == graph.size());
+        CHECK(space->footprint().control_nodes == graph.size());
+        // Every corner of every element that answers somewhere is one of them.
+        for (const Point& x : places(500, 5)) {
+            const Box leaf = space->cell_at(x).value();
+            for (int i = 0; i < 8; ++i) {
+                const Point c = corner(leaf, i);
+                CHECK(distinct.count({c.x(), c.y(), c.z()}) == 1);
             }
         }
     }
 }
 
 TEST_CASE("vertex neighbours are joined by an edge of a leaf: along one axis") {
-    const auto space = editable(tree_catalogue()[2].make({.domain = domain}));
+    const auto space = editable(tree_named("K_V").make({.domain = domain}));
     space->insert(scattered(200, 6));
     const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
     const auto& graph = std::get<NodeGraph>(nodes.graph);
@@ -184,7 +184,7 @@ TEMPLATE_TEST_CASE("with all neighbours, any two vertices of a leaf are neighbou
 }
 
 TEST_CASE("leaf neighbours: all across the faces, or the nearest across each") {
-    const auto space = editable(tree_catalogue()[0].make({.domain = domain}));
+    const auto space = editable(tree_named("K_L").make({.domain = domain}));
     space->insert(scattered(200, 7));
     const ControlNodes all = space->control_nodes(Neighbourhood::faces);
     const ControlNodes nearest = space->control_nodes(Neighbourhood::nearest_per_face);
@@ -226,8 +226,8 @@ TEST_CASE("K_oLB is balanced after every insertion; K_oL is not") {
         }
         return largest;
     };
-    const auto plain = editable(tree_catalogue()[3].make({.domain = domain}));
-    const auto balanced = editable(tree_catalogue()[4].make({.domain = domain}));
+    const auto plain = editable(tree_named("K_oL").make({.domain = domain}));
+    const auto balanced = editable(tree_named("K_oLB").make({.domain = domain}));
     for (const PointSource& source : sources) {
         plain->insert(source);
         balanced->insert(source);
@@ -237,47 +237,38 @@ TEST_CASE("K_oLB is balanced after every insertion; K_oL is not") {
     CHECK(balanced->footprint().leaves > plain->footprint().leaves);
 }
 
-TEST_CASE("leaves at a source are no longer than l_min in its metric, and not much shorter") {
-    for (const CatalogueEntry& entry : tree_catalogue()) {
-        for (const double l_min : {1.0, 0.3}) {
-            CAPTURE(entry.id, l_min);
-            const auto space = editable(entry.make({.domain = domain, .l_min = l_min}));
-            const PointSource source{Point(0.3, -0.2, 0.7), Metric::isotropic(0.05)};
-            CHECK(space->insert(source) == Insertion::inserted);
-            const Vector edges = space->cell_at(source.position).value().edges();
-            CHECK(edges.maxCoeff() <= l_min * 0.05);
-            CHECK(edges.minCoeff() > 0.25 * l_min * 0.05);
-            // K_Li blends in the neighbours, which are still large: not met before gradation.
-            if (entry.order < 2) CHECK(space->insert(source) == Insertion::already_met);
-        }
+CASE_OF_EACH(entry, tree_catalogue(),
+             "leaves at a source are no longer than l_min in its metric, and not much shorter") {
+    for (const double l_min : {1.0, 0.3}) {
+        CAPTURE(l_min);
+        const auto space = editable(entry.make({.domain = domain, .l_min = l_min}));
+        const PointSource source{Point(0.3, -0.2, 0.7), Metric::isotropic(0.05)};
+        CHECK(space->insert(source) == Insertion::inserted);
+        const Vector edges = space->cell_at(source.position).value().edges();
+        CHECK(edges.maxCoeff() <= l_min * 0.05);
+        CHECK(edges.minCoeff() > 0.25 * l_min * 0.05);
+        // K_Li blends in the neighbours, which are still large: not met before gradation.
+        if (entry.order < 2) CHECK(space->insert(source) == Insertion::already_met);
     }
 }
 
-TEST_CASE("the depth limits are kept") {
+CASE_OF_EACH(entry, tree_catalogue(), "the depth limits are kept") {
     const PointSource tiny{Point(0.1, 0.2, 0.3), Metric::isotropic(1e-9)};
-    for (const CatalogueEntry& entry : tree_catalogue()) {
-        CAPTURE(entry.id);
-        const auto space =
-            editable(entry.make({.domain = domain, .kd_depth = 7, .octree_depth = 3}));
-        space->insert(tiny);
-        CHECK(space->footprint().depth == (entry.has<SplitRules>() ? 8 : 4));
-    }
+    const auto space = editable(entry.make({.domain = domain, .kd_depth = 7, .octree_depth = 3}));
+    space->insert(tiny);
+    CHECK(space->footprint().depth == (entry.has<SplitRules>() ? 8 : 4));
 }
 
-TEST_CASE("where floating point ends, splitting stops") {
+CASE_OF_EACH(entry, tree_catalogue(), "where floating point ends, splitting stops") {
     const Box small{Point::Constant(1), Point::Constant(1 + 1e-9)};
-    for (const CatalogueEntry& entry : tree_catalogue()) {
-        CAPTURE(entry.id);
-        const auto space =
-            editable(entry.make({.domain = small, .kd_depth = 200, .octree_depth = 60}));
-        CHECK(space->insert({small.centre(), Metric::isotropic(1e-30)}) == Insertion::inserted);
-        CHECK(space->footprint().depth < 3 * 24);
-    }
+    const auto space = editable(entry.make({.domain = small, .kd_depth = 200, .octree_depth = 60}));
+    CHECK(space->insert({small.centre(), Metric::isotropic(1e-30)}) == Insertion::inserted);
+    CHECK(space->footprint().depth < 3 * 24);
 }
 
 TEST_CASE("options out of range are refused by name") {
     const auto refuses = [](const SpaceOptions& options, const std::string& word) {
-        CHECK_THROWS_WITH(tree_catalogue()[0].make(options), Catch::Contains(word));
+        CHECK_THROWS_WITH(tree_named("K_L").make(options), Catch::Contains(word));
     };
     refuses({.domain = {Point::Zero(), Point(1, 1, 0)}}, "no extent along z");
     refuses({.domain = {Point::Zero(), Point(1, NAN, 1)}}, "no extent along y");
@@ -289,19 +280,17 @@ TEST_CASE("options out of range are refused by name") {
     refuses({.domain = domain, .octree_depth = -1}, "octrees");
 }
 
-TEST_CASE("sources that are no sources are refused, and leave the space as it was") {
-    for (const CatalogueEntry& entry : tree_catalogue()) {
-        CAPTURE(entry.id);
-        const auto space = editable(entry.make({.domain = domain}));
-        const auto refuses = [&](const PointSource& source, const std::string& word) {
-            CHECK_THROWS_WITH(space->insert(source), Catch::Contains(word));
-        };
-        refuses({Point(2, 0, 0), {}}, "outside the domain");
-        refuses({Point(NAN, 0, 0), {}}, "outside the domain");
-        refuses({Point::Zero(), {1, -1, 1, 0, 0, 0}}, "not positive definite");
-        refuses({Point::Zero(), {1, 1, 1, 2, 0, 0}}, "not positive definite");
-        refuses({Point::Zero(), {1, 1, NAN, 0, 0, 0}}, "not positive definite");
-        const std::vector<PointSource> batch{{Point::Zero(), {}}, {Point(0, -3, 0), {}}};
-        CHECK_THROWS_WITH(space->insert(batch), Catch::Contains("source 1 at (0, -3, 0)"));
-    }
+CASE_OF_EACH(entry, tree_catalogue(),
+             "sources that are no sources are refused, and leave the space as it was") {
+    const auto space = editable(entry.make({.domain = domain}));
+    const auto refuses = [&](const PointSource& source, const std::string& word) {
+        CHECK_THROWS_WITH(space->insert(source), Catch::Contains(word));
+    };
+    refuses({Point(2, 0, 0), {}}, "outside the domain");
+    refuses({Point(NAN, 0, 0), {}}, "outside the domain");
+    refuses({Point::Zero(), {1, -1, 1, 0, 0, 0}}, "not positive definite");
+    refuses({Point::Zero(), {1, 1, 1, 2, 0, 0}}, "not positive definite");
+    refuses({Point::Zero(), {1, 1, NAN, 0, 0, 0}}, "not positive definite");
+    const std::vector<PointSource> batch{{Point::Zero(), {}}, {Point(0, -3, 0), {}}};
+    CHECK_THROWS_WITH(space->insert(batch), Catch::Contains("source 1 at (0, -3, 0)"));
 }
