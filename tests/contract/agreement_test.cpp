@@ -69,9 +69,9 @@ Work any_isotropic_work() { return GENERATE(isotropic_sphere(), oblong_box()); }
 
 // How far a's length may lie above b's at probe i. Both grow from the source that governs the field
 // there: b no slower than along the straight line from somewhere in the source's cell to somewhere
-// in the probe's, a by g - 1 for each length of the way. Where values pass from node to node that
-// way is along the axes at worst: √3 times as long, within cells too. And a may hold up to `met`
-// times what the source asks for.
+// in the probe's, which nodes are half a diagonal away from, a by g - 1 for each length of the way.
+// Where values pass from node to node that way is along the axes at worst: √3 times as long, within
+// cells too. And a may hold up to `met` times what the source asks for.
 double largest_excess(const Work& work, const Exact& exact, const Field& a, const Field& b,
                       std::size_t i) {
     const double detour = a.structure.entry->has<KeptSources>() ? 1 : std::sqrt(3);
@@ -127,11 +127,11 @@ TEST_CASE("structures agree with each other, pair by pair") {
             CAPTURE(work.name, a.structure.name(), b.structure.name());
             worst_of_all = std::max(worst_of_all, worst(a, b, 1));
             CHECK(worst(a, b, 1) <= 1);
-            // The bound is close enough to notice a field that is half as large again.
-            CHECK(worst(a, b, 1.5) > 1);
+            // Without detours the bound is close enough to notice a field that is twice as large.
+            if (is_direct(*a.structure.entry)) CHECK(worst(a, b, 2) > 1);
         }
     }
-    CHECK(worst_of_all > 0.5);
+    CHECK(worst_of_all > 0.4);
 }
 
 STRUCTURE_CASE(has_no_slabs,

@@ -53,7 +53,8 @@ STRUCTURE_CASE(does_not_round, "twice as large, a field asks for twice the lengt
     CHECK(largest_difference(structure, rounded_oblong_box(), twice, doubled) < 1e-9);
 }
 
-STRUCTURE_CASE(does_not_round, "moved, a field asks for the same") {
+// Golden and metric cuts lie at rounded places, where a leaf more or less may be needed.
+STRUCTURE_CASE(splits_in_the_middle, "moved, a field asks for the same") {
     const auto moved = [](const Point& x) { return Point(x + Vector(-1024, 256, 64)); };
     const auto same = [](const Metric& m) { return m; };
     CHECK(largest_difference(structure, rounded_oblong_box(), moved, same) < 1e-9);
