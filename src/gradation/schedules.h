@@ -22,12 +22,12 @@ namespace controlspace {
 
 // The schedules of gradation. All but the passes end where no pair of neighbours breaks the law.
 //
-// | function          | threads | for                          | result |
-// |-------------------|---------|------------------------------|------------------------------------|
-// | grade_by_queue    | one     | any metrics and law          | the paper's queue (§3.2) | |
-// grade_in_levels   | all     | any metrics and law          | that of the queue, to the bit      |
-// | grade_in_rounds   | all     | isotropic metrics, cone law  | that of the queue, to the bit | |
-// grade_by_passes   | one     | any metrics and law          | the paper's tables (§5)            |
+// | function        | threads | for                         | result                    |
+// |-----------------|---------|-----------------------------|---------------------------|
+// | grade_by_queue  | one     | any metrics and law         | the paper's queue         |
+// | grade_in_levels | all     | any metrics and law         | as the queue, to the bit  |
+// | grade_in_rounds | all     | isotropic metrics, cone law | as the queue, to the bit  |
+// | grade_by_passes | one     | any metrics and law         | as in the paper's tables  |
 
 /// What is graded, and how. Neighbours must be mutual for all schedules but the passes.
 template <class Graph>
