@@ -1,19 +1,18 @@
 #include "baselines/direct/direct.h"
 
 #include <fmt/format.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
-#include <mutex>
-#include <vector>
+#include <memory>
+#include <utility>
 
 #include "cones/cone_field.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
 #include "space/goal_field.h"
+#include "space/saved.h"
 #include "space/shared_builder.h"
 #include "space/state.h"
 
@@ -21,50 +20,28 @@ namespace controlspace {
 
 namespace {
 
-double require_ratio(double ratio) {
-    if (!std::isfinite(ratio) || ratio < 1) {
-        throw InputError(
-            fmt::format("gradation ratio g_r is {}: give a finite value of at least 1", ratio));
-    }
-    return ratio;
-}
-
-class Direct {
+/// The sources as inserted.
+class Sources {
 public:
-    explicit Direct(const SpaceOptions& options)
-        : domain_(require_volume(options.domain)), ratio_(require_ratio(options.ratio)) {}
-
-    Direct(const Direct& other)
-        : domain_(other.domain_),
-          ratio_(other.ratio_),
-          sources_(other.sources_),
-          continuous_(other.continuous_) {}
-
-    void sample(std::span<const Point> x, std::span<Metric> out) const {
-        const ConeField& cones = field();
-        std::vector<Point> moved;
-        const auto is_inside = [this](const Point& p) { return domain_.contains(p); };
-        if (!std::all_of(x.begin(), x.end(), is_inside)) {
-            moved.assign(x.begin(), x.end());
-            for (Point& p : moved) p = p.cwiseMax(domain_.low).cwiseMin(domain_.high);
-            x = moved;
-        }
-        cones.evaluate(x, out);
-        if (!continuous_) return;
-        std::vector<Metric> own(x.size());
-        continuous_->sample(x, own);
-        for (std::size_t i = 0; i < x.size(); ++i) out[i] = intersection(out[i], own[i]);
+    explicit Sources(const SpaceOptions& options)
+        : domain_(require_volume(options.domain)), ratio_(options.ratio) {
+        require_valid(GradationOptions{.ratio = ratio_});
     }
 
     InsertionReport insert(std::span<const PointSource> sources) {
+        if (sources.size() > 1) sources_.reserve(sources_.size() + sources.size());
         // A source that is refused leaves those before it.
         for (std::size_t i = 0; i < sources.size(); ++i) append(sources[i], i);
-        if (sources.size() > 1) {
-            sources_.shrink_to_fit();
-            field();
-        }
         return {sources.size(), sources.size()};
     }
+    GradationReport grade(const GradationOptions& options) {
+        require_valid(options);
+        ratio_ = options.ratio;
+        return {};
+    }
+    AdaptationReport adapt(const AdaptationGoal& goal);
+
+    static std::unique_ptr<ControlSpace> finished(std::shared_ptr<const Sources> sources);
 
     ControlNodes control_nodes(Neighbourhood) const {
         ControlNodes nodes;
@@ -78,75 +55,33 @@ public:
         return nodes;
     }
 
-    GradationReport grade(const GradationOptions& options) {
-        const double before = ratio_;
-        ratio_ = require_ratio(options.ratio);
-        if (ratio_ != before) built_ = false;
-        field();
-        return {};
-    }
-
-    AdaptationReport adapt(const AdaptationGoal& goal) {
-        const GoalField wanted(goal, domain_);
-        ratio_ = goal.ratio;
-        sources_.assign(goal.sources.begin(), goal.sources.end());
-        continuous_ = goal.continuous;
-        built_ = false;
-        AdaptationReport report;
-        report.reached =
-            wanted.largest_departure(domain_, [this](auto x, auto metrics) { sample(x, metrics); });
-        report.met = report.reached <= goal.target;
-        return report;
-    }
-
     void save(StateWriter& state) const {
         if (continuous_) {
             throw InputError(
                 "`direct` cannot be saved with a continuous field: save a structure that holds "
                 "metrics");
         }
-        std::vector<Point> positions;
-        std::vector<Metric> metrics;
-        for (const auto& [position, metric] : sources_) {
-            positions.push_back(position);
-            metrics.push_back(metric);
-        }
-        state("sources.positions", positions);
-        state("sources.metrics", metrics);
+        const ControlNodes nodes = control_nodes(Neighbourhood::faces);
+        state("sources.positions", positions(nodes.graph));
+        state("sources.metrics", nodes.metrics);
         state("sources.ratio", ratio_);
     }
-
     void load(const StateReader& state) {
         std::vector<Point> positions;
         std::vector<Metric> metrics;
-        double ratio = 1;
         state("sources.positions", positions);
         state("sources.metrics", metrics);
-        state("sources.ratio", ratio);
+        state("sources.ratio", ratio_);
         state.require(positions.size() == metrics.size(), "sources.metrics", "has another length");
-        ratio_ = require_ratio(ratio);
+        require_valid(GradationOptions{.ratio = ratio_});
         sources_.clear();
         for (std::size_t i = 0; i < positions.size(); ++i) append({positions[i], metrics[i]}, i);
-        sources_.shrink_to_fit();
-        built_ = false;
     }
 
     const Box& domain() const { return domain_; }
-    Box cell_at(const Point&) const { return domain_; }
-
-    Footprint footprint() const {
-        const ConeField& cones = field();
-        Footprint footprint;
-        footprint.elements = 1;
-        footprint.control_nodes = sources_.size();
-        footprint.depth = 1;
-        footprint.bytes_payload = cones.bytes_payload();
-        footprint.bytes_topology = cones.bytes_topology();
-        footprint.bytes_auxiliary = sources_.capacity() * sizeof(PointSource);
-        footprint.remark = fmt::format("cone law of ratio {}; {} of {} sources can matter", ratio_,
-                                       sources_.size() - cones.dropped(), sources_.size());
-        return footprint;
-    }
+    double ratio() const { return ratio_; }
+    const std::vector<PointSource>& all() const { return sources_; }
+    const ControlSpace* continuous() const { return continuous_.get(); }
 
 private:
     void append(const PointSource& source, std::size_t index) {
@@ -155,45 +90,86 @@ private:
             throw InputError("sources kept as they are: give fewer than 2^31");
         }
         sources_.push_back(source);
-        built_ = false;
-    }
-
-    // Readers may come here at once after a single insertion: one builds, the others wait.
-    const ConeField& field() const {
-        if (built_) return *field_;
-        const std::lock_guard lock(building_);
-        if (!built_) {
-            field_.reset();
-            // Isolated: a thread that waits for its part of the work must not take up another task
-            // that reads, and comes here again.
-            tbb::this_task_arena::isolate([this] {
-                field_ = std::make_unique<ConeField>(sources_, ratio_,
-                                                     Metric::isotropic(domain_.half_diagonal()));
-            });
-            built_ = true;
-        }
-        return *field_;
     }
 
     Box domain_;
     double ratio_;
-    std::vector<PointSource> sources_;  ///< as inserted
+    std::vector<PointSource> sources_;
     std::shared_ptr<const ControlSpace> continuous_;
-    mutable std::mutex building_;
-    mutable std::atomic<bool> built_ = false;
-    mutable std::unique_ptr<ConeField> field_;  ///< of all sources, once built
 };
 
-}  // namespace
+/// The search among them.
+class Direct final : public ControlSpace, public HasControlNodes, public Saved {
+public:
+    explicit Direct(std::shared_ptr<const Sources> sources)
+        : sources_(std::move(sources)),
+          cones_(sources_->all(), sources_->ratio(), largest_metric(sources_->domain())) {}
 
-std::unique_ptr<ControlSpaceBuilder> make_direct(const SpaceOptions& options) {
-    return std::make_unique<SharedBuilder<Direct>>(options);
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+        const Box& box = sources_->domain();
+        std::vector<Point> moved;
+        if (!std::ranges::all_of(x, [&](const Point& p) { return box.contains(p); })) {
+            moved.assign(x.begin(), x.end());
+            for (Point& p : moved) p = p.cwiseMax(box.low).cwiseMin(box.high);
+            x = moved;
+        }
+        cones_.evaluate(x, out);
+        if (sources_->continuous() == nullptr) return;
+        std::vector<Metric> own(x.size());
+        sources_->continuous()->sample(x, own);
+        for (std::size_t i = 0; i < x.size(); ++i) out[i] = intersection(out[i], own[i]);
+    }
+    Box domain() const override { return sources_->domain(); }
+    std::optional<Box> cell_at(const Point&) const override { return domain(); }
+
+    Footprint footprint() const override {
+        const std::size_t count = sources_->all().size();
+        Footprint footprint;
+        footprint.elements = 1;
+        footprint.control_nodes = count;
+        footprint.depth = 1;
+        footprint.bytes_payload = cones_.bytes_payload();
+        footprint.bytes_topology = cones_.bytes_topology();
+        footprint.bytes_auxiliary = sources_->all().capacity() * sizeof(PointSource);
+        footprint.remark = fmt::format("cone law of ratio {}; {} of {} sources can matter",
+                                       sources_->ratio(), count - cones_.dropped(), count);
+        return footprint;
+    }
+    ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
+        return sources_->control_nodes(neighbourhood);
+    }
+    void save(StateWriter& state) const override { sources_->save(state); }
+
+private:
+    std::shared_ptr<const Sources> sources_;
+    ConeField cones_;
+};
+
+std::unique_ptr<ControlSpace> Sources::finished(std::shared_ptr<const Sources> sources) {
+    return std::make_unique<Direct>(std::move(sources));
 }
+
+AdaptationReport Sources::adapt(const AdaptationGoal& goal) {
+    const GoalField wanted(goal, domain_);
+    ratio_ = goal.ratio;
+    sources_.assign(goal.sources.begin(), goal.sources.end());
+    continuous_ = goal.continuous;
+    const Direct direct(std::make_shared<Sources>(*this));
+    AdaptationReport report;
+    report.reached =
+        wanted.largest_departure(domain_, [&](auto x, auto metrics) { direct.sample(x, metrics); });
+    report.met = report.reached <= goal.target;
+    return report;
+}
+
+}  // namespace
 
 std::vector<CatalogueEntry> direct_rows() {
     return {{.id = "direct",
              .description = "no structure: the sources, searched; exact everywhere",
-             .construct = make_direct,
+             .construct = [](const SpaceOptions& options) -> std::unique_ptr<ControlSpaceBuilder> {
+                 return std::make_unique<SharedBuilder<Sources>>(options);
+             },
              .capabilities = {KeptSources()}}};
 }
 

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "controlspace/space/catalogue.h"
-#include "controlspace/space/space_options.h"
 
 namespace controlspace {
 
@@ -17,12 +15,8 @@ namespace controlspace {
 /// insertion, without neighbours: a node's metric is what its source asks for, and the field at its
 /// place is smaller where another source's cone is.
 ///
-/// The search is built at the end of a batch; after a single insertion or `assign`, by the next
-/// reading, on all of TBB's threads. That takes time in proportion to the number of all sources.
-/// Throws InputError for an invalid domain or ratio, and where there are 2^31 sources.
-std::unique_ptr<ControlSpaceBuilder> make_direct(const SpaceOptions& options);
-
-/// Its row of the catalogue.
+/// The search is made by `build`, on all of TBB's threads, in time in proportion to the number of
+/// sources. Throws InputError for an invalid domain or ratio, and for 2^31 sources.
 std::vector<CatalogueEntry> direct_rows();
 
 }  // namespace controlspace

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "baselines/lattice/voxels.h"
 #include "controlspace/geometry/box.h"
@@ -11,16 +13,21 @@
 
 namespace controlspace {
 
-/// A stencil says which nodes of a grid answer for a point, and how. Its contract:
-///
-///   static constexpr Interpolation interpolation
-///   Stencil(const Box& domain, const Vector& cells)
-///   const Box& domain(), const Vector& cells(), Lattice lattice()
-///   Metric value(const Point& x, read)         from nodes, read(i, j, k) -> const Metric& or
-///   Metric void for_each_node(const Point& x, visit)  visit(i, j, k), the nodes that `value` reads
-///
-/// Points outside the domain are taken as the nearest point of it, which clamping each coordinate
-/// gives; not-a-number counts as the low side.
+/// Numbers of a cell along x, y and z.
+using Cell = std::array<std::int32_t, 3>;
+
+/// Cells of some points at once, found in vectors, and the points themselves in units of cells.
+struct CellBatch {
+    static constexpr std::size_t most = 32;  // what the corners' metrics take fits the first cache
+
+    std::array<std::array<std::int32_t, most>, 3> cell;
+    std::array<std::array<double, most>, 3> t;
+
+    Cell operator[](std::size_t i) const { return {cell[0][i], cell[1][i], cell[2][i]}; }
+};
+
+/// Equal cells that fill a box. Points outside the domain are taken as the nearest point of it,
+/// which clamping each coordinate gives; not-a-number counts as the low side.
 class CellsOfBox {
 public:
     CellsOfBox(const Box& domain, const Vector& cells)
@@ -29,24 +36,40 @@ public:
     const Box& domain() const { return domain_; }
     const Vector& cells() const { return cells_; }
 
-    /// The cell that holds `x`.
+    /// The cell that answers for `x`; holds the place, whichever way its bounds are rounded.
     Box cell_at(const Point& x) const {
         Box cell;
+        const Vector edges = domain_.edges().cwiseQuotient(cells_);
         for (Axis a = 0; a < 3; ++a) {
-            const double edge = domain_.edges()[a] / cells_[a];
             const std::uint32_t i = cell_of(in_cells(x, a), a);
-            cell.low[a] = domain_.low[a] + i * edge;
-            cell.high[a] = domain_.low[a] + (i + 1) * edge;
+            cell.low[a] = domain_.low[a] + i * edges[a];
+            cell.high[a] = domain_.low[a] + (i + 1) * edges[a];
         }
-        return cell;
+        return widened(cell, x);
+    }
+
+    /// The cells of at most CellBatch::most points.
+    void locate(std::span<const Point> x, CellBatch& batch) const {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto a = static_cast<Axis>(axis);
+            const double low = domain_.low[a], per_length = per_length_[a], n = cells_[a];
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                const double t = clamped((x[i][a] - low) * per_length, n);
+                batch.t[axis][i] = t;
+                batch.cell[axis][i] = static_cast<std::int32_t>(t < n ? t : n - 1);
+            }
+        }
     }
 
 protected:
+    /// The cell that `x` was found in, up to the place itself where rounding puts it outside.
+    Box widened(const Box& cell, const Point& x) const {
+        const Point place = x.cwiseMax(domain_.low).cwiseMin(domain_.high);
+        return {cell.low.cwiseMin(place), cell.high.cwiseMax(place)};
+    }
     /// `x` along axis `a` in units of cells, within [0, cells].
     double in_cells(const Point& x, Axis a) const {
-        const double t = (x[a] - domain_.low[a]) * per_length_[a];
-        const double above = t > 0 ? t : 0;
-        return above < cells_[a] ? above : cells_[a];
+        return clamped((x[a] - domain_.low[a]) * per_length_[a], cells_[a]);
     }
     /// The cell that holds `t`, which comes from `in_cells`; the last one for the high end.
     std::uint32_t cell_of(double t, Axis a) const {
@@ -62,28 +85,14 @@ protected:
     }
 
 private:
+    static double clamped(double t, double n) {
+        const double above = t > 0 ? t : 0;
+        return above < n ? above : n;
+    }
+
     Box domain_;
     Vector cells_;
     Vector per_length_;
-};
-
-/// Nodes at the cells' centres; the cell's node answers. On the face of two cells the high one.
-class NearestStencil : public CellsOfBox {
-public:
-    static constexpr Interpolation interpolation = Interpolation::nearest;
-    using CellsOfBox::CellsOfBox;
-
-    Lattice lattice() const { return lattice_from(0.5, interpolation); }
-
-    template <class Read>
-    Metric value(const Point& x, Read&& read) const {
-        return read(cell_of(in_cells(x, 0), 0), cell_of(in_cells(x, 1), 1),
-                    cell_of(in_cells(x, 2), 2));
-    }
-    template <class Visit>
-    void for_each_node(const Point& x, Visit&& visit) const {
-        visit(cell_of(in_cells(x, 0), 0), cell_of(in_cells(x, 1), 1), cell_of(in_cells(x, 2), 2));
-    }
 };
 
 /// Weights of a cell's corners for a place that is by `high`, 0 to 1 along each axis, off the low
@@ -96,48 +105,97 @@ inline std::array<double, 8> trilinear_weights(const std::array<double, 3>& high
             xy[0] * high[2], xy[1] * high[2], xy[2] * high[2], xy[3] * high[2]};
 }
 
-/// Nodes at the cells' vertices; the eight of the cell are blended, linear in M.
-class TrilinearStencil : public CellsOfBox {
+/// Which nodes of a grid answer for a point, and how. Nearest: nodes stand at the cells' centres,
+/// and the cell's own answers; on the face of two cells the high one. Trilinear: nodes stand at the
+/// cells' vertices, and the eight of the cell are blended, linear in M.
+template <Interpolation kind>
+class Stencil : public CellsOfBox {
 public:
-    static constexpr Interpolation interpolation = Interpolation::trilinear;
+    static constexpr Interpolation interpolation = kind;
+    /// Nodes that answer for a point.
+    static constexpr std::size_t corners = kind == Interpolation::nearest ? 1 : 8;
     using CellsOfBox::CellsOfBox;
 
-    Lattice lattice() const { return lattice_from(0, interpolation); }
+    Lattice lattice() const {
+        return lattice_from(kind == Interpolation::nearest ? 0.5 : 0, interpolation);
+    }
 
+    /// Metric at x from nodes, read(i, j, k) -> const Metric& or Metric.
     template <class Read>
     Metric value(const Point& x, Read&& read) const {
-        std::array<double, 3> high;
-        const Cell cell = locate(x, high);
-        return blend_lengths(trilinear_weights(high), [&](std::size_t corner) -> decltype(auto) {
-            return at_corner(cell, corner, read);
-        });
+        CellBatch batch;
+        locate({&x, 1}, batch);
+        if constexpr (corners == 1) {
+            return at_corner(batch, 0, read);
+        } else {
+            return blend_lengths(weights(batch, 0), [&](std::size_t corner) -> decltype(auto) {
+                return at_corner(batch, corner, read);
+            });
+        }
     }
+    /// visit(i, j, k), the nodes that `value` reads.
     template <class Visit>
     void for_each_node(const Point& x, Visit&& visit) const {
-        std::array<double, 3> high;
-        const Cell cell = locate(x, high);
-        for (std::size_t corner = 0; corner < 8; ++corner) at_corner(cell, corner, visit);
+        CellBatch batch;
+        locate({&x, 1}, batch);
+        for (std::size_t corner = 0; corner < corners; ++corner) at_corner(batch, corner, visit);
+    }
+
+    /// Metrics at `x`, for some points at a time, so that metrics are on their way while those
+    /// before them are blended. Of `read`, a storage's reader, it asks
+    ///   prepare(cell) -> hint            a first step to the nodes of a cell
+    ///   find<corners>(cell, hint) -> at  where their metrics are, which it prefetches
+    ///   metric(at, corner)               one of them, const Metric& or Metric
+    template <class Reader>
+    void sample(std::span<const Point> x, const Reader& read, std::span<Metric> out) const {
+        using Hint = decltype(read.prepare(Cell()));
+        using At = decltype(read.template find<corners>(Cell(), Hint()));
+        CellBatch batch;
+        std::array<Hint, CellBatch::most> hints;
+        std::array<At, CellBatch::most> at;
+        for (std::size_t first = 0; first < x.size(); first += CellBatch::most) {
+            const std::size_t count = std::min(CellBatch::most, x.size() - first);
+            locate(x.subspan(first, count), batch);
+            for (std::size_t i = 0; i < count; ++i) hints[i] = read.prepare(batch[i]);
+            for (std::size_t i = 0; i < count; ++i) {
+                at[i] = read.template find<corners>(batch[i], hints[i]);
+            }
+            for (std::size_t i = 0; i < count; ++i) {
+                if constexpr (corners == 1) {
+                    out[first + i] = read.metric(at[i], 0);
+                } else {
+                    out[first + i] =
+                        blend_lengths(weights(batch, i), [&](std::size_t corner) -> decltype(auto) {
+                            return read.metric(at[i], corner);
+                        });
+                }
+            }
+        }
     }
 
 private:
-    using Cell = std::array<std::uint32_t, 3>;
-
-    /// The cell of `x`, and in `high` how far `x` is across it, 0 to 1 along each axis.
-    Cell locate(const Point& x, std::array<double, 3>& high) const {
-        Cell cell;
-        for (Axis a = 0; a < 3; ++a) {
-            const double t = in_cells(x, a);
-            const auto i = static_cast<std::size_t>(a);
-            cell[i] = cell_of(t, a);
-            high[i] = t - cell[i];
-        }
-        return cell;
+    static std::array<double, 8> weights(const CellBatch& batch, std::size_t i) {
+        const auto high = [&](std::size_t a) { return batch.t[a][i] - batch.cell[a][i]; };
+        return trilinear_weights({high(0), high(1), high(2)});
     }
     template <class Visit>
-    static decltype(auto) at_corner(const Cell& cell, std::size_t corner, Visit&& visit) {
-        const auto c = static_cast<std::uint32_t>(corner);
-        return visit(cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2));
+    static decltype(auto) at_corner(const CellBatch& batch, std::size_t corner, Visit&& visit) {
+        const auto along = [&](std::size_t a) {
+            return static_cast<std::uint32_t>(batch.cell[a][0]) +
+                   static_cast<std::uint32_t>(corner >> a & 1);
+        };
+        return visit(along(0), along(1), along(2));
     }
 };
+
+using NearestStencil = Stencil<Interpolation::nearest>;
+using TrilinearStencil = Stencil<Interpolation::trilinear>;
+
+/// Requests the cache lines of a value before it is read.
+template <class Value>
+[[gnu::always_inline]] inline void prefetch(const Value* value) {
+    __builtin_prefetch(value);
+    __builtin_prefetch(reinterpret_cast<const char*>(value + 1) - 1);
+}
 
 }  // namespace controlspace

@@ -1,9 +1,6 @@
 #include "baselines/openvdb/catalogue.h"
 
 #include "baselines/lattice/grid_row.h"
-#include "baselines/openvdb/openvdb_grid.h"
-#include "baselines/openvdb/openvdb_levels.h"
-#include "baselines/openvdb/openvdb_vec3s.h"
 
 namespace controlspace {
 

@@ -1,12 +1,17 @@
 #pragma once
 
+#include <openvdb/tree/LeafManager.h>
 #include <openvdb/tree/Tree.h>
+#include <openvdb/tree/ValueAccessor.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
+#include "baselines/lattice/lattice_data.h"
+#include "baselines/lattice/stencil.h"
 #include "controlspace/geometry/point.h"
-#include "controlspace/gradation/node_graph.h"
 #include "controlspace/space/control_space.h"
 
 namespace controlspace {
@@ -21,13 +26,83 @@ inline openvdb::Coord voxel(std::uint32_t i, std::uint32_t j, std::uint32_t k) {
             static_cast<openvdb::Int32>(k)};
 }
 
-/// What denseFill does, but on the one thread that makes every other structure too.
-template <class Tree>
-void fill_densely(Tree& tree, const Lattice& lattice, const typename Tree::ValueType& value) {
-    const auto [nx, ny, nz] = lattice.nodes;
-    tree.sparseFill({voxel(0, 0, 0), voxel(nx - 1, ny - 1, nz - 1)}, value);
-    tree.voxelizeActiveTiles(/*threaded=*/false);
+/// Corner `i` of a cell relative to its low one; bit 0 is the high side in x, bit 1 in y, 2 in z.
+inline openvdb::Coord corner_step(std::size_t i) {
+    const auto bits = static_cast<int>(i);
+    return {bits & 1, bits >> 1 & 1, bits >> 2};
 }
+
+/// Makes the voxels of all nodes active, with value_of(metric) of each; on all of TBB's threads.
+template <class Tree, class ValueOf>
+void fill_densely(Tree& tree, const LatticeData& data, ValueOf&& value_of) {
+    const Lattice lattice = data.lattice();
+    const std::vector<Metric>& metrics = data.field();
+    const auto [nx, ny, nz] = lattice.nodes;
+    tree.sparseFill({voxel(0, 0, 0), voxel(nx - 1, ny - 1, nz - 1)}, tree.background());
+    tree.voxelizeActiveTiles();
+    openvdb::tree::LeafManager<Tree> leaves(tree);
+    leaves.foreach ([&](typename Tree::LeafNodeType& leaf, std::size_t) {
+        for (auto value = leaf.beginValueOn(); value; ++value) {
+            const openvdb::Coord c = value.getCoord();
+            const NodeIndex node =
+                lattice.index(static_cast<std::uint32_t>(c.x()), static_cast<std::uint32_t>(c.y()),
+                              static_cast<std::uint32_t>(c.z()));
+            leaf.setValueOnly(value.pos(), value_of(metrics[node]));
+        }
+    });
+}
+
+/// Accessor for one thread, while no node of the tree is taken away, that the tree need not know of
+/// ("unsafe"): registering one takes a lock and an allocation.
+template <class Tree>
+using Accessor = openvdb::tree::ValueAccessor<Tree, false>;
+
+/// Where the values at the low corner of a cell and the others are, which it requests. `leaf` is
+/// the low corner's, null where a tile is.
+template <std::size_t corners, class Tree>
+auto find_values(const Accessor<const Tree>& nodes, const openvdb::Coord& low,
+                 const typename Tree::LeafNodeType* leaf) {
+    constexpr auto side = static_cast<int>(Tree::LeafNodeType::DIM);
+    const openvdb::Coord within = low & (side - 1);
+    const bool fits = corners == 1 || std::max({within.x(), within.y(), within.z()}) + 1 < side;
+    std::array<const typename Tree::ValueType*, corners> values;
+    if (leaf != nullptr && fits) {
+        const auto* first = leaf->buffer().data() + leaf->coordToOffset(low);
+        for (std::size_t corner = 0; corner < corners; ++corner) {
+            const openvdb::Coord step = corner_step(corner);
+            values[corner] = first + (step.x() * side + step.y()) * side + step.z();
+        }
+    } else {
+        for (std::size_t corner = 0; corner < corners; ++corner) {
+            values[corner] = &nodes.getValue(low + corner_step(corner));
+        }
+    }
+    for (const auto* value : values) prefetch(value);
+    return values;
+}
+
+/// Reads the voxels of a tree, one by one or those of many cells side by side (Stencil::sample).
+template <class Tree>
+class DenseReader {
+public:
+    explicit DenseReader(const Tree& tree) : nodes_(tree) {}
+
+    const auto& operator()(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
+        return nodes_.getValue(voxel(i, j, k));
+    }
+    const auto* prepare(const Cell& cell) const {
+        const auto* leaf = nodes_.probeConstLeaf({cell[0], cell[1], cell[2]});
+        __builtin_prefetch(leaf);
+        return leaf;
+    }
+    template <std::size_t corners>
+    auto find(const Cell& cell, const typename Tree::LeafNodeType* leaf) const {
+        return find_values<corners, Tree>(nodes_, {cell[0], cell[1], cell[2]}, leaf);
+    }
+
+private:
+    Accessor<const Tree> nodes_;
+};
 
 /// Bytes of the values of a leaf.
 template <class Tree>
@@ -46,7 +121,8 @@ double dense_bytes(const Vector& nodes) {
            blocks(Upper::DIM) * sizeof(Upper) + sizeof(Tree);
 }
 
-/// Payload is the leaves' values; topology the rest of the tree, as OpenVDB counts it.
+/// Payload is the leaves' values, those that fill up the outermost leaves included; topology the
+/// rest of the tree, as OpenVDB counts it.
 template <class Tree>
 void add_dense_bytes(const Tree& tree, Footprint& footprint) {
     const std::size_t payload = tree.leafCount() * leaf_values_bytes<Tree>;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "baselines/lattice/voxels.h"
 #include "controlspace/error.h"
 
 namespace controlspace {
@@ -23,8 +24,8 @@ Point LevelCells::vertex(int level, const Coord& c) const {
     return domain().low + spacing_.cwiseProduct(Vector(finest.x(), finest.y(), finest.z()));
 }
 
-Box LevelCells::box(int level, const Coord& c) const {
-    return {vertex(level, c), vertex(level, c.offsetBy(1))};
+Box LevelCells::box(int level, const Coord& c, const Point& x) const {
+    return widened({vertex(level, c), vertex(level, c.offsetBy(1))}, x);
 }
 
 bool LevelCells::contains(int level, const Coord& c) const {

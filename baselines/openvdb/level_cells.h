@@ -2,27 +2,17 @@
 
 #include <openvdb/Types.h>
 
-#include <array>
-#include <string>
-
 #include "baselines/lattice/stencil.h"
-#include "baselines/lattice/voxels.h"
 #include "controlspace/space/space_options.h"
 
 namespace controlspace {
 
 /// Lattices of cells over a box, one a level: level 0 is the finest, each further one has cells of
 /// twice the edges, the coarsest (top) a few along each axis. Cell c of level l consists of the
-/// cells 2c + {0, 1}^3 of level l - 1. Index space starts at 0.
+/// cells 2c + {0, 1}^3 of level l - 1. Index space starts at 0. Points are located in the finest.
 class LevelCells : public CellsOfBox {
 public:
     using Coord = openvdb::Coord;
-
-    /// A place in units of the finest cells, and the finest cell that holds it.
-    struct Place {
-        std::array<double, 3> t;
-        Coord finest;
-    };
 
     LevelCells(const Box& domain, const Vector& coarsest_cells, int levels);
 
@@ -34,18 +24,9 @@ public:
     Vector edges(int level) const { return spacing_ * static_cast<double>(1 << level); }
     Point vertex(int level, const Coord& c) const;
     Point centre(int level, const Coord& c) const { return vertex(level, c) + 0.5 * edges(level); }
-    Box box(int level, const Coord& c) const;
+    /// The cell, in which `x` was found: as CellsOfBox::cell_at.
+    Box box(int level, const Coord& c, const Point& x) const;
     bool contains(int level, const Coord& c) const;
-
-    Place place(const Point& x) const {
-        Place place;
-        for (Axis a = 0; a < 3; ++a) {
-            const double t = in_cells(x, a);
-            place.t[static_cast<std::size_t>(a)] = t;
-            place.finest[a] = static_cast<openvdb::Int32>(cell_of(t, a));
-        }
-        return place;
-    }
 
 private:
     int levels_;
@@ -57,8 +38,5 @@ private:
 /// many. Throws InputError where the options are invalid or ask for more than 2^29 cells along an
 /// edge.
 LevelCells choose_levels(const SpaceOptions& options);
-
-/// Corner `i` of a cell relative to its low one; bit 0 is the high side in x, bit 1 in y, 2 in z.
-inline openvdb::Coord corner_step(int i) { return {i & 1, i >> 1 & 1, i >> 2}; }
 
 }  // namespace controlspace

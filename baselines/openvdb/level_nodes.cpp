@@ -4,10 +4,11 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <cstdlib>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
+#include "controlspace/space/control_space_builder.h"
 #include "trees/topology/adjacency.h"
 #include "trees/topology/corners.h"
 
@@ -111,9 +112,7 @@ std::vector<Point> LevelNodes::positions() const {
 }
 
 void LevelNodes::assign(std::span<const Metric> metrics, std::span<VdbLevelTree> trees) const {
-    if (metrics.size() != size_) {
-        throw std::invalid_argument("assign() takes one metric for each control node");
-    }
+    require_one_each(metrics.size(), size_);
     for (std::size_t l = 0; l < trees.size(); ++l) {
         trees[l].voxelizeActiveTiles();
         openvdb::tree::LeafManager<VdbLevelTree> leaves(trees[l]);
@@ -128,9 +127,9 @@ void LevelNodes::assign(std::span<const Metric> metrics, std::span<VdbLevelTree>
 
 NodeGraph LevelNodes::graph(Neighbourhood neighbourhood) const {
     NodeGraph graph = interpolation_ == Interpolation::trilinear ? graph_of_vertices(neighbourhood)
-                      : neighbourhood == Neighbourhood::all      ? graph_of_touching()
-                      : neighbourhood == Neighbourhood::faces    ? graph_of_faces()
-                                                                 : graph_of_nearest();
+                      : neighbourhood == Neighbourhood::nearest_per_face
+                          ? graph_of_nearest()
+                          : graph_of_cells(neighbourhood);
     graph.positions = positions();
     return graph;
 }
@@ -162,67 +161,52 @@ std::vector<Pair> LevelNodes::pairs(Links&& links) const {
     return all;
 }
 
-NodeGraph LevelNodes::graph_of_faces() const {
-    return graph_from_pairs(size_, pairs([&](std::vector<Pair>& found, const NumberReader& numbers,
-                                             const LevelReader&, int level, const Coord& c) {
-                                for (int face = 0; face < 6; ++face) {
-                                    enter_pair(found, numbers, level, c, across(c, face),
-                                               face % 2 == 1);
-                                }
-                            }));
+NodeGraph LevelNodes::graph_of_cells(Neighbourhood neighbourhood) const {
+    const bool all = neighbourhood == Neighbourhood::all;
+    std::vector<Coord> steps;
+    for (int face = 0; face < 6; ++face) steps.push_back(across({}, face));
+    for (int i = 0; i < 27 && all; ++i) {
+        const Coord step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+        if (std::abs(step.x()) + std::abs(step.y()) + std::abs(step.z()) > 1) steps.push_back(step);
+    }
+    NodeGraph graph =
+        graph_from_pairs(size_, pairs([&](std::vector<Pair>& found, const NumberReader& numbers,
+                                          const LevelReader&, int level, const Coord& c) {
+                             for (const Coord& step : steps)
+                                 enter_pair(found, numbers, level, c, c + step);
+                         }));
+    if (all) sort_rows_uniquely(graph);  // a large cell is beyond several sides of a small one
+    return graph;
 }
 
-// A large cell is beyond several of a small one's sides at once.
-NodeGraph LevelNodes::graph_of_touching() const {
-    NodeGraph graph = graph_from_pairs(
-        size_, pairs([&](std::vector<Pair>& found, const NumberReader& numbers, const LevelReader&,
-                         int level, const Coord& c) {
-            for (int step = 0; step < 27; ++step) {
-                const Coord neighbour = c + Coord(step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1);
-                if (neighbour != c) {
-                    enter_pair(found, numbers, level, c, neighbour, neighbour > c);
-                }
-            }
-        }));
-    sort_rows_uniquely(graph);
-    return graph;
+// The node of the active cell that holds a finest cell, and its level.
+std::pair<NodeIndex, int> LevelNodes::node_at(const NumberReader& numbers, const Coord& finest,
+                                              int likely) {
+    const int level = numbers.level_at(finest, likely);
+    return {node(numbers[level].getValue(finest >> static_cast<std::size_t>(level))), level};
 }
 
 // The active cell c and the one at `neighbour`, unless that is finer: the finer of two enters the
 // pair, and of two alike the one that is low.
-void LevelNodes::enter_pair(std::vector<std::pair<NodeIndex, NodeIndex>>& pairs,
-                            const NumberReader& numbers, int level, const Coord& c,
-                            const Coord& neighbour, bool is_low) const {
+void LevelNodes::enter_pair(std::vector<Pair>& pairs, const NumberReader& numbers, int level,
+                            const Coord& c, const Coord& neighbour) const {
     if (!cells_.contains(level, neighbour)) return;
-    const NodeIndex own = node(numbers[level].getValue(c));
-    if (numbers[level].isValueOn(neighbour)) {
-        if (is_low) pairs.emplace_back(own, node(numbers[level].getValue(neighbour)));
-        return;
-    }
-    for (int l = level + 1; l < cells_.levels(); ++l) {
-        const Coord coarser = neighbour >> static_cast<std::size_t>(l - level);
-        if (!numbers[l].isValueOn(coarser)) continue;
-        pairs.emplace_back(own, node(numbers[l].getValue(coarser)));
-        return;
+    const auto [other, its_level] =
+        node_at(numbers, neighbour << static_cast<std::size_t>(level), level);
+    if (its_level > level || (its_level == level && neighbour > c)) {
+        pairs.emplace_back(node(numbers[level].getValue(c)), other);
     }
 }
 
 // The cell across a face, opposite to its middle; the low one where several meet there.
 NodeIndex LevelNodes::nearest_across(const NumberReader& numbers, int level, const Coord& c,
                                      int face) const {
-    const Coord neighbour = across(c, face);
-    for (int l = level; l < cells_.levels(); ++l) {
-        const Coord coarser = neighbour >> static_cast<std::size_t>(l - level);
-        if (numbers[l].isValueOn(coarser)) return node(numbers[l].getValue(coarser));
-    }
-    for (int l = level - 1;; --l) {
-        const int parts = 1 << (level - l);  // of this level, along an edge of c
-        Coord finer;
-        for (int a = 0; a < 3; ++a) finer[a] = c[a] * parts + parts / 2 - 1;
-        const int a = face / 2;
-        finer[a] = face % 2 == 1 ? (c[a] + 1) * parts : c[a] * parts - 1;
-        if (numbers[l].isValueOn(finer)) return node(numbers[l].getValue(finer));
-    }
+    const int parts = 1 << level;  // of the finest level, along an edge of c
+    Coord finest;
+    for (int a = 0; a < 3; ++a) finest[a] = c[a] * parts + (parts - 1) / 2;
+    const int a = face / 2;
+    finest[a] = face % 2 == 1 ? (c[a] + 1) * parts : c[a] * parts - 1;
+    return node_at(numbers, finest, level).first;
 }
 
 NodeGraph LevelNodes::graph_of_nearest() const {
@@ -255,9 +239,8 @@ NodeGraph LevelNodes::graph_of_vertices(Neighbourhood neighbourhood) const {
         size_, pairs([&](std::vector<Pair>& found, const NumberReader& numbers, const LevelReader&,
                          int level, const Coord& c) {
             Corners corners;
-            for (int i = 0; i < 8; ++i) {
-                corners[static_cast<std::size_t>(i)] =
-                    node(numbers[level].getValue(c + corner_step(i)));
+            for (std::size_t i = 0; i < 8; ++i) {
+                corners[i] = node(numbers[level].getValue(c + corner_step(i)));
             }
             for_each_pair(corners, neighbourhood,
                           [&](NodeIndex a, NodeIndex b) { found.emplace_back(a, b); });

@@ -35,17 +35,18 @@ private:
 
     void number(int level);
     std::vector<Point> positions() const;
-    NodeGraph graph_of_faces() const;
+    NodeGraph graph_of_cells(Neighbourhood neighbourhood) const;
     NodeGraph graph_of_nearest() const;
-    NodeGraph graph_of_touching() const;
     NodeGraph graph_of_vertices(Neighbourhood neighbourhood) const;
     template <class Trees, class Visit>
     void for_each_node(int level, const Trees& trees, Visit&& visit) const;
     template <class Links>
     std::vector<std::pair<NodeIndex, NodeIndex>> pairs(Links&& links) const;
+    static std::pair<NodeIndex, int> node_at(const NumberReader& numbers, const Coord& finest,
+                                             int likely);
     void enter_pair(std::vector<std::pair<NodeIndex, NodeIndex>>& pairs,
-                    const NumberReader& numbers, int level, const Coord& c, const Coord& neighbour,
-                    bool is_low) const;
+                    const NumberReader& numbers, int level, const Coord& c,
+                    const Coord& neighbour) const;
     NodeIndex nearest_across(const NumberReader& numbers, int level, const Coord& c,
                              int face) const;
 

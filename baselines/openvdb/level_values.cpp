@@ -1,6 +1,10 @@
 #include "baselines/openvdb/level_values.h"
 
+#include <array>
 #include <optional>
+
+#include "controlspace/metric/blend.h"
+#include "controlspace/metric/intersection.h"
 
 namespace controlspace {
 
@@ -45,83 +49,66 @@ void set_copies(LevelWriter& at, int level, const Coord& vertex, const Metric& m
     });
 }
 
-bool is_corner_of_active(const LevelWriter& at, int level, const Coord& vertex) {
-    for (int i = 0; i < 8; ++i) {
-        if (at[level].isValueOn(vertex - corner_step(i))) return true;
+// Whether the voxel belongs to an active cell.
+template <std::size_t corners>
+bool is_needed(const LevelWriter& at, int level, const Coord& c) {
+    for (std::size_t i = 0; i < corners; ++i) {
+        if (at[level].isValueOn(c - corner_step(i))) return true;
     }
     return false;
 }
 
-Metric blended(const std::array<Metric, 8>& corners, const std::array<double, 3>& high) {
-    return blend_lengths(trilinear_weights(high),
-                         [&](std::size_t i) -> const Metric& { return corners[i]; });
-}
-
 }  // namespace
 
-void CellMetrics::fill(LevelWriter& at, const LevelCells& cells, const Metric& metric) {
-    const int top = cells.top();
-    for_each_place(cells.cells_of(top),
-                   [&](const Coord& c) { at[top].setValueOn(c, VdbMetric(metric)); });
+template <std::size_t corner_count>
+void LevelMetrics<corner_count>::fill(LevelWriter& at, const LevelCells& cells,
+                                      const Metric& metric) {
+    auto& nodes = at[cells.top()];
+    const Coord n = cells.cells_of(cells.top());
+    for_each_place(n.offsetBy(corners == 1 ? 0 : 1),
+                   [&](const Coord& c) { nodes.setValueOnly(c, VdbMetric(metric)); });
+    for_each_place(n, [&](const Coord& c) { nodes.setActiveState(c, true); });
 }
 
-void CellMetrics::split(LevelWriter& at, int level, const Coord& c) {
-    const VdbMetric inherited = at[level].getValue(c);
-    at[level].setValueOff(c, no_metric);
-    for (int i = 0; i < 8; ++i) at[level - 1].setValueOn((c << 1) + corner_step(i), inherited);
-}
-
-void CellMetrics::lower(LevelWriter& at, int level, const Coord& c, const Metric& metric) {
-    at[level].setValueOnly(c, VdbMetric(intersection(at.metric(level, c), metric)));
-}
-
-Metric VertexMetrics::value(const LevelReader& at, int level, const Coord& c,
-                            const std::array<double, 3>& t) {
-    const double cells_per_finest = 1.0 / (1 << level);
-    const std::array<double, 3> high{t[0] * cells_per_finest - c.x(),
-                                     t[1] * cells_per_finest - c.y(),
-                                     t[2] * cells_per_finest - c.z()};
-    return blend_lengths(trilinear_weights(high), [&](std::size_t i) -> const Metric& {
-        return at.metric(level, c + corner_step(static_cast<int>(i)));
-    });
-}
-
-void VertexMetrics::fill(LevelWriter& at, const LevelCells& cells, const Metric& metric) {
-    const int top = cells.top();
-    const Coord n = cells.cells_of(top);
-    for_each_place(n.offsetBy(1),
-                   [&](const Coord& c) { at[top].setValueOnly(c, VdbMetric(metric)); });
-    for_each_place(n, [&](const Coord& c) { at[top].setActiveState(c, true); });
-}
-
-void VertexMetrics::split(LevelWriter& at, int level, const Coord& c) {
-    std::array<Metric, 8> corners;
-    for (int i = 0; i < 8; ++i) {
-        corners[static_cast<std::size_t>(i)] = at.metric(level, c + corner_step(i));
-    }
-    for_each_place({3, 3, 3}, [&](const Coord& step) {
-        const Coord vertex = (c << 1) + step;
-        Metric metric = blended(corners, {0.5 * step.x(), 0.5 * step.y(), 0.5 * step.z()});
-        if (const auto held = held_at(at, level - 1, vertex)) {
-            // Corners of the cell among them: they are held as they are.
-            metric = intersection(*held, metric);
-            set_copies(at, level - 1, vertex, metric);
+template <std::size_t corner_count>
+void LevelMetrics<corner_count>::split(LevelWriter& at, int level, const Coord& c) {
+    std::array<Metric, corners> own;
+    for (std::size_t i = 0; i < corners; ++i) own[i] = at.metric(level, c + corner_step(i));
+    for_each_place(Coord(corners == 1 ? 2 : 3), [&](const Coord& step) {
+        const Coord part = (c << 1) + step;
+        Metric metric = own[0];
+        if constexpr (corners > 1) {
+            metric =
+                blend_lengths(trilinear_weights({0.5 * step.x(), 0.5 * step.y(), 0.5 * step.z()}),
+                              [&](std::size_t i) -> const Metric& { return own[i]; });
+            if (const auto held = held_at(at, level - 1, part)) {
+                // Corners of the cell among them: they are held as they are.
+                metric = intersection(*held, metric);
+                set_copies(at, level - 1, part, metric);
+            }
         }
-        at[level - 1].setValueOnly(vertex, VdbMetric(metric));
+        at[level - 1].setValueOnly(part, VdbMetric(metric));
     });
     at[level].setActiveState(c, false);
-    for (int i = 0; i < 8; ++i) at[level - 1].setActiveState((c << 1) + corner_step(i), true);
-    for (int i = 0; i < 8; ++i) {
-        const Coord vertex = c + corner_step(i);
-        if (!is_corner_of_active(at, level, vertex)) at[level].setValueOnly(vertex, no_metric);
+    for (std::size_t i = 0; i < 8; ++i) {
+        at[level - 1].setActiveState((c << 1) + corner_step(i), true);
+    }
+    for (std::size_t i = 0; i < corners; ++i) {
+        const Coord node = c + corner_step(i);
+        if (!is_needed<corners>(at, level, node)) at[level].setValueOnly(node, no_metric);
     }
 }
 
-void VertexMetrics::lower(LevelWriter& at, int level, const Coord& c, const Metric& metric) {
-    for (int i = 0; i < 8; ++i) {
-        const Coord vertex = c + corner_step(i);
-        set_copies(at, level, vertex, intersection(at.metric(level, vertex), metric));
+template <std::size_t corner_count>
+void LevelMetrics<corner_count>::lower(LevelWriter& at, int level, const Coord& c,
+                                       const Metric& metric) {
+    for (std::size_t i = 0; i < corners; ++i) {
+        const Coord node = c + corner_step(i);
+        set_copies(at, level, node, intersection(at.metric(level, node), metric));
     }
 }
+
+template struct LevelMetrics<1>;
+template struct LevelMetrics<8>;
 
 }  // namespace controlspace

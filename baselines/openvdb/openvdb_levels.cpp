@@ -1,15 +1,14 @@
-#include "baselines/openvdb/openvdb_levels.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
-#include "baselines/openvdb/dense_tree.h"
+#include "baselines/openvdb/catalogue.h"
 #include "baselines/openvdb/level_nodes.h"
-#include "baselines/openvdb/level_state.h"
-#include "baselines/openvdb/vdb_prune.h"
+#include "baselines/openvdb/level_stack.h"
+#include "baselines/openvdb/prune.h"
 #include "controlspace/error.h"
 #include "gradation/regrade.h"
 #include "space/shared_builder.h"
@@ -21,51 +20,32 @@ namespace {
 
 using Coord = openvdb::Coord;
 
-/// The grids of a stack, the finest first, and their active voxels.
-struct Stack {
-    std::vector<VdbLevelTree> trees;
-    std::size_t voxels = 0;
-
-    explicit Stack(int levels) : trees(static_cast<std::size_t>(levels), VdbLevelTree(no_metric)) {}
-
-    std::size_t bytes() const {
-        std::size_t bytes = 0;
-        for (const VdbLevelTree& tree : trees) bytes += tree.memUsage();
-        return bytes;
-    }
-};
-
-// `Values` is CellMetrics or VertexMetrics.
+// `Values` is LevelMetrics.
 template <class Values>
-class LevelSpace {
+class LevelGrids {
 public:
-    explicit LevelSpace(const SpaceOptions& options)
-        : options_(options), cells_(choose_levels(options)), field_(cells_.levels()) {
-        LevelWriter at(field_.trees);
-        Values::fill(at, cells_, largest_metric(options.domain));
-        field_.voxels = field_.trees.back().activeVoxelCount();
-    }
+    explicit LevelGrids(const SpaceOptions& options)
+        : options_(options), cells_(choose_levels(options)), field_(new_stack()) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const {
-        const LevelReader at(field_.trees);
-        for (std::size_t i = 0; i < x.size(); ++i) out[i] = value(at, cells_.place(x[i]));
+        sample_levels<Values>(cells_, LevelReader(field_.trees), x, out);
     }
 
     InsertionReport insert(std::span<const PointSource> sources) {
         InsertionReport report;
-        Stack& asked = asked_ ? *asked_ : field_;
+        LevelStack& asked = asked_ ? *asked_ : field_;
         LevelWriter to_asked(asked.trees);
         LevelWriter to_field(field_.trees);
         const LevelReader from_asked(asked.trees);
         for (const PointSource& source : sources) {
             require_valid(source, report.sources++, domain());
-            const LevelCells::Place place = cells_.place(source.position);
-            const Metric held = value(from_asked, place);
+            Metric held;
+            sample_levels<Values>(cells_, from_asked, {&source.position, 1}, {&held, 1});
             if (!calls_for_change(source.metric, held, options_.tolerance)) continue;
             ++report.inserted;
             past_.reset();
-            lower(asked, to_asked, source, place);
-            if (asked_) lower(field_, to_field, source, place);
+            lower(asked, to_asked, source);
+            if (asked_) lower(field_, to_field, source);
         }
         return report;
     }
@@ -76,7 +56,6 @@ public:
     }
 
     void assign(std::span<const Metric> metrics) {
-        require_one_each(metrics.size(), numbered().size());
         set_field(metrics);
         prune({.delta = options_.prune_delta});
         asked_.reset();
@@ -90,7 +69,7 @@ public:
                 return {.largest_ratio_left = past_->largest_ratio_left, .visits = 0};
             }
             if (asked_) {
-                field_ = Stack(*asked_);  // trees cannot be assigned
+                field_ = LevelStack(*asked_);
             } else {
                 asked_.emplace(field_);
             }
@@ -118,26 +97,28 @@ public:
     }
 
     void save(StateWriter& state) const {
-        save_levels(field_.trees, field_name, state);
+        save_levels(field_, cells_, field_name, state);
         state("levels.keeps_asked", asked_.has_value());
-        if (asked_) save_levels(asked_->trees, asked_name, state);
+        if (asked_) save_levels(*asked_, cells_, asked_name, state);
         exchange_past(past_, state);
     }
     void load(const StateReader& state) {
-        field_ = loaded(field_name, state);
+        load_stack(field_, field_name, state);
+        // Tiles stand where voxels are equal.
+        prune({.delta = options_.prune_delta > 0 ? std::numeric_limits<double>::min() : 0});
         bool keeps_asked = false;
         state("levels.keeps_asked", keeps_asked);
         asked_.reset();
-        if (keeps_asked) asked_.emplace(loaded(asked_name, state));
+        if (keeps_asked) load_stack(asked_.emplace(new_stack()), asked_name, state);
         exchange_past(past_, state);
     }
 
-    const Box& domain() const { return cells_.domain(); }
+    Box domain() const { return cells_.domain(); }
 
     Box cell_at(const Point& x) const {
-        const Coord finest = cells_.place(x).finest;
-        const int level = LevelReader(field_.trees).level_at(finest);
-        return cells_.box(level, finest >> static_cast<std::size_t>(level));
+        const Coord finest = finest_cell(x);
+        const int level = LevelReader(field_.trees).level_at(finest, cells_.top());
+        return cells_.box(level, finest >> static_cast<std::size_t>(level), x);
     }
 
     Footprint footprint() const {
@@ -166,18 +147,20 @@ private:
     static constexpr const char* field_name = "levels.field";
     static constexpr const char* asked_name = "levels.asked";
 
-    Stack loaded(const char* name, const StateReader& state) const {
-        Stack stack(cells_.levels());
-        load_levels(stack.trees, name, cells_, Values::interpolation, state);
-        for (const VdbLevelTree& tree : stack.trees) stack.voxels += tree.activeVoxelCount();
-        return stack;
+    LevelStack new_stack() const { return {cells_, largest_metric(options_.domain), Values()}; }
+    void load_stack(LevelStack& stack, const char* name, const StateReader& state) {
+        load_levels(stack, cells_, name, state, [&](LevelWriter& at, int level, const Coord& c) {
+            split(stack, at, level, c);
+        });
     }
 
     LevelNodes numbered() const { return {cells_, field_.trees, Values::interpolation}; }
 
-    Metric value(const LevelReader& at, const LevelCells::Place& place) const {
-        const int level = at.level_at(place.finest);
-        return Values::value(at, level, place.finest >> static_cast<std::size_t>(level), place.t);
+    Coord finest_cell(const Point& x) const {
+        CellBatch batch;
+        cells_.locate({&x, 1}, batch);
+        const auto [i, j, k] = batch[0];
+        return {i, j, k};
     }
 
     bool is_longer(int level, const Metric& metric, double length) const {
@@ -186,16 +169,16 @@ private:
     }
 
     // Refines the voxel at a source and lowers what is left of it there.
-    void lower(Stack& stack, LevelWriter& at, const PointSource& source,
-               const LevelCells::Place& place) {
-        int level = at.level_at(place.finest);
+    void lower(LevelStack& stack, LevelWriter& at, const PointSource& source) {
+        const Coord finest = finest_cell(source.position);
+        int level = at.level_at(finest, cells_.top());
         for (; level > 0 && is_longer(level, source.metric, options_.l_min); --level) {
-            split(stack, at, level, place.finest >> static_cast<std::size_t>(level));
+            split(stack, at, level, finest >> static_cast<std::size_t>(level));
         }
-        Values::lower(at, level, place.finest >> static_cast<std::size_t>(level), source.metric);
+        Values::lower(at, level, finest >> static_cast<std::size_t>(level), source.metric);
     }
 
-    void split(Stack& stack, LevelWriter& at, int level, const Coord& c) {
+    void split(LevelStack& stack, LevelWriter& at, int level, const Coord& c) {
         if (stack.voxels >= next_look_) require_memory();
         Values::split(at, level, c);
         stack.voxels += 7;
@@ -248,12 +231,12 @@ private:
 
     SpaceOptions options_;
     LevelCells cells_;
-    Stack field_;
+    LevelStack field_;
     std::size_t next_look_ = 1 << 12;  // number of voxels at which memory is looked at again
 
     // Where sources may come after gradation: what they ask for, on voxels that sources alone have
     // refined; and the gradation that still holds.
-    std::optional<Stack> asked_;
+    std::optional<LevelStack> asked_;
     std::optional<PastGradation> past_;
 };
 
@@ -262,9 +245,9 @@ private:
 std::unique_ptr<ControlSpaceBuilder> make_openvdb_levels(const SpaceOptions& options,
                                                          Interpolation interpolation) {
     if (interpolation == Interpolation::nearest) {
-        return std::make_unique<SharedBuilder<LevelSpace<CellMetrics>>>(options);
+        return std::make_unique<SharedBuilder<LevelGrids<LevelMetrics<1>>>>(options);
     }
-    return std::make_unique<SharedBuilder<LevelSpace<VertexMetrics>>>(options);
+    return std::make_unique<SharedBuilder<LevelGrids<LevelMetrics<8>>>>(options);
 }
 
 }  // namespace controlspace

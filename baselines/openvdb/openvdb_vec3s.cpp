@@ -1,12 +1,14 @@
-#include "baselines/openvdb/openvdb_vec3s.h"
-
+#include <fmt/format.h>
 #include <openvdb/Types.h>
-#include <openvdb/tree/Tree.h>
-#include <openvdb/tree/ValueAccessor.h>
 
+#include <limits>
+#include <utility>
+
+#include "baselines/lattice/grid_space.h"
+#include "baselines/openvdb/catalogue.h"
 #include "baselines/openvdb/dense_tree.h"
-#include "baselines/lattice/lattice_space.h"
 #include "controlspace/error.h"
+#include "controlspace/metric/stored_metric.h"
 
 namespace controlspace {
 
@@ -21,43 +23,64 @@ Vec3s diagonal(const Metric& m) {
 Vec3s off_diagonal(const Metric& m) {
     return {static_cast<float>(m.xy), static_cast<float>(m.xz), static_cast<float>(m.yz)};
 }
+Metric metric_of(const Vec3s& a, const Vec3s& b) {
+    return {a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
+}
 
-template <class Tree>
-struct Access {
-    openvdb::tree::ValueAccessor<Tree, false> diagonals, off_diagonals;
-
-    Metric operator()(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
-        const Vec3s& a = diagonals.getValue(voxel(i, j, k));
-        const Vec3s& b = off_diagonals.getValue(voxel(i, j, k));
-        return {a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
-    }
-};
+// A function of its own: GCC 12 takes what is rounded and widened at once for unrounded.
+[[gnu::noinline]] StoredMetric<float> rounded(const Metric& m) { return StoredMetric<float>(m); }
 
 class Vec3sPair {
 public:
-    Vec3sPair(const Lattice& lattice, const Metric& initial)
-        : diagonals_(diagonal(initial)), off_diagonals_(off_diagonal(initial)) {
-        fill_densely(diagonals_, lattice, diagonal(initial));
-        fill_densely(off_diagonals_, lattice, off_diagonal(initial));
+    static constexpr bool shares_field = false;
+
+    explicit Vec3sPair(const std::shared_ptr<const LatticeData>& data)
+        : diagonals_(diagonal(largest_metric(data->domain()))), off_diagonals_(Vec3s(0)) {
+        fill_densely(diagonals_, *data, diagonal);
+        fill_densely(off_diagonals_, *data, off_diagonal);
     }
 
     static double bytes_for(const Vector& nodes) { return 2 * dense_bytes<Vec3sTree>(nodes); }
 
-    auto reader() const { return Access<const Vec3sTree>{{diagonals_}, {off_diagonals_}}; }
-
-    auto writer() {
-        struct Writer {
-            Access<Vec3sTree> nodes;
-            Metric get(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
-                return nodes(i, j, k);
-            }
-            void set(std::uint32_t i, std::uint32_t j, std::uint32_t k, const Metric& m) {
-                nodes.diagonals.setValueOnly(voxel(i, j, k), diagonal(m));
-                nodes.off_diagonals.setValueOnly(voxel(i, j, k), off_diagonal(m));
-            }
-        };
-        return Writer{{{diagonals_}, {off_diagonals_}}};
+    static Metric stored(const Metric& m) {
+        const StoredMetric<float> kept = rounded(m);
+        constexpr float least = std::numeric_limits<float>::min();
+        constexpr float most = std::numeric_limits<float>::max();
+        for (const float entry : {kept.xx, kept.yy, kept.zz}) {
+            if (entry < least || entry > most) fail(m);
+        }
+        if (!is_positive_definite(kept)) fail(m);
+        return kept;
     }
+
+    class Reader {
+    public:
+        using Nodes = DenseReader<Vec3sTree>;
+        using Leaf = Vec3sTree::LeafNodeType;
+        using Leaves = std::pair<const Leaf*, const Leaf*>;
+
+        explicit Reader(const Vec3sPair& pair)
+            : diagonals_(pair.diagonals_), off_diagonals_(pair.off_diagonals_) {}
+
+        Metric operator()(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
+            return metric_of(diagonals_(i, j, k), off_diagonals_(i, j, k));
+        }
+        Leaves prepare(const Cell& cell) const {
+            return {diagonals_.prepare(cell), off_diagonals_.prepare(cell)};
+        }
+        template <std::size_t corners>
+        auto find(const Cell& cell, const Leaves& leaves) const {
+            return std::pair(diagonals_.find<corners>(cell, leaves.first),
+                             off_diagonals_.find<corners>(cell, leaves.second));
+        }
+        Metric metric(const auto& at, std::size_t corner) const {
+            return metric_of(*at.first[corner], *at.second[corner]);
+        }
+
+    private:
+        Nodes diagonals_, off_diagonals_;
+    };
+    Reader reader() const { return Reader(*this); }
 
     void add_to(Footprint& footprint) const {
         add_dense_bytes(diagonals_, footprint);
@@ -65,6 +88,12 @@ public:
     }
 
 private:
+    [[noreturn]] static void fail(const Metric& m) {
+        throw InputError(fmt::format(
+            "floats cannot hold the metric {} (xx yy zz xy xz yz): use a grid of doubles",
+            to_string(m)));
+    }
+
     Vec3sTree diagonals_;
     Vec3sTree off_diagonals_;
 };
@@ -72,10 +101,7 @@ private:
 }  // namespace
 
 std::unique_ptr<ControlSpaceBuilder> make_openvdb_vec3s(const SpaceOptions& options) {
-    if (options.takes_later_sources) {
-        throw InputError("a grid of floats takes no later sources: use one of doubles");
-    }
-    return std::make_unique<SharedBuilder<LatticeSpace<Vec3sPair, TrilinearStencil>>>(options);
+    return make_grid<Vec3sPair, Interpolation::trilinear>(options);
 }
 
 }  // namespace controlspace

@@ -1,67 +1,64 @@
 #include "baselines/uniform/uniform_grid.h"
 
-#include <vector>
-
 #include "baselines/lattice/grid_row.h"
-#include "baselines/lattice/lattice_space.h"
+#include "baselines/lattice/grid_space.h"
 
 namespace controlspace {
 
 namespace {
 
+/// Metrics in one array, x fastest: that of the builder.
 class FlatArray {
 public:
-    FlatArray(const Lattice& lattice, const Metric& initial)
-        : row_(lattice.nodes[0]),
-          layer_(row_ * lattice.nodes[1]),
-          metrics_(lattice.size(), initial) {}
+    static constexpr bool shares_field = true;
+
+    explicit FlatArray(std::shared_ptr<const LatticeData> data)
+        : row_(data->lattice().nodes[0]),
+          layer_(row_ * data->lattice().nodes[1]),
+          data_(std::move(data)),
+          first_(data_->field().data()) {}
 
     static double bytes_for(const Vector& nodes) { return nodes.prod() * sizeof(Metric); }
 
-    auto reader() const {
-        return [this](std::size_t i, std::size_t j, std::size_t k) -> const Metric& {
-            return metrics_[index(i, j, k)];
-        };
-    }
+    const FlatArray& reader() const { return *this; }
 
-    auto writer() {
-        struct Writer {
-            FlatArray& array;
-            const Metric& get(std::size_t i, std::size_t j, std::size_t k) const {
-                return array.metrics_[array.index(i, j, k)];
-            }
-            void set(std::size_t i, std::size_t j, std::size_t k, const Metric& m) {
-                array.metrics_[array.index(i, j, k)] = m;
-            }
-        };
-        return Writer{*this};
+    const Metric& operator()(std::size_t i, std::size_t j, std::size_t k) const {
+        return first_[k * layer_ + j * row_ + i];
+    }
+    const Metric* prepare(const Cell& cell) const {
+        return &(*this)(static_cast<std::size_t>(cell[0]), static_cast<std::size_t>(cell[1]),
+                        static_cast<std::size_t>(cell[2]));
+    }
+    template <std::size_t corners>
+    const Metric* find(const Cell&, const Metric* low) const {
+        for (std::size_t corner = 0; corner < corners; ++corner) prefetch(&metric(low, corner));
+        return low;
+    }
+    const Metric& metric(const Metric* low, std::size_t corner) const {
+        return low[(corner & 1) + (corner >> 1 & 1) * row_ + (corner >> 2) * layer_];
     }
 
     void add_to(Footprint& footprint) const {
-        footprint.bytes_payload += metrics_.capacity() * sizeof(Metric);
+        footprint.bytes_payload += data_->field().capacity() * sizeof(Metric);
     }
 
 private:
-    std::size_t index(std::size_t i, std::size_t j, std::size_t k) const {
-        return k * layer_ + j * row_ + i;
-    }
-
-    std::size_t row_;
-    std::size_t layer_;
-    std::vector<Metric> metrics_;
+    std::size_t row_, layer_;
+    std::shared_ptr<const LatticeData> data_;
+    const Metric* first_;
 };
+
+std::unique_ptr<ControlSpaceBuilder> make(const SpaceOptions& options,
+                                          Interpolation interpolation) {
+    return make_grid<FlatArray>(options, interpolation);
+}
 
 }  // namespace
 
-std::unique_ptr<ControlSpaceBuilder> make_uniform_grid(const SpaceOptions& options,
-                                                       Interpolation interpolation) {
-    return make_lattice_space<FlatArray>(options, interpolation);
-}
-
 std::vector<CatalogueEntry> uniform_rows() {
-    return {grid_row<make_uniform_grid, Interpolation::nearest>(
-                "uniform-nearest", "uniform grid, a metric per cell, constant"),
-            grid_row<make_uniform_grid, Interpolation::trilinear>(
+    return {grid_row<make, Interpolation::nearest>("uniform-nearest",
+                                                   "uniform grid, a metric per cell, constant"),
+            grid_row<make, Interpolation::trilinear>(
                 "uniform-trilinear", "uniform grid, a metric per vertex, trilinear")};
 }
 

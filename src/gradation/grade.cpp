@@ -5,7 +5,6 @@
 #include <tbb/parallel_reduce.h>
 
 #include <functional>
-#include <type_traits>
 
 #include "controlspace/error.h"
 #include "geometry/large_pages.h"
@@ -52,15 +51,12 @@ std::uint64_t grade_nodes(const Graph& graph, OrderedMetrics metrics,
                           const GradationOptions& options) {
     const Grading<Graph> grading{graph, metrics, options.law, options.ratio};
     if (options.schedule == GradationSchedule::passes) return grade_by_passes(grading);
-    // Grids are as fine as memory allows, the queue included: nothing is left for more threads.
-    if constexpr (std::is_same_v<Graph, NodeGraph>) {
-        const auto all = metrics.all();
-        const bool isotropic = std::all_of(all.begin(), all.end(), is_isotropic);
-        if (isotropic && options.law == GradationLaw::cone) {
-            return grade_sizes(graph, metrics, options.ratio);
-        }
-        if (!isotropic && threads_allowed() > 1) return grade_in_levels(grading);
+    const auto all = metrics.all();
+    const bool isotropic = std::all_of(all.begin(), all.end(), is_isotropic);
+    if (isotropic && options.law == GradationLaw::cone) {
+        return grade_sizes(graph, metrics, options.ratio);
     }
+    if (!isotropic && threads_allowed() > 1) return grade_in_levels(grading);
     return grade_by_queue(grading);
 }
 

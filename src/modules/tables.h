@@ -2,9 +2,7 @@
 
 #include <string_view>
 
-#include "baselines/openvdb/openvdb_grid.h"
-#include "baselines/openvdb/openvdb_levels.h"
-#include "baselines/openvdb/openvdb_vec3s.h"
+#include "baselines/openvdb/catalogue.h"
 #include "controlspace/gmsh/gmsh_mesher.h"
 #include "controlspace/io/read_surface_sources.h"
 #include "controlspace/io/read_vdb.h"

@@ -72,18 +72,8 @@ void exchange(Self& options, State& state) {
     state("options.max_bytes", options.max_bytes);
 }
 
-// A grid takes its memory when it is made: no more than a file of so many bytes can fill, at 256
-// equal bytes for one and at most 8 bytes of memory for one of its field; but for small ones.
-SpaceOptions capped(const CatalogueEntry& entry, SpaceOptions options, std::size_t file_bytes) {
-    if (!entry.has<VoxelSize>() || entry.has<VoxelLevels>()) return options;
-    constexpr std::size_t small = std::size_t{64} << 20;
-    options.max_bytes = std::min(options.max_bytes, std::max(small, 8 * 256 * file_bytes));
-    return options;
-}
-
-void fill(const CatalogueEntry& entry, const StateReader& state, std::size_t file_bytes,
-          SavedControlSpace& saved) {
-    auto builder = entry.make(capped(entry, saved.recipe.options, file_bytes));
+void fill(const CatalogueEntry& entry, const StateReader& state, SavedControlSpace& saved) {
+    auto builder = entry.make(saved.recipe.options);
     auto* const own = dynamic_cast<SavedBuilder*>(builder.get());
     if (own == nullptr) {
         throw InputError("structure " + entry.id + " cannot be loaded: choose another");
@@ -195,7 +185,7 @@ SavedControlSpace open_control_space(const std::filesystem::path& file,
     }
     state("written_by", saved.saved_by);
     saved.saved_by += fmt::format(", format {}", control_space_file_version);
-    fill(*entry, state, bytes.size(), saved);
+    fill(*entry, state, saved);
     return saved;
 }
 

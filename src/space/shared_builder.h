@@ -39,7 +39,7 @@ private:
 /// cell_at, control_nodes, save; insert(sources), grade, adapt, load; for a NodeBuilder assign,
 /// which then may leave out grade and adapt. With pack(precision) and
 /// load_compact(domain, precision, state) it has compact forms; finish() is called before it is
-/// built.
+/// built. With finished(shared data) it is built in another form than SharedSpace.
 ///
 /// What it builds shares the data, which are copied before the next change as long as they are
 /// shared.
@@ -84,9 +84,15 @@ public:
         if constexpr (requires(Data & data) { data.finish(); }) {
             if (!data_->is_finished()) edit().finish();
         }
-        auto space = std::make_unique<SharedSpace<Data>>(data_);
-        space->set_recipe(this->recipe());
-        return space;
+        if constexpr (requires { Data::finished(data_); }) {
+            auto space = Data::finished(data_);
+            dynamic_cast<Saved&>(*space).set_recipe(this->recipe());
+            return space;
+        } else {
+            auto space = std::make_unique<SharedSpace<Data>>(data_);
+            space->set_recipe(this->recipe());
+            return space;
+        }
     }
     Box domain() const override { return data_->domain(); }
 

@@ -1,7 +1,3 @@
-#include "baselines/direct/direct.h"
-
-#include <tbb/parallel_for.h>
-
 #include <catch2/catch.hpp>
 #include <limits>
 
@@ -61,7 +57,7 @@ TEST_CASE("direct answers the exact field, for the ratio it is graded with") {
     const SpaceOptions options = with_ratio(1.25);
     const auto sources = sources_for(options, 300, isotropic);
     const auto x = places(options, 300);
-    const auto space = editable(make_direct(options));
+    const auto space = make_structure("direct", options);
     CHECK(space->insert(sources).inserted == sources.size());
     CHECK(largest_difference(sample(*space, x), by_definition(options, sources, 1.25, x)) < 1e-12);
     space->grade(
@@ -77,10 +73,10 @@ TEST_CASE("sources that come later, between readings, count as all others do") {
     const SpaceOptions options = with_ratio(1.25);
     const auto sources = sources_for(options, 200, isotropic);
     const auto x = places(options, 100);
-    const auto at_once = editable(make_direct(options));
+    const auto at_once = make_structure("direct", options);
     at_once->insert(sources);
 
-    const auto in_turn = editable(make_direct(options));
+    const auto in_turn = make_structure("direct", options);
     const std::span<const PointSource> all = sources;
     in_turn->insert(all.first(150));
     const std::vector<Metric> before = sample(*in_turn, x);
@@ -92,49 +88,31 @@ TEST_CASE("sources that come later, between readings, count as all others do") {
     CHECK(sample(*in_turn, x) != before);
 }
 
-TEST_CASE("many readers at once build the search once, in tasks and in tasks of tasks") {
+TEST_CASE("the nodes of direct are its sources") {
     const SpaceOptions options = with_ratio(1.25);
-    const auto sources = sources_for(options, 20000, true);
-    const auto x = places(options, 64);
-    const auto space = editable(make_direct(options));
+    const auto sources = sources_for(options, 50, false);
+    const auto space = make_structure("direct", options);
     space->insert(sources);
-    const auto expected = sample(*space, x);
-    for (int repeat = 0; repeat < 3; ++repeat) {
-        space->insert(sources.front());  // changes nothing but that the search must be built anew
-        std::vector<Metric> out(x.size());
-        tbb::parallel_for(std::size_t{0}, x.size(),
-                          [&](std::size_t i) { out[i] = sample_at(*space, x[i]); });
-        CHECK(out == expected);
-    }
-}
-
-TEST_CASE("the nodes of direct are its sources, and can be changed") {
-    const SpaceOptions options = with_ratio(1.25);
-    auto sources = sources_for(options, 50, false);
-    const auto space = editable(make_direct(options));
-    space->insert(sources);
-    ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
+    const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
     REQUIRE(nodes.metrics.size() == sources.size());
     for (std::size_t i = 0; i < sources.size(); ++i) {
         CHECK(std::get<NodeGraph>(nodes.graph).positions[i] == sources[i].position);
         CHECK(nodes.metrics[i] == sources[i].metric);
-        sources[i].metric = nodes.metrics[i] = 2.0 * nodes.metrics[i];
     }
-    space->assign(nodes.metrics);
-    const auto x = places(options, 100);
-    CHECK(largest_difference(sample(*space, x), by_definition(options, sources, 1.25, x)) < 1e-12);
-    nodes.metrics.pop_back();
-    CHECK_THROWS_AS(space->assign(nodes.metrics), std::invalid_argument);
 }
 
 TEST_CASE("the footprint of direct is what it has allocated") {
     const bool isotropic = GENERATE(true, false);
     const SpaceOptions options = with_ratio(1.25);
     const auto sources = sources_for(options, 3000, isotropic);
-    editable(make_direct(options))->insert(sources);  // whatever the task scheduler keeps to itself
+    const auto build = [&] {
+        const auto builder = structure_with_id("direct").make(options);
+        builder->insert(sources);
+        return builder->build();
+    };
+    build();  // whatever the task scheduler keeps to itself
     const std::size_t before = live_bytes();
-    auto space = editable(make_direct(options));
-    space->insert(sources);
+    auto space = build();
     const std::size_t allocated = live_bytes() - before;
     const std::size_t counted = space->footprint().bytes_total();
     CHECK(counted <= allocated);
@@ -145,7 +123,7 @@ TEST_CASE("the footprint of direct is what it has allocated") {
 
 TEST_CASE("direct says how many of its sources can matter") {
     const SpaceOptions options = with_ratio(1.25);
-    const auto space = editable(make_direct(options));
+    const auto space = make_structure("direct", options);
     const PointSource governs{options.domain.centre(), Metric::isotropic(0.1)};
     space->insert(governs);
     space->insert(governs);
@@ -158,7 +136,7 @@ TEST_CASE("direct says how many of its sources can matter") {
 TEST_CASE("direct refuses a ratio that is none") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const double ratio : {0.5, nan, std::numeric_limits<double>::infinity()}) {
-        CHECK_THROWS_WITH(make_direct(with_ratio(ratio)), Contains("g_r"));
+        CHECK_THROWS_WITH(make_structure("direct", with_ratio(ratio)), Contains("g_r"));
     }
 }
 

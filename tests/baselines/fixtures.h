@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <random>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "controlspace/baselines/catalogue.h"
@@ -30,6 +32,12 @@ inline std::span<const CatalogueEntry> grids() {
 inline const CatalogueEntry& structure_with_id(const std::string& id) {
     return *std::find_if(structures().begin(), structures().end(),
                          [&](const CatalogueEntry& entry) { return entry.id == id; });
+}
+
+/// A new one that can be changed and read in turn.
+inline std::unique_ptr<EditableSpace> make_structure(const std::string& id,
+                                                     const SpaceOptions& options) {
+    return editable(structure_with_id(id).make(options));
 }
 
 /// 40 x 26 x 18 cells, none of them a cube or a whole number of OpenVDB's leaves.

@@ -17,9 +17,14 @@ TEST_CASE("a grid's footprint is what it has allocated") {
     const CatalogueEntry& entry = any_grid();
     INFO(entry.id);
     const SpaceOptions options = small_grid();
+    const std::vector<PointSource> sources = random_sources(100, options);
     const std::size_t before = live_bytes();
-    const auto space = editable(entry.make(options));
-    space->insert(random_sources(100, options));
+    std::unique_ptr<ControlSpace> space;
+    {
+        const auto builder = entry.make(options);
+        builder->insert(sources);
+        space = builder->build();
+    }
     const std::size_t allocated = live_bytes() - before;
     const Footprint footprint = space->footprint();
     CHECK(footprint.bytes_payload >= footprint.control_nodes * sizeof(Metric));

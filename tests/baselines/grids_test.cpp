@@ -6,7 +6,6 @@
 #include <thread>
 
 #include "baselines/fixtures.h"
-#include "baselines/uniform/uniform_grid.h"
 #include "controlspace/error.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/metric/intersection.h"
@@ -117,7 +116,7 @@ TEST_CASE("metrics that are assigned are the control nodes' metrics and their an
     for (NodeIndex n = 0; n < grid.lattice.size(); ++n) {
         REQUIRE(difference(answers[n], assigned[n]) <= tolerance);
     }
-    CHECK_THROWS_AS(grid.space->assign(std::span(assigned).first(3)), std::invalid_argument);
+    CHECK_THROWS_AS(grid.space->assign(std::span(assigned).first(3)), InputError);
 }
 
 TEST_CASE("a constant is reproduced") {
@@ -188,6 +187,35 @@ TEST_CASE("points outside the domain are answered as the nearest point of it") {
     }
     const double nan = std::numeric_limits<double>::quiet_NaN();
     CHECK(sample_at(*grid.space, {nan, nan, nan}) == sample_at(*grid.space, box.low));
+}
+
+TEST_CASE("the cell of a place holds it, on domains whose numbers are not round") {
+    const auto entry = GENERATE(from_range(structures().begin(), structures().end()));
+    if (!entry.has<VoxelSize>()) return;
+    INFO(entry.id);
+    SpaceOptions options;
+    options.domain = {Point(0.1, -0.7, 1e3 / 3), Point(0.1 + 0.3, std::sqrt(2), 1e3 / 3 + 0.7)};
+    options.voxel = 0.7 / 13;
+    const auto space = editable(entry.make(options));
+    space->insert({options.domain.centre(), Metric::isotropic(0.3)});
+    const Box& box = options.domain;
+    std::vector<Point> places = random_points(200, box);
+    const Vector cells(6, 40, 13);
+    for (int i = 0; i <= 40; ++i) {
+        // By rounding on either side of the face between two cells.
+        const Point face = box.low + i * box.edges().cwiseQuotient(cells);
+        for (const double side : {-1.0, 0.0, 1.0}) {
+            Point x = face;
+            for (Axis a = 0; a < 3; ++a) x[a] = std::nextafter(x[a], x[a] + side);
+            places.push_back(x.cwiseMax(box.low).cwiseMin(box.high));
+        }
+    }
+    for (const Point& x : places) {
+        const Box cell = space->cell_at(x).value();
+        CAPTURE(x.transpose(), cell.low.transpose(), cell.high.transpose());
+        REQUIRE(cell.contains(x));
+        REQUIRE(cell.edges().minCoeff() > 0);
+    }
 }
 
 TEST_CASE("an isotropic source is met at its place, and changes only the nodes around it") {
@@ -311,7 +339,7 @@ TEST_CASE("on the paper's sphere sizes are 63 % too large over faces, 11 % with 
                                .finest_length = finest_length(sources)};
     const auto exact = exact_reference(sources, options.ratio, largest_metric(options.domain));
     const auto excess = [&](Neighbourhood neighbourhood) {
-        const auto grid = editable(make_uniform_grid(options, Interpolation::nearest));
+        const auto grid = make_structure("uniform-nearest", options);
         grid->insert(sources);
         grid->grade({.neighbourhood = neighbourhood});
         const ControlNodes nodes = grid->control_nodes(neighbourhood);

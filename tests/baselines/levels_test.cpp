@@ -5,9 +5,8 @@
 #include <map>
 
 #include "baselines/fixtures.h"
-#include "baselines/openvdb/openvdb_levels.h"
 #include "baselines/openvdb/openvdb_value.h"
-#include "baselines/openvdb/vdb_prune.h"
+#include "baselines/openvdb/prune.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
@@ -19,7 +18,7 @@
 namespace controlspace {
 namespace {
 
-constexpr auto any = {Interpolation::nearest, Interpolation::trilinear};
+constexpr auto both = {"openvdb-levels-nearest", "openvdb-levels-trilinear"};
 
 // Small enough to be graded in a moment; finest voxels are 1 / 64 of the edge of a cube.
 SpaceOptions cube() {
@@ -80,7 +79,7 @@ TEST_CASE("before gradation, a grid in levels answers as the octree does, to the
     const SpaceOptions options = cube();
     const std::vector<PointSource> sources = random_sources(400, options);
     const auto octree = editable(tree_named("K_oL").make(options));
-    const auto levels = editable(make_openvdb_levels(options, Interpolation::nearest));
+    const auto levels = make_structure("openvdb-levels-nearest", options);
     CHECK(octree->insert(sources).inserted == levels->insert(sources).inserted);
     const std::vector<Point> x = random_points(20000, options.domain);
     CHECK(sample(*octree, x) == sample(*levels, x));
@@ -98,7 +97,7 @@ TEST_CASE("with all voxels as small as the finest, a grid in levels is the unifo
     const std::vector<PointSource> sources{{Point(0.3, 0.2, 0.1), Metric::isotropic(0.1)},
                                            {Point(-0.7, 0.8, -0.1), Metric::isotropic(0.12)}};
     const auto uniform = editable(structure_with_id("uniform-nearest").make(options));
-    const auto levels = editable(make_openvdb_levels(options, Interpolation::nearest));
+    const auto levels = make_structure("openvdb-levels-nearest", options);
     for (EditableSpace* space : {uniform.get(), levels.get()}) {
         space->insert(sources);
         space->grade({});
@@ -113,9 +112,9 @@ TEST_CASE("with all voxels as small as the finest, a grid in levels is the unifo
 }
 
 TEST_CASE("voxels of all levels fill the domain once, whatever its shape") {
-    const auto interpolation = GENERATE(values(any));
+    const std::string id = GENERATE(values(both));
     const SpaceOptions options = small_grid();
-    const auto space = editable(make_openvdb_levels(options, interpolation));
+    const auto space = make_structure(id, options);
     space->insert(random_sources(20, options));
     space->grade({});
     // An element's share of random places is its volume: so the mean of 1 / volume is their number.
@@ -133,9 +132,9 @@ TEST_CASE("voxels of all levels fill the domain once, whatever its shape") {
 
 TEST_CASE(
     "nodes are where they should be, each place once, and voxels blend those at their corners") {
-    const auto interpolation = GENERATE(values(any));
+    const std::string id = GENERATE(values(both));
     const SpaceOptions options = cube();
-    const auto space = editable(make_openvdb_levels(options, interpolation));
+    const auto space = make_structure(id, options);
     const bool graded = GENERATE(false, true);
     space->insert(graded ? isotropic_sources(options) : random_sources(100, options));
     if (graded) space->grade({});
@@ -143,7 +142,7 @@ TEST_CASE(
     CHECK(nodes.unique());
     for (const Point& x : random_points(3000, options.domain)) {
         const Box element = space->cell_at(x).value();
-        if (interpolation == Interpolation::nearest) {
+        if (id == "openvdb-levels-nearest") {
             REQUIRE(sample_at(*space, x) == nodes.at(element.centre()));
             continue;
         }
@@ -160,10 +159,10 @@ TEST_CASE(
 }
 
 TEST_CASE("after gradation no voxel is longer than its factor times the size it holds") {
-    const auto interpolation = GENERATE(values(any));
+    const std::string id = GENERATE(values(both));
     SpaceOptions options = cube();
     options.voxel_factor = GENERATE(2.0, 1.0, 0.5);
-    const auto space = editable(make_openvdb_levels(options, interpolation));
+    const auto space = make_structure(id, options);
     space->insert(isotropic_sources(options));
     space->grade({});
     const double finest = std::min(options.voxel_factor, 1.0) * options.finest_length;
@@ -187,14 +186,14 @@ TEST_CASE("after gradation no voxel is longer than its factor times the size it 
 }
 
 TEST_CASE("threads do not show in a grid in levels") {
-    const auto interpolation = GENERATE(values(any));
+    const std::string id = GENERATE(values(both));
     const auto schedule = GENERATE(GradationSchedule::queue, GradationSchedule::passes);
     const auto neighbourhood = GENERATE(Neighbourhood::faces, Neighbourhood::all);
     SpaceOptions options = cube();
     options.finest_length = 1.0 / 16;
     options.prune_delta = 0.3;
     const auto make = [&] {
-        auto space = editable(make_openvdb_levels(options, interpolation));
+        auto space = make_structure(id, options);
         space->insert(isotropic_sources(options));
         space->grade({.schedule = schedule, .neighbourhood = neighbourhood});
         return space;
@@ -294,11 +293,11 @@ TEST_CASE("leaves that are alike become tiles of the metric that all of them all
 }
 
 TEST_CASE("the footprint of a grid in levels is what it has allocated") {
-    const auto interpolation = GENERATE(values(any));
+    const std::string id = GENERATE(values(both));
     SpaceOptions options = cube();
     options.prune_delta = GENERATE(0.0, 0.3);
     const std::size_t before = live_bytes();
-    const auto space = editable(make_openvdb_levels(options, interpolation));
+    const auto space = make_structure(id, options);
     space->insert(isotropic_sources(options));
     space->grade({});
     const std::size_t allocated = live_bytes() - before;
@@ -311,7 +310,7 @@ TEST_CASE("the footprint of a grid in levels is what it has allocated") {
 }
 
 TEST_CASE("a grid in levels stays below the memory cap, or says that it cannot") {
-    const auto interpolation = GENERATE(values(any));
+    const std::string id = GENERATE(values(both));
     SpaceOptions options = cube();
     options.finest_length = 1.0 / 128;
     options.max_bytes = GENERATE(as<std::size_t>(), 2'000'000, 5'000'000, 10'000'000, 100'000'000);
@@ -320,7 +319,7 @@ TEST_CASE("a grid in levels stays below the memory cap, or says that it cannot")
     reset_peak_bytes();
     bool refused = false;
     try {
-        const auto space = editable(make_openvdb_levels(options, interpolation));
+        const auto space = make_structure(id, options);
         space->insert(isotropic_sources(options));
         space->grade({.neighbourhood = neighbourhood});
     } catch (const InputError& error) {
@@ -336,10 +335,10 @@ TEST_CASE("a grid in levels stays below the memory cap, or says that it cannot")
 TEST_CASE("levels that no number can hold are refused") {
     SpaceOptions options = cube();
     options.voxel = 1e-12;
-    CHECK_THROWS_WITH(make_openvdb_levels(options, Interpolation::nearest),
+    CHECK_THROWS_WITH(make_structure("openvdb-levels-nearest", options),
                       Catch::Contains("raise voxel"));
     options.voxel = 10;  // larger than the domain: one voxel
-    CHECK(make_openvdb_levels(options, Interpolation::nearest)->build()->footprint().elements == 1);
+    CHECK(make_structure("openvdb-levels-nearest", options)->footprint().elements == 1);
 }
 
 }  // namespace controlspace

@@ -3,10 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "baselines/fixtures.h"
-#include "baselines/openvdb/openvdb_grid.h"
 #include "baselines/openvdb/openvdb_value.h"
-#include "baselines/openvdb/openvdb_vec3s.h"
-#include "baselines/uniform/uniform_grid.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
 #include "counting_allocator.h"
@@ -15,10 +12,10 @@
 namespace controlspace {
 
 TEST_CASE("OpenVDB and the uniform grid agree to the bit") {
-    const auto interpolation = GENERATE(Interpolation::nearest, Interpolation::trilinear);
+    const std::string suffix = GENERATE("-nearest", "-trilinear");
     const SpaceOptions options = small_grid();
-    const auto uniform = editable(make_uniform_grid(options, interpolation));
-    const auto vdb = editable(make_openvdb_grid(options, interpolation));
+    const auto uniform = make_structure("uniform" + suffix, options);
+    const auto vdb = make_structure("openvdb-uniform" + suffix, options);
     const std::vector<PointSource> sources = random_sources(3000, options);
     CHECK(uniform->insert(sources).inserted == vdb->insert(sources).inserted);
 
@@ -35,7 +32,7 @@ TEST_CASE("OpenVDB and the uniform grid agree to the bit") {
 
 TEST_CASE("the trilinear grids answer as OpenVDB's own BoxSampler does") {
     const SpaceOptions options = small_grid();
-    const auto grid = editable(make_openvdb_grid(options, Interpolation::trilinear));
+    const auto grid = make_structure("openvdb-uniform-trilinear", options);
     grid->insert(random_sources(3000, options));
     const ControlNodes nodes = grid->control_nodes(Neighbourhood::faces);
     const auto& lattice = std::get<Lattice>(nodes.graph);
@@ -58,8 +55,8 @@ TEST_CASE("the trilinear grids answer as OpenVDB's own BoxSampler does") {
 
 TEST_CASE("two Vec3S trees answer as the grid of doubles does, up to the rounding of floats") {
     const SpaceOptions options = small_grid();
-    const auto doubles = editable(make_openvdb_grid(options, Interpolation::trilinear));
-    const auto floats = editable(make_openvdb_vec3s(options));
+    const auto doubles = make_structure("openvdb-uniform-trilinear", options);
+    const auto floats = make_structure("openvdb-vec3s-trilinear", options);
     const std::vector<PointSource> sources = random_sources(300, options);
     CHECK(doubles->insert(sources).inserted == floats->insert(sources).inserted);
     doubles->grade({});
@@ -76,12 +73,27 @@ TEST_CASE("two Vec3S trees answer as the grid of doubles does, up to the roundin
 
     SpaceOptions later = options;
     later.takes_later_sources = true;
-    CHECK_THROWS_AS(make_openvdb_vec3s(later), InputError);
+    CHECK_THROWS_AS(make_structure("openvdb-vec3s-trilinear", later), InputError);
+}
+
+TEST_CASE("two Vec3S trees refuse metrics that floats cannot hold") {
+    const auto space = make_structure("openvdb-vec3s-trilinear", small_grid());
+    const Point x = space->domain().centre();
+    for (const double length : {1e-46, 1e-39, 1e39}) {
+        const Metric thin = metric_from_frame({length, 1, 1}, Eigen::Matrix3d::Identity());
+        CHECK_THROWS_WITH(space->insert({x, Metric::isotropic(1e-45)}), Catch::Contains("floats"));
+        CHECK_THROWS_WITH(space->insert({x, thin}), Catch::Contains("floats"));
+        const std::size_t nodes = space->control_nodes(Neighbourhood::faces).metrics.size();
+        CHECK_THROWS_WITH(space->assign(std::vector(nodes, Metric::isotropic(length))),
+                          Catch::Contains("floats"));
+    }
+    CHECK(space->insert({x, Metric::isotropic(1e-30)}) == Insertion::inserted);
+    CHECK(sample_at(*space, x).xx == Approx(1e-30));
 }
 
 TEST_CASE("the footprint of two Vec3S trees is what they have allocated") {
     const std::size_t before = live_bytes();
-    const auto space = editable(make_openvdb_vec3s(small_grid()));
+    const auto space = structure_with_id("openvdb-vec3s-trilinear").make(small_grid())->build();
     const std::size_t allocated = live_bytes() - before;
     CHECK(space->footprint().bytes_total() <= allocated);
     CHECK(space->footprint().bytes_total() + 2048 >= allocated);

@@ -183,6 +183,21 @@ TEST_CASE("sizes in rounds end as one queue of metrics does, to the bit") {
     for (std::size_t i = 0; i < sizes.size(); ++i) CHECK(Metric::isotropic(sizes[i]) == queued[i]);
 }
 
+TEST_CASE("a lattice is graded as by one queue, to the bit, isotropic or not") {
+    Lattice lattice{Point::Zero(), Vector(0.1, 0.23, 0.07), {9, 12, 10}};
+    lattice.neighbourhood = GENERATE(Neighbourhood::faces, Neighbourhood::all);
+    const bool isotropic = GENERATE(true, false);
+    Draw draw(3);
+    std::vector<Metric> queued = random_isotropic(lattice.size(), 7);
+    for (Metric& m : queued) {
+        if (!isotropic) m = draw.metric(m.xx, 20);
+    }
+    std::vector<Metric> graded = queued;
+    grade_by_queue(Grading<Lattice>{lattice, queued, GradationLaw::cone, 1.25});
+    grade(lattice, graded, {});
+    CHECK(graded == queued);
+}
+
 TEST_CASE("passes stop at ten, and say what they left") {
     // A chain whose far end is small, visited from the large end: a pass in node order carries the
     // limit back by one node only, so ten passes cannot reach the other end.

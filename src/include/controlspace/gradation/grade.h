@@ -32,8 +32,8 @@ struct GradationOptions {
 };
 
 struct GradationReport {
-    /// Metrics made smaller, each counted every time; but once for isotropic metrics of a NodeGraph
-    /// under the cone law and the queue schedule.
+    /// Metrics made smaller, each counted every time; but once for isotropic metrics under the cone
+    /// law and the queue schedule.
     std::uint64_t operations = 0;
     /// Largest gradation ratio over all neighbours, under the law that was applied. After an
     /// incremental gradation (gradation/regrade.h): an upper bound, over the nodes visited and all

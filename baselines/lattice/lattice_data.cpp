@@ -1,0 +1,182 @@
+#include "baselines/lattice/lattice_data.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "baselines/lattice/stencil.h"
+#include "controlspace/error.h"
+#include "controlspace/metric/intersection.h"
+#include "geometry/large_pages.h"
+#include "trees/regradation/past_state.h"
+
+namespace controlspace {
+
+namespace {
+
+/// The nodes as Regradation wants them.
+struct RegradedNodes {
+    using Node = NodeIndex;
+
+    Lattice lattice;
+    std::span<const Metric> asked_metrics;
+    std::span<Metric> metrics;
+
+    double asked(NodeIndex node) const { return asked_metrics[node].xx; }
+    double field(NodeIndex node) const { return metrics[node].xx; }
+    void set(NodeIndex node, double h) { metrics[node] = Metric::isotropic(h); }
+    template <class Visit>
+    void for_each_link(NodeIndex node, Visit&& visit) const {
+        lattice.for_each_link(node, visit);
+    }
+};
+
+template <class Later, class State>
+void exchange(Later& later, State& state) {
+    exchange_past(later.past, state);
+    state("grid.asked", later.asked);
+    state("grid.lowered", later.lowered);
+    state("grid.asks_isotropic", later.asks_isotropic);
+}
+
+}  // namespace
+
+LatticeData::LatticeData(const SpaceOptions& options, const GridKind& kind)
+    : options_(options),
+      kind_(kind),
+      voxels_(choose_voxels(options, kind.interpolation, [&](const Vector& nodes) {
+          return (options.takes_later_sources ? 2 : 1) * kind.bytes_for(nodes);
+      })) {
+    if (!options.takes_later_sources) return;
+    if (options.prune_delta > 0) {
+        throw InputError("a grid that takes later sources cannot be pruned: set prune_delta 0");
+    }
+    if (kind.stored != nullptr) {
+        throw InputError("a grid of floats takes no later sources: use one of doubles");
+    }
+}
+
+InsertionReport LatticeData::insert(std::span<const PointSource> sources) {
+    return kind_.interpolation == Interpolation::nearest
+               ? insert_between<Interpolation::nearest>(sources)
+               : insert_between<Interpolation::trilinear>(sources);
+}
+
+template <Interpolation interpolation>
+InsertionReport LatticeData::insert_between(std::span<const PointSource> sources) {
+    const Stencil<interpolation> stencil(domain(), cells());
+    const Lattice lattice = stencil.lattice();
+    field();
+    std::vector<Metric>& asked = later_.asked.empty() ? field_ : later_.asked;
+    const auto lower = [this](Metric& metric, const Metric& by) {
+        metric = intersection(metric, by);
+        if (kind_.stored != nullptr) metric = kind_.stored(metric);
+    };
+    InsertionReport report;
+    for (const PointSource& source : sources) {
+        require_valid(source, report.sources, domain());
+        ++report.sources;
+        const Metric held = stencil.value(
+            source.position,
+            [&](auto i, auto j, auto k) -> const Metric& { return asked[lattice.index(i, j, k)]; });
+        if (!calls_for_change(source.metric, held, options_.tolerance)) continue;
+        ++report.inserted;
+        stencil.for_each_node(source.position, [&](auto i, auto j, auto k) {
+            const NodeIndex node = lattice.index(i, j, k);
+            lower(field_[node], source.metric);
+            if (later_.asked.empty()) return;
+            lower(later_.asked[node], source.metric);
+            later_.lowered.push_back(node);
+        });
+        later_.asks_isotropic = later_.asks_isotropic && is_isotropic(source.metric);
+    }
+    return report;
+}
+
+GradationReport LatticeData::grade(const GradationOptions& options) {
+    require_valid(options);
+    field();
+    GradationReport report;
+    if (!later_.asked.empty() && may_regrade(later_.past, options) && later_.asks_isotropic &&
+        !are_many(later_.lowered.size(), field_.size())) {
+        report = regrade();
+    } else {
+        if (!later_.asked.empty()) {
+            field_ = later_.asked;
+        } else if (options_.takes_later_sources) {
+            later_.asked = field_;
+        }
+        report = controlspace::grade(lattice(neighbourhood_of(options)), field_, options);
+        round(field_);
+    }
+    later_.lowered.clear();
+    later_.past = {options, report.largest_ratio_left};
+    return report;
+}
+
+GradationReport LatticeData::regrade() {
+    RegradedNodes nodes{lattice(neighbourhood_of(later_.past->options)), later_.asked, field_};
+    Regradation regradation(nodes, later_.past->options.ratio);
+    std::sort(later_.lowered.begin(), later_.lowered.end());
+    later_.lowered.erase(std::unique(later_.lowered.begin(), later_.lowered.end()),
+                         later_.lowered.end());
+    for (const NodeIndex node : later_.lowered) regradation.touch(node);
+    return regradation.run(later_.past->largest_ratio_left);
+}
+
+ControlNodes LatticeData::control_nodes(Neighbourhood neighbourhood) const {
+    return {lattice(neighbourhood), field()};
+}
+
+void LatticeData::assign(std::span<const Metric> metrics) {
+    require_one_each(metrics.size(), lattice().size());
+    field_.assign(metrics.begin(), metrics.end());
+    round(field_);
+    later_ = {};
+    later_.asks_isotropic = std::all_of(metrics.begin(), metrics.end(), is_isotropic);
+}
+
+std::unique_ptr<ControlSpace> LatticeData::finished(std::shared_ptr<const LatticeData> data) {
+    data->field();
+    const auto finish = data->kind_.finish;
+    return finish(std::move(data));
+}
+
+void save_lattice(const std::vector<Metric>& field, const LaterSources& later, StateWriter& state) {
+    state("grid.field", field);
+    exchange(later, state);
+}
+
+void LatticeData::load(const StateReader& state) {
+    const std::size_t nodes = lattice().size();
+    state("grid.field", field_);
+    exchange(later_, state);
+    constexpr auto misfit = "has another number of nodes than this grid";
+    state.require(field_.size() == nodes, "grid.field", misfit);
+    state.require(later_.asked.empty() || later_.asked.size() == nodes, "grid.asked", misfit);
+    require_metrics(state, "grid.field", field_);
+    require_metrics(state, "grid.asked", later_.asked);
+    require_below(state, "grid.lowered", later_.lowered, nodes);
+}
+
+Lattice LatticeData::lattice(Neighbourhood neighbourhood) const {
+    Lattice lattice = kind_.interpolation == Interpolation::nearest
+                          ? NearestStencil(domain(), cells()).lattice()
+                          : TrilinearStencil(domain(), cells()).lattice();
+    lattice.neighbourhood = neighbourhood;
+    return lattice;
+}
+
+void LatticeData::round(std::vector<Metric>& metrics) const {
+    if (kind_.stored == nullptr) return;
+    for (Metric& metric : metrics) metric = kind_.stored(metric);
+}
+
+const std::vector<Metric>& LatticeData::field() const {
+    if (field_.empty()) {
+        field_ = large_array<Metric>(lattice().size(), largest_metric(domain()));
+        round(field_);
+    }
+    return field_;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "baselines/lattice/voxels.h"
+#include "controlspace/gradation/node_graph.h"
+#include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/space_options.h"
+#include "gradation/regrade.h"
+#include "space/state.h"
+
+namespace controlspace {
+
+class LatticeData;
+
+/// What has to be known where sources may come after gradation.
+struct LaterSources {
+    std::vector<Metric> asked;       ///< by the sources alone; empty until it is kept apart
+    std::vector<NodeIndex> lowered;  ///< since the last gradation, with repetitions
+    std::optional<PastGradation> past;
+    bool asks_isotropic = true;
+};
+
+/// A grid of some system, as its builder needs it.
+struct GridKind {
+    Interpolation interpolation;
+    /// What the finished grid of so many nodes along x, y and z will allocate.
+    double (*bytes_for)(const Vector& nodes);
+    std::unique_ptr<ControlSpace> (*finish)(std::shared_ptr<const LatticeData>);
+    /// What the grid makes of a metric, if it does not keep all bits. Throws InputError for one
+    /// that it cannot keep.
+    Metric (*stored)(const Metric&) = nullptr;
+};
+
+/// Writes what LatticeData::load reads.
+void save_lattice(const std::vector<Metric>& field, const LaterSources& later, StateWriter& state);
+
+/// What SharedBuilder makes grids with a regular lattice of nodes from, whatever their system: a
+/// flat array of metrics is filled and graded; the finished grid is made of it, in parallel, by the
+/// means of its own system.
+///
+/// Voxels are those of choose_voxels. Throws InputError as that does, and where later sources are
+/// to come to a grid that joins nodes or rounds metrics: it does not keep what they would need.
+class LatticeData {
+public:
+    LatticeData(const SpaceOptions& options, const GridKind& kind);
+
+    InsertionReport insert(std::span<const PointSource> sources);
+    GradationReport grade(const GradationOptions& options);
+    ControlNodes control_nodes(Neighbourhood neighbourhood) const;
+    void assign(std::span<const Metric> metrics);
+    static std::unique_ptr<ControlSpace> finished(std::shared_ptr<const LatticeData> data);
+
+    void save(StateWriter& state) const { save_lattice(field(), later_, state); }
+    void load(const StateReader& state);
+
+    const Box& domain() const { return options_.domain; }
+    const SpaceOptions& options() const { return options_; }
+    const Vector& cells() const { return voxels_.cells; }
+    Lattice lattice(Neighbourhood neighbourhood = Neighbourhood::faces) const;
+    /// What the memory cap has cost, see Footprint::remark.
+    const std::string& remark() const { return voxels_.remark; }
+    /// Metrics of all nodes, x fastest.
+    const std::vector<Metric>& field() const;
+    const LaterSources& later() const { return later_; }
+
+private:
+    template <Interpolation interpolation>
+    InsertionReport insert_between(std::span<const PointSource> sources);
+    GradationReport regrade();
+    void round(std::vector<Metric>& metrics) const;
+
+    SpaceOptions options_;
+    GridKind kind_;
+    Voxels voxels_;
+    mutable std::vector<Metric> field_;  // empty until it is needed, so that files can be checked
+
+    LaterSources later_;
+};
+
+}  // namespace controlspace
