@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "measure/access_time.h"
+#include "controlspace/measure/access_time.h"
 #include "works.h"
 
 using namespace controlspace;

@@ -19,7 +19,7 @@
 #include "controlspace/error.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/sources/sampled_surfaces.h"
-#include "measure/access_time.h"
+#include "controlspace/measure/access_time.h"
 
 using namespace controlspace;
 

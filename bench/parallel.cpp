@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "controlspace/space/sample_parallel.h"
-#include "measure/access_time.h"
+#include "controlspace/measure/access_time.h"
 #include "works.h"
 
 using namespace controlspace;

@@ -6,7 +6,7 @@
 
 #include "controlspace/measure/accuracy.h"
 #include "geometry/random_fractions.h"
-#include "measure/access_time.h"
+#include "controlspace/measure/access_time.h"
 
 namespace controlspace {
 

@@ -13,9 +13,8 @@
 #include "cli/standard_output.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
+#include "study/embedded.h"
 #include "study/forecast.h"
-#include "study/study_file.h"
-#include "study/tables.h"
 
 namespace controlspace {
 namespace {
@@ -53,9 +52,9 @@ Study study_of(const Compare& job) {
     apply(given, study);
     if (job.as_published) {
         for (Run& run : study.runs) {
-            run.law = {GradationLaw::mean_length};
-            run.schedule = {GradationSchedule::passes};
-            run.reference = {ReferenceKind::published_sphere};
+            run["law"] = {"mean-length"};
+            run["schedule"] = {"passes"};
+            run["reference"] = {"published-sphere"};
         }
     }
     return study;
@@ -63,14 +62,14 @@ Study study_of(const Compare& job) {
 
 int compare(const Compare& job, const std::string& command_line) {
     if (job.dry_run) {
-        const PreparedStudy prepared(study_of(job), structures(), file_readers());
+        const PreparedStudy prepared(study_of(job), {structures()}, file_readers());
         print(forecast_text(prepared, forecast(prepared)));
         return 0;
     }
     Interruption interruption;
     const FinishedStudy finished =
         run_study(study_of(job), {command_line, job.quiet, job.resume}, interruption);
-    print(render_tables(finished.rows, TableStyle::terminal));
+    print(tables_text(finished.rows, {structures()}, /*markdown=*/false));
     print(fmt::format("\nResults: {}\n", finished.folder.string()));
     const bool all_measured = std::all_of(finished.rows.begin(), finished.rows.end(),
                                           [](const Row& row) { return row.error.empty(); });
@@ -87,7 +86,7 @@ Action add_compare(Options& options) {
          "or one run if sources, field, law, schedule or reference are given"},
         job->study_file);
     const std::string group = "Settings of cases (lists with commas; all combinations are run)";
-    options.add_settings(run_settings(), Run{}, group, job->given);
+    options.add_case_parameters(Run{}, group, job->given);
     options.add({"--as-published", " ",
                  "As for the paper's tables: --law mean-length --schedule passes --reference "
                  "published-sphere",
@@ -96,7 +95,7 @@ Action add_compare(Options& options) {
     for (const char* name : {"--law", "--schedule", "--reference"}) {
         options.exclude("--as-published", name);
     }
-    options.add_settings(study_settings(), Study{}, "Settings of the study", job->given);
+    options.add_parameters(study_parameters(), Study{}, "Settings of the study", job->given);
     options.add({"--dry-run", "",
                  "Only list the cases, with estimates of time and memory from small trials"},
                 job->dry_run);

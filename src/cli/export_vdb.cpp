@@ -9,10 +9,9 @@
 #include "controlspace/error.h"
 #include "controlspace/io/metric_grids.h"
 #include "controlspace/io/write_vdb.h"
+#include "controlspace/study/provenance.h"
 #include "io/text/text_file.h"
 #include "mesh/stopwatch.h"
-#include "study/names.h"
-#include "study/provenance.h"
 
 namespace controlspace {
 namespace {

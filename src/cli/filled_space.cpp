@@ -10,7 +10,6 @@
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
 #include "controlspace/space/control_space_file.h"
-#include "study/run.h"
 
 namespace controlspace {
 
@@ -38,9 +37,9 @@ FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings
     filled.threads = limit_threads(study.threads);
     const Case c = only_case(study);
     Workload workload = make_workload(study, c.sources, file_readers());
-    Measures unused;
-    filled.builder = make_and_fill(study, c, entry_of(c, structures()), workload, unused, observer);
-    filled.space = finish(*filled.builder, c);
+    Filled made = make_and_fill(study, c, {structures()}, workload, observer);
+    filled.space = made.build(c);
+    filled.builder = std::move(made.builder);
     filled.structure = c.structure;
     filled.origin = Origin{std::move(study), c, std::move(workload)};
     return filled;

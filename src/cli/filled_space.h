@@ -10,10 +10,7 @@
 #include "cli/given_settings.h"
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/control_space_builder.h"
-#include "study/case.h"
-#include "study/run.h"
-#include "study/study.h"
-#include "study/workload.h"
+#include "controlspace/study/run.h"
 
 namespace controlspace {
 

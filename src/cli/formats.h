@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "study/file_readers.h"
+#include "controlspace/study/workload.h"
 
 namespace controlspace {
 

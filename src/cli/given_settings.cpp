@@ -5,8 +5,8 @@
 
 namespace controlspace {
 
-SettingValues values_of(ValueType type, const std::vector<std::string>& words) {
-    SettingValues values;
+Values values_of(ValueType type, const std::vector<std::string>& words) {
+    Values values;
     for (const std::string& word : words) {
         double x = 0;
         const char* end = word.data() + word.size();
@@ -28,8 +28,15 @@ std::string option_name(std::string_view key) {
 }
 
 void apply(const GivenSettings& given, Study& study) {
-    apply(given, study_settings(), study);
-    for (Run& run : study.runs) apply(given, run_settings(), run);
+    apply(given, study_parameters(), study);
+    for (Run& run : study.runs) {
+        if_given(given, structures_key, ValueType::text,
+                 [&](const Values& values) { run.set_structures(values); });
+        for (const CaseParameter& p : case_parameters()) {
+            if_given(given, p.key, p.access.type,
+                     [&](const Values& values) { run.set(p, values); });
+        }
+    }
 }
 
 }  // namespace controlspace

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "controlspace/error.h"
-#include "study/settings.h"
-#include "study/study.h"
+#include "controlspace/study/study.h"
 
 namespace controlspace {
 
@@ -16,24 +15,32 @@ using GivenSettings = std::vector<std::pair<std::string, std::vector<std::string
 
 /// Words of the command line as a setting of `type` takes them; a word that is no number stays a
 /// text, for the setting to refuse.
-SettingValues values_of(ValueType type, const std::vector<std::string>& words);
+Values values_of(ValueType type, const std::vector<std::string>& words);
 
 /// "--time-limit" for the key time_limit.
 std::string option_name(std::string_view key);
 
-/// Sets what is given in `target`, where it is one of `settings`. Throws InputError that names the
+/// Calls `set` with the values of `key`, if they are given. Throws InputError that names the
 /// option.
-template <class Target>
-void apply(const GivenSettings& given, std::span<const Setting<Target>> settings, Target& target) {
-    for (const auto& [key, words] : given) {
-        for (const Setting<Target>& setting : settings) {
-            if (setting.key != key) continue;
-            try {
-                set_checked(setting, target, values_of(setting.type, words));
-            } catch (const InputError& error) {
-                throw InputError(option_name(key) + ": " + error.what());
-            }
+template <class Set>
+void if_given(const GivenSettings& given, const std::string& key, ValueType type, const Set& set) {
+    for (const auto& [name, words] : given) {
+        if (name != key) continue;
+        try {
+            set(values_of(type, words));
+        } catch (const InputError& error) {
+            throw InputError(option_name(key) + ": " + error.what());
         }
+    }
+}
+
+/// Sets what is given in `target`, where it is one of `parameters`. Throws as above.
+template <class Target>
+void apply(const GivenSettings& given, std::span<const Parameter<Target>> parameters,
+           Target& target) {
+    for (const Parameter<Target>& p : parameters) {
+        if_given(given, p.key, p.access.type,
+                 [&](const Values& values) { set_checked(p.access, target, values); });
     }
 }
 

@@ -15,9 +15,9 @@
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/gradation/grade.h"
 #include "controlspace/space/control_space_file.h"
+#include "controlspace/space/split_words.h"
 #include "io/text/metric_rows.h"
 #include "measure/source_summary.h"
-#include "study/names.h"
 
 namespace controlspace {
 namespace {

@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "cli/formats.h"
+#include "cli/options.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
-#include "study/study_file.h"
-#include "study/workload.h"
 
 namespace controlspace {
 
@@ -17,8 +16,7 @@ Study study_of_input(const std::filesystem::path& input, const GivenSettings& gi
     if (input.extension() == ".toml") {
         study = read_study(input);
     } else {
-        study.runs.front().structures = {"K_oL"};
-        study.runs.front().splits = {SplitRule::middle};
+        study.runs.front() = one_structure();
         if (!input.empty()) {
             study.sources.kind = SourcesKind::file;
             study.sources.file = input;
@@ -29,7 +27,7 @@ Study study_of_input(const std::filesystem::path& input, const GivenSettings& gi
 }
 
 Case only_case(const Study& study) {
-    const std::vector<Case> cases = expand(study, structures());
+    const std::vector<Case> cases = expand(study, {structures()});
     if (cases.size() > 1) {
         throw InputError(fmt::format(
             "{} cases, the first two {} ({}) and {} ({}): only one can be taken, choose by "
@@ -49,9 +47,10 @@ void require_set_voxels(const Case& c) {
 std::vector<PointSource> sources_of_input(const std::filesystem::path& file,
                                           const GivenSettings& given) {
     Study study;
-    apply(given, study_settings(), study);
+    apply(given, study_parameters(), study);
     study.sources.kind = SourcesKind::file;
     study.sources.file = file;
+    require_applicable(study);
     return read_source_file(study.sources, file_readers());
 }
 

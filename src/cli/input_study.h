@@ -5,8 +5,7 @@
 
 #include "cli/given_settings.h"
 #include "controlspace/sources/point_source.h"
-#include "study/case.h"
-#include "study/study.h"
+#include "controlspace/study/study.h"
 
 namespace controlspace {
 

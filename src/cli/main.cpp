@@ -16,7 +16,7 @@
 #include "cli/options.h"
 #include "cli/standard_output.h"
 #include "controlspace/error.h"
-#include "study/provenance.h"
+#include "controlspace/study/provenance.h"
 
 namespace controlspace {
 namespace {

@@ -18,8 +18,8 @@
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/space/control_space_file.h"
+#include "controlspace/study/run.h"
 #include "modules/load.h"
-#include "study/run.h"
 
 namespace controlspace {
 namespace {
@@ -56,7 +56,7 @@ public:
         : study_(study),
           folder_(folder),
           interruption_(interruption),
-          cases_(expand(study, structures())) {}
+          cases_(expand(study, {structures()})) {}
 
     void run() {
         require_runnable();
@@ -109,12 +109,11 @@ private:
         row.mesher = reference.mesher;
         std::unique_ptr<ControlSpace> space;
         const auto make = [&](MeshRow& made) -> const ControlSpace& {
-            Measures measures;
             load_module_of(c.structure);  // before its creation is timed
-            space = finish(*make_and_fill(study_, c, entry_of(c, structures()),
-                                          reference.workload, measures, {}),
-                           c);
-            made.creation_s = measures.insert_s + measures.gradation_s;
+            const Filled filled = make_and_fill(study_, c, {structures()}, reference.workload);
+            space = filled.build(c);
+            made.creation_s =
+                filled.creation.insert_s.front() + filled.creation.gradation_s.front();
             const Accuracy delta_r = accuracy(*space, reference.probes);
             made.delta_r_max = delta_r.max;
             made.delta_r_mean = delta_r.mean;
@@ -149,13 +148,15 @@ void mesh_saved(const std::filesystem::path& file, const ControlSpace& space, in
 
 /// What is said of the making of a control space that was made already.
 GivenSettings without_settings_of_meshing(const GivenSettings& given) {
-    constexpr std::string_view others[] = {"name", "output", "threads", "probe_grid"};
     GivenSettings left = given;
     std::erase_if(left, [&](const auto& setting) {
-        const auto meshing = mesh_settings();
-        return std::find(std::begin(others), std::end(others), setting.first) != std::end(others) ||
-               std::any_of(meshing.begin(), meshing.end(),
-                           [&](const auto& known) { return known.key == setting.first; });
+        const auto meshing = mesh_parameters();
+        const auto of_study = study_parameters();
+        const auto is_it = [&](const auto& p) { return p.key == setting.first; };
+        return setting.first == "threads" || std::ranges::any_of(meshing, is_it) ||
+               std::ranges::any_of(of_study, [&](const Parameter<Study>& p) {
+                   return is_it(p) && (p.use == Use::results || p.use == Use::accuracy);
+               });
     });
     return left;
 }
@@ -167,7 +168,7 @@ int mesh(const MeshJob& job, const std::string& command_line) {
     Study study = study_of_input(is_saved ? "" : job.input, given);
     if (study.name == Study{}.name) study.name = "mesh";
     MeshSettings settings;
-    apply(given, mesh_settings(), settings);
+    apply(given, mesh_parameters(), settings);
     const auto threads = limit_threads(study.threads);
     Interruption interruption;
     const auto saved = is_saved ? load_control_space(job.input, structures()) : nullptr;
@@ -195,15 +196,13 @@ int mesh(const MeshJob& job, const std::string& command_line) {
 Action add_mesh(Options& options) {
     const auto job = std::make_shared<MeshJob>();
     add_filled_input(options, job->input);
-    options.add_settings(mesh_settings(), MeshSettings{}, "Settings of the meshing", job->given);
-    constexpr std::string_view without[] = {"access_points", "access_repeats", "fine_probe_grid"};
-    Run defaults;
-    defaults.structures = {"K_oL"};
-    defaults.splits = {SplitRule::middle};
-    options.add_settings(run_settings(), defaults,
-                         "Settings of cases (lists with commas; all combinations are meshed)",
-                         job->given);
-    options.add_settings(study_settings(), Study{}, "Settings of the study", job->given, without);
+    options.add_parameters(mesh_parameters(), MeshSettings{}, "Settings of the meshing",
+                           job->given);
+    const Uses uses{Use::making, Use::reading, Use::results, Use::accuracy};
+    options.add_case_parameters(
+        one_structure(), "Settings of cases (lists with commas; all combinations are meshed)",
+        job->given, uses);
+    options.add_parameters(study_parameters(), Study{}, "Settings of the study", job->given, uses);
     add_quiet(options, job->quiet);
     return [job](const std::string& command_line) { return mesh(*job, command_line); };
 }

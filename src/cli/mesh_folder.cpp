@@ -10,7 +10,7 @@
 #include "cli/mesh_field.h"
 #include "cli/peak_memory.h"
 #include "cli/standard_output.h"
-#include "study/results.h"
+#include "controlspace/study/results.h"
 
 namespace controlspace {
 namespace {

@@ -8,10 +8,10 @@
 #include "cli/signals.h"
 #include "controlspace/geometry/box.h"
 #include "controlspace/space/control_space.h"
+#include "controlspace/study/provenance.h"
+#include "controlspace/study/study.h"
 #include "mesh/mesh_rows.h"
 #include "mesh/mesh_settings.h"
-#include "study/provenance.h"
-#include "study/study.h"
 
 namespace controlspace {
 

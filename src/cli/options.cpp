@@ -1,12 +1,9 @@
 #include "cli/options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-
-#include "study/file_settings.h"
-#include "study/settings.h"
-#include "study/vdb_settings.h"
 
 namespace controlspace {
 namespace {
@@ -54,19 +51,49 @@ void Options::add(const OptionText& text, std::vector<std::string>& values, std:
     if (at_most > 0) option->expected(1, static_cast<int>(at_most));
 }
 
-void Options::add_setting(std::string_view key, ValueType type, std::size_t at_most,
-                          std::string_view help, const SettingValues& default_values,
-                          const std::string& group, std::vector<std::string>& words) {
-    std::string text(help);
-    if (!default_values.empty()) {
-        text += fmt::format(" (default: {})", to_string(default_values));
+OptionText Options::text_of(const std::string& key, const std::string& help,
+                            const std::string& unit, const std::vector<Choice>& choices,
+                            const std::string& group) {
+    OptionText text{option_name(key), "", help, group};
+    for (const Choice& choice : choices) {
+        text.help += (&choice == &choices.front() ? "; one of " : ", ") + choice.name;
     }
-    CLI::Option* option = command_->add_option(option_name(key), words, text);
-    option->delimiter(',')->group(group)->option_text(type_name(type, at_most));
+    if (!unit.empty()) text.help += fmt::format(" [{}]", unit);
+    return text;
+}
+
+void Options::add_parameter(const OptionText& text, ValueType type, std::size_t at_most,
+                            const Values& defaults, std::vector<std::string>& words) {
+    const std::string default_text =
+        defaults.empty() ? "" : fmt::format(" (default: {})", to_string(defaults));
+    CLI::Option* option = command_->add_option(text.name, words, text.help + default_text);
+    option->delimiter(',')->group(text.group)->option_text(type_name(type, at_most));
     if (at_most > 1) {
         option->expected(static_cast<int>(at_most));
     } else {
         option->allow_extra_args(false);
+    }
+}
+
+void Options::add_case_parameters(const Run& defaults, const std::string& group, WordsByKey& given,
+                                  const Uses& uses, std::string_view without) {
+    const std::string key = structures_key;
+    add_parameter(text_of(key,
+                          "Structures (see `controlspace list`), or all, trees, anchored, "
+                          "baselines",
+                          "", {}, group),
+                  ValueType::text, 0, defaults.structures(), given[structures_key]);
+    std::vector<const CaseParameter*> forms;  // in several forms of one value
+    for (const CaseParameter& p : case_parameters()) {
+        if (std::ranges::count(uses, p.use) == 0 || p.key == without) continue;
+        add_parameter(text_of(p.key, p.help, p.unit, p.access.choices, group), p.access.type, 0,
+                      defaults.values(p), given[p.key]);
+        for (const CaseParameter* other : forms) {
+            if (p.same_as == other->key || (!p.same_as.empty() && p.same_as == other->same_as)) {
+                exclude(option_name(p.key), option_name(other->key));
+            }
+        }
+        forms.push_back(&p);
     }
 }
 
@@ -111,23 +138,19 @@ void add_quiet(Options& options, bool& quiet) {
     options.add({"--quiet", "", "No progress on standard error"}, quiet);
 }
 
+Run one_structure() { return {{structures_key, {"K_oL"}}, {"splits", {"s_L"}}}; }
+
 void add_making_options(Options& options, WordsByKey& given, std::string_view another) {
-    const std::string_view without[] = {
-        "name",   "access_points", "access_repeats", "probe_grid", "fine_probe_grid",
-        "output", "reference",     another};
-    Run defaults;
-    defaults.structures = {"K_oL"};
-    defaults.splits = {SplitRule::middle};
-    options.add_settings(run_settings(), defaults, "Settings of the structure (a value each)",
-                         given, without);
-    options.add_settings(study_settings(), Study{}, "Settings of the study", given, without);
+    const Uses uses{Use::making, Use::reading};
+    options.add_case_parameters(one_structure(), "Settings of the structure (a value each)", given,
+                                uses, another);
+    options.add_parameters(study_parameters(), Study{}, "Settings of the study", given, uses,
+                           another);
 }
 
 void add_reading_options(Options& options, WordsByKey& given) {
-    constexpr std::string_view fields[] = {"field_file", "field_grid", "field_density_sizes"};
-    const std::string group = "Settings of reading";
-    options.add_settings(file_settings(), Study{}, group, given);
-    options.add_settings(vdb_settings(), Study{}, group, given, fields);
+    options.add_parameters(study_parameters(), Study{}, "Settings of reading", given,
+                           {Use::reading});
 }
 
 }  // namespace controlspace

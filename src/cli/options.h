@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <span>
@@ -15,7 +16,10 @@ class App;
 
 namespace controlspace {
 
-/// Words given for each setting, by key.
+using Uses = std::vector<Use>;
+inline const Uses all_uses{Use::making, Use::reading, Use::results, Use::accuracy, Use::timing};
+
+/// Words given for each parameter, by key.
 using WordsByKey = std::map<std::string_view, std::vector<std::string>>;
 
 /// An option of a command as the help shows it.
@@ -40,24 +44,22 @@ public:
     /// From 1 to `at_most` words; 0: any number, separated by commas.
     void add(const OptionText& text, std::vector<std::string>& values, std::size_t at_most);
 
-    /// An option for each setting, except those `without`; the help shows the values of `defaults`.
+    /// An option for each parameter that has one of the `uses`, except `without`; the help shows
+    /// the values of `defaults`.
     template <class Target>
-    void add_settings(std::span<const Setting<Target>> settings, const Target& defaults,
-                      const std::string& group, WordsByKey& given,
-                      std::span<const std::string_view> without = {}) {
-        for (const Setting<Target>& s : settings) {
-            if (std::find(without.begin(), without.end(), s.key) != without.end()) continue;
-            add_setting(s.key, s.type, s.at_most, s.help, s.get(defaults), group, given[s.key]);
-            for (const Setting<Target>& other : settings) {
-                const bool same =
-                    other.same_as == s.key ||
-                    (!s.same_as.empty() && (other.same_as == s.same_as || other.key == s.same_as));
-                if (same && other.key != s.key && given.contains(other.key)) {
-                    exclude(option_name(s.key), option_name(other.key));
-                }
-            }
+    void add_parameters(std::span<const Parameter<Target>> parameters, const Target& defaults,
+                        const std::string& group, WordsByKey& given, const Uses& uses = all_uses,
+                        std::string_view without = {}) {
+        for (const Parameter<Target>& p : parameters) {
+            if (std::ranges::count(uses, p.use) == 0 || p.key == without) continue;
+            add_parameter(text_of(p.key, p.help, p.unit, p.access.choices, group), p.access.type,
+                          p.access.at_most, p.access.get(defaults), given[p.key]);
         }
     }
+
+    /// The same for the structures and the parameters of cases, with the lists of `defaults`.
+    void add_case_parameters(const Run& defaults, const std::string& group, WordsByKey& given,
+                             const Uses& uses = all_uses, std::string_view without = {});
 
     /// Refuses the two options together.
     void exclude(const std::string& name, const std::string& other);
@@ -67,9 +69,11 @@ public:
     std::vector<std::string> given_of(const std::string& group) const;
 
 private:
-    void add_setting(std::string_view key, ValueType type, std::size_t at_most,
-                     std::string_view help, const SettingValues& default_values,
-                     const std::string& group, std::vector<std::string>& words);
+    static OptionText text_of(const std::string& key, const std::string& help,
+                              const std::string& unit, const std::vector<Choice>& choices,
+                              const std::string& group);
+    void add_parameter(const OptionText& text, ValueType type, std::size_t at_most,
+                       const Values& defaults, std::vector<std::string>& words);
 
     CLI::App* command_;
 };
@@ -87,9 +91,12 @@ void add_filled_input(Options& options, std::filesystem::path& input);
 
 void add_quiet(Options& options, bool& quiet);
 
-/// The settings of a study that builds one structure, except those of its measurements, and
+/// The parameters of a study that builds one structure, except those of its measurements, and
 /// `another`.
 void add_making_options(Options& options, WordsByKey& given, std::string_view another = {});
+
+/// The structure of commands that make one, where none is given: K_oL, with the split s_L.
+Run one_structure();
 
 /// The settings of a study that say how files of sources are read.
 void add_reading_options(Options& options, WordsByKey& given);

@@ -35,7 +35,6 @@ void Progress::case_started(const Case& c) {
     const std::lock_guard lock(mutex_);
     case_ = structure_label(c);
     phase_.clear();
-    case_time_ = {};
 }
 
 void Progress::phase_started(std::string_view phase) {
@@ -45,13 +44,12 @@ void Progress::phase_started(std::string_view phase) {
 
 void Progress::case_finished(const Row& row) {
     const std::lock_guard lock(mutex_);
-    const double seconds = case_time_.seconds();
-    estimate_.case_finished(seconds);
+    estimate_.case_finished(row.seconds);
     ++finished_;
     if (style_ == ProgressStyle::lines) {
-        print_error(fmt::format("case {}/{}: {}, {}: {}{:.2f} s\n", finished_, count_, case_,
-                                setting_label(row.setting), row.measures ? "" : "failed, ",
-                                seconds));
+        print_error(fmt::format("case {}/{}: {}, {}: {}{:.2f} s\n", finished_, count_,
+                                structure_label(row.setting), setting_label(row.setting),
+                                row.is_measured() ? "" : "failed, ", row.seconds));
     }
     clear_line();
 }

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "cli/signals.h"
+#include "controlspace/study/run.h"
 #include "mesh/stopwatch.h"
-#include "study/run.h"
 #include "study/time_estimate.h"
 
 namespace controlspace {
@@ -50,7 +50,6 @@ private:
     const ProgressStyle style_;
     const Stopwatch all_;
     mutable std::mutex mutex_;
-    Stopwatch case_time_;
     TimeEstimate estimate_;
     std::string case_;
     std::string phase_;

@@ -1,4 +1,4 @@
-#include "measure/access_time.h"
+#include "controlspace/measure/access_time.h"
 
 #include <fmt/format.h>
 
@@ -21,16 +21,6 @@ double duration_s(const ControlSpace& space, std::span<const Point> points,
     const Clock::time_point start = Clock::now();
     space.sample(points, answers);
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// Of samples in any order, by linear interpolation between the two nearest ranks.
-double quantile(std::vector<double> samples, double fraction) {
-    if (samples.empty()) throw InputError("a quantile of no samples: time at least one repeat");
-    std::sort(samples.begin(), samples.end());
-    const double rank = fraction * static_cast<double>(samples.size() - 1);
-    const auto below = static_cast<std::size_t>(rank);
-    const std::size_t above = std::min(below + 1, samples.size() - 1);
-    return std::lerp(samples[below], samples[above], rank - std::floor(rank));
 }
 
 }  // namespace
@@ -59,38 +49,54 @@ std::uint64_t checksum(std::span<const Metric> metrics) {
     return sum;
 }
 
-double AccessTime::median_ns() const { return quantile(samples_ns, 0.5); }
-
-double AccessTime::quartile_ns(int quartile) const {
-    if (quartile < 1 || quartile > 3) {
-        throw InputError(fmt::format("quartile {}: there are 1, 2 and 3", quartile));
+double quartile(std::vector<double> samples, int number) {
+    if (number < 1 || number > 3) {
+        throw InputError(fmt::format("quartile {}: there are 1, 2 and 3", number));
     }
-    return quantile(samples_ns, 0.25 * quartile);
+    if (samples.empty()) throw InputError("a quartile of no samples: time at least one repeat");
+    std::sort(samples.begin(), samples.end());
+    const double rank = 0.25 * number * static_cast<double>(samples.size() - 1);
+    const auto below = static_cast<std::size_t>(rank);
+    const std::size_t above = std::min(below + 1, samples.size() - 1);
+    return std::lerp(samples[below], samples[above], rank - std::floor(rank));
 }
 
-AccessTime access_time(const ControlSpace& space, std::span<const Point> points, int repeats,
-                       double shortest_s) {
+std::vector<AccessTime> access_times(std::span<const ControlSpace* const> spaces,
+                                     std::span<const Point> points, int repeats,
+                                     double shortest_s) {
     if (points.empty()) throw InputError("access time at no places: give at least one point");
     if (repeats < 1) throw InputError(fmt::format("{} timed repeats: give at least one", repeats));
 
     std::vector<Metric> answers(points.size());
-    space.sample(points, answers);
-    AccessTime result;
-    result.checksum = checksum(answers);
+    std::vector<AccessTime> results(spaces.size());
     for (int repeat = 0; repeat < repeats; ++repeat) {
-        double seconds = 0;
-        std::uint64_t runs = 0;
-        do {
-            seconds += duration_s(space, points, answers);
-            ++runs;
-            if (checksum(answers) != result.checksum) {
-                throw std::logic_error("a timed run answered otherwise than the untimed run");
-            }
-        } while (seconds < shortest_s);
-        result.samples_ns.push_back(
-            seconds * 1e9 / (static_cast<double>(runs) * static_cast<double>(points.size())));
+        for (std::size_t i = 0; i < spaces.size(); ++i) {
+            AccessTime& result = results[i];
+            const auto require_same = [&] {
+                if (checksum(answers) == result.checksum) return;
+                throw std::logic_error("a structure does not answer as it did the first time");
+            };
+            spaces[i]->sample(points, answers);
+            if (repeat == 0) result.checksum = checksum(answers);
+            require_same();
+            double seconds = 0;
+            std::uint64_t runs = 0;
+            do {
+                seconds += duration_s(*spaces[i], points, answers);
+                ++runs;
+                require_same();
+            } while (seconds < shortest_s);
+            result.samples_ns.push_back(
+                seconds * 1e9 / (static_cast<double>(runs) * static_cast<double>(points.size())));
+        }
     }
-    return result;
+    return results;
+}
+
+AccessTime access_time(const ControlSpace& space, std::span<const Point> points, int repeats,
+                       double shortest_s) {
+    const ControlSpace* const one[] = {&space};
+    return std::move(access_times(one, points, repeats, shortest_s).front());
 }
 
 }  // namespace controlspace

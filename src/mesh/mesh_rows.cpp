@@ -8,16 +8,14 @@
 #include <optional>
 #include <utility>
 
-#include "study/names.h"
-#include "study/rank_correlation.h"
+#include "controlspace/study/measure.h"
+#include "mesh/rank_correlation.h"
+#include "study/tables.h"
 
 namespace controlspace {
 namespace {
 
 using Rows = std::vector<const MeshRow*>;
-
-constexpr double mb = 1e6;
-constexpr std::string_view absent = "–";
 
 /// Rows that were meshed alike, under one setting.
 struct Group {
@@ -53,37 +51,63 @@ const MeshRow* exact_beside(const MeshRow& row, std::span<const MeshRow> rows) {
     return found;
 }
 
-/// Of the processors' time: on a shared machine the clock goes on while others run.
-double query_share(const MeshRow& row) { return row.query_seconds / row.processor_seconds; }
+/// A measure of meshes: in meshes.json where it has a key, in tables where it has a column.
+struct MeshMeasure {
+    std::string key;
+    Column column;
+    /// `exact`: the mesh of the exact field to compare with, or null.
+    std::function<MeasuredValue(const MeshRow& row, const MeshRow* exact)> value;
+};
 
-std::vector<std::string> measure_cells(const MeshRow& row, const MeshRow* exact) {
-    std::vector<std::string> cells{mesh_label(row)};
-    if (!row.error.empty()) {
-        cells.insert(cells.end(), 16, std::string(absent));
-        cells.push_back("failed: " + row.error);
-        return cells;
-    }
-    const Conformity& c = row.conformity;
-    cells.push_back(fmt::format("{}", c.tets));
-    cells.push_back(fmt::format("{}", c.nodes));
-    cells.push_back(fmt::format("{:.1f}", row.seconds));
-    cells.push_back(fmt::format("{:.1f}", row.processor_seconds));
-    cells.push_back(fmt::format("{:.0f}", static_cast<double>(row.peak_bytes) / mb));
-    cells.push_back(fmt::format("{:.4f}", c.l_r));
-    cells.push_back(exact != nullptr ? fmt::format("{:+.4f}", c.l_r - exact->conformity.l_r)
-                                     : std::string(absent));
-    cells.push_back(fmt::format("{:.4f}", c.l_r_middle));
-    cells.push_back(fmt::format("{:.4f}", c.unit_share));
-    cells.push_back(fmt::format("{:.3f}", c.mean_length));
-    cells.push_back(fmt::format("{:.3f}", c.quality_min));
-    cells.push_back(fmt::format("{:.3f}", c.quality_mean));
-    cells.push_back(fmt::format("{}", row.queries));
-    cells.push_back(fmt::format("{:.2f} %", 100 * query_share(row)));
-    const bool compared = has_delta_r(row);
-    cells.push_back(compared ? fmt::format("{:.3f}", row.delta_r_max) : std::string(absent));
-    cells.push_back(compared ? fmt::format("{:.4f}", row.delta_r_mean) : std::string(absent));
-    cells.emplace_back();
-    return cells;
+template <class Get>
+MeshMeasure counted(const char* key, const Column& column, Get get) {
+    return {key, column, [get](const MeshRow& row, const MeshRow*) {
+                return MeasuredValue(static_cast<std::int64_t>(get(row)));
+            }};
+}
+template <class Get>
+MeshMeasure real(const char* key, const Column& column, Get get) {
+    return {key, column,
+            [get](const MeshRow& row, const MeshRow*) { return MeasuredValue(get(row)); }};
+}
+template <class Get>
+MeshMeasure compared(const char* key, const Column& column, Get get) {
+    return {key, column, [get](const MeshRow& row, const MeshRow*) {
+                return has_delta_r(row) ? MeasuredValue(get(row)) : MeasuredValue();
+            }};
+}
+
+const std::vector<MeshMeasure>& mesh_measures() {
+    using Row = const MeshRow&;
+    static const std::vector<MeshMeasure> all{
+        counted("tets", {"tets", "{}"}, [](Row r) { return r.conformity.tets; }),
+        counted("nodes", {"nodes", "{}"}, [](Row r) { return r.conformity.nodes; }),
+        counted("edges", {}, [](Row r) { return r.conformity.edges; }),
+        real("creation_s", {}, [](Row r) { return r.creation_s; }),
+        real("mesh_s", {"s", "{:.1f}"}, [](Row r) { return r.seconds; }),
+        real("mesh_processor_s", {"CPU s", "{:.1f}"}, [](Row r) { return r.processor_seconds; }),
+        counted("peak_bytes", {"MB", "{:.0f}", 1e-6}, [](Row r) { return r.peak_bytes; }),
+        real("L_R", {"L_R", "{:.4f}"}, [](Row r) { return r.conformity.l_r; }),
+        {"",
+         {"-exact", "{:+.4f}"},
+         [](Row r, const MeshRow* exact) {
+             return exact != nullptr ? MeasuredValue(r.conformity.l_r - exact->conformity.l_r)
+                                     : MeasuredValue();
+         }},
+        real("L_R_middle", {"middle", "{:.4f}"}, [](Row r) { return r.conformity.l_r_middle; }),
+        real("unit_share", {"unit", "{:.4f}"}, [](Row r) { return r.conformity.unit_share; }),
+        real("mean_length", {"length", "{:.3f}"}, [](Row r) { return r.conformity.mean_length; }),
+        real("quality_min", {"q min", "{:.3f}"}, [](Row r) { return r.conformity.quality_min; }),
+        real("quality_mean", {"q mean", "{:.3f}"}, [](Row r) { return r.conformity.quality_mean; }),
+        counted("queries", {"queries", "{}"}, [](Row r) { return r.queries; }),
+        real("query_s", {}, [](Row r) { return r.query_seconds; }),
+        // Of the processors' time: on a shared machine the clock goes on while others run.
+        real("", {"share", "{:.2f} %", 100},
+             [](Row r) { return r.query_seconds / r.processor_seconds; }),
+        compared("delta_R_max", {"δ_R max", "{:.3f}"}, [](Row r) { return r.delta_r_max; }),
+        compared("delta_R_mean", {"δ_R mean", "{:.4f}"}, [](Row r) { return r.delta_r_mean; }),
+    };
+    return all;
 }
 
 /// "Rank correlation of L_R with ...", or nothing where there are too few structures.
@@ -110,27 +134,22 @@ TextTable measure_table(const Group& group, std::span<const MeshRow> all) {
         "alone; -exact: less that of the mesh of the exact field; unit: share from 1/√2 to √2. "
         "q: quality in the metric. share: of the processors' time, in the queries of the field." +
             correlation_text(group.rows),
-        {{"field", Align::left},
-         {"tets"},
-         {"nodes"},
-         {"s"},
-         {"CPU s"},
-         {"MB"},
-         {"L_R"},
-         {"-exact"},
-         {"middle"},
-         {"unit"},
-         {"length"},
-         {"q min"},
-         {"q mean"},
-         {"queries"},
-         {"share"},
-         {"δ_R max"},
-         {"δ_R mean"},
-         {"remark", Align::left}},
+        {{"field", Align::left}},
         {}};
+    for (const MeshMeasure& measure : mesh_measures()) {
+        if (!measure.column.header.empty()) table.columns.push_back({measure.column.header});
+    }
+    table.columns.push_back({"remark", Align::left});
     for (const MeshRow* row : group.rows) {
-        table.rows.push_back(measure_cells(*row, exact_beside(*row, all)));
+        auto& cells = table.rows.emplace_back();
+        cells.push_back(mesh_label(*row));
+        for (const MeshMeasure& measure : mesh_measures()) {
+            if (measure.column.header.empty()) continue;
+            cells.push_back(cell_of(
+                row->error.empty() ? measure.value(*row, exact_beside(*row, all)) : MeasuredValue(),
+                measure.column));
+        }
+        cells.push_back(row->error.empty() ? "" : "failed: " + row->error);
     }
     return table;
 }
@@ -166,26 +185,15 @@ nlohmann::ordered_json to_json(const MeshRow& row) {
     json["mesher"] = name_of(row.mesher);
     json["error"] = row.error;
     if (!row.error.empty()) return json;
-    const Conformity& m = row.conformity;
-    json["tets"] = m.tets;
-    json["nodes"] = m.nodes;
-    json["edges"] = m.edges;
-    json["L_R"] = m.l_r;
-    json["L_R_middle"] = m.l_r_middle;
-    json["unit_share"] = m.unit_share;
-    json["mean_length"] = m.mean_length;
-    json["histogram"] = m.histogram;
-    json["quality_min"] = m.quality_min;
-    json["quality_mean"] = m.quality_mean;
-    json["creation_s"] = row.creation_s;
-    json["mesh_s"] = row.seconds;
-    json["mesh_processor_s"] = row.processor_seconds;
-    json["queries"] = row.queries;
-    json["query_s"] = row.query_seconds;
-    json["peak_bytes"] = row.peak_bytes;
-    if (has_delta_r(row)) {
-        json["delta_R_max"] = row.delta_r_max;
-        json["delta_R_mean"] = row.delta_r_mean;
+    json["histogram"] = row.conformity.histogram;
+    for (const MeshMeasure& measure : mesh_measures()) {
+        const MeasuredValue value = measure.value(row, nullptr);
+        if (measure.key.empty() || std::holds_alternative<std::monostate>(value)) continue;
+        if (const auto* whole = std::get_if<std::int64_t>(&value)) {
+            json[measure.key] = *whole;
+        } else {
+            json[measure.key] = std::get<double>(value);
+        }
     }
     return json;
 }
@@ -221,8 +229,8 @@ std::string mesh_json(const Provenance& provenance, const MeshSettings& settings
                                  version_text(provenance), provenance.compiler, provenance.flags,
                                  provenance.cpu, provenance.cores, provenance.date);
     json["command_line"] = provenance.command_line;
-    for (const Setting<MeshSettings>& setting : mesh_settings()) {
-        json["settings"][std::string(setting.key)] = to_string(setting.get(settings));
+    for (const Parameter<MeshSettings>& p : mesh_parameters()) {
+        json["settings"][p.key] = to_string(p.access.get(settings));
     }
     json["length_bounds"] = length_bounds;
     json["complete"] = complete;

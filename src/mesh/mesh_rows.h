@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "controlspace/mesh/conformity.h"
+#include "controlspace/study/case.h"
+#include "controlspace/study/provenance.h"
 #include "mesh/mesh_settings.h"
-#include "study/case.h"
-#include "study/provenance.h"
 #include "study/text_table.h"
 
 namespace controlspace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "study/settings.h"
+#include "controlspace/study/parameter.h"
 
 namespace controlspace {
 
@@ -13,13 +13,13 @@ enum class Mesher {
     automatic,  ///< delaunay for isotropic fields, mmg for others
     delaunay,   ///< Gmsh
     hxt,        ///< Gmsh
-    mmg,        ///< MMG3D, started from a mesh of Gmsh's
+    mmg,        ///< MMG3D, started from a mesh made by Gmsh
 };
 
 /// The mesh that MMG starts from.
 enum class MeshStart { coarse, delaunay, hxt };
 
-/// How `controlspace mesh` makes meshes; what is not said is the mesher's own.
+/// How `controlspace mesh` makes meshes; what is not given is the mesher's default.
 struct MeshSettings {
     Mesher mesher = Mesher::automatic;
     MeshStart start = MeshStart::coarse;
@@ -34,9 +34,22 @@ struct MeshSettings {
     std::vector<std::string> files{"msh", "mesh", "vtu"};
 };
 
-/// The word for it in options and results.
-std::string_view name_of(Mesher mesher);
+std::span<const Parameter<MeshSettings>> mesh_parameters();
 
-std::span<const Setting<MeshSettings>> mesh_settings();
+template <>
+struct Words<Mesher> {
+    static constexpr Word<Mesher> table[] = {
+        {Mesher::automatic, "auto", "delaunay where the field is isotropic, else mmg"},
+        {Mesher::delaunay, "delaunay", "Gmsh"},
+        {Mesher::hxt, "hxt", "Gmsh"},
+        {Mesher::mmg, "mmg", "MMG3D"}};
+};
+template <>
+struct Words<MeshStart> {
+    static constexpr Word<MeshStart> table[] = {
+        {MeshStart::coarse, "coarse", "a coarse mesh"},
+        {MeshStart::delaunay, "delaunay", "made by Gmsh for the smallest lengths of the field"},
+        {MeshStart::hxt, "hxt", "the same"}};
+};
 
 }  // namespace controlspace

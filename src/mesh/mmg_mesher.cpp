@@ -16,7 +16,7 @@
 #include "io/text/medit.h"
 #include "mesh/size_query.h"
 #include "mesh/stopwatch.h"
-#include "study/child_program.h"
+#include "mesh/child_program.h"
 
 namespace controlspace {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "controlspace/space/catalogue.h"
-#include "study/case.h"
+#include "controlspace/study/case.h"
 
 namespace controlspace {
 

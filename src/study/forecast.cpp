@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "measure/access_time.h"
 #include "study/text_table.h"
 #include "study/time_estimate.h"
 
@@ -35,10 +34,8 @@ struct Trial {
 };
 
 Trial try_case(const PreparedStudy& prepared, const Case& c, const Workload& workload) {
-    Measures ignored;
     const auto start = std::chrono::steady_clock::now();
-    const auto space =
-        finish(*make_and_fill(prepared.study(), c, prepared.entry(c), workload, ignored, {}), c);
+    const auto space = make_and_fill(prepared.study(), c, prepared.rows(), workload).build(c);
     Trial trial{seconds_since(start), static_cast<double>(space->footprint().bytes_total()), 0};
     const auto places = random_points(workload.domain, 1000, 1);
     trial.query_seconds = 1e-9 * access_time(*space, places, 3).median_ns();
@@ -52,7 +49,8 @@ Trial scaled(const Trial& trial, double factor) {
 /// A grid of one voxel size, by one with fewer voxels.
 Trial forecast_grid(const PreparedStudy& prepared, Case c, const Workload& workload) {
     constexpr double voxels_of_trial = 1e5;
-    const SpaceOptions options = space_options(prepared.study(), c, workload);
+    const SpaceOptions options =
+        space_options(prepared.study(), c, workload, prepared.rows().parameters);
     const double voxel = options.voxel > 0 ? options.voxel : options.l_min * options.finest_length;
     const double voxels = workload.domain.edges().prod() / std::pow(voxel, 3);
     const double factor = std::max(1.0, voxels / voxels_of_trial);
@@ -98,8 +96,9 @@ double cubed(int n) { return std::pow(n, 3); }
 std::vector<std::optional<Forecast>> forecast(const PreparedStudy& prepared) {
     const Study& study = prepared.study();
     const double probes = cubed(study.probe_grid) + cubed(study.fine_probe_grid);
-    const double timed =
-        study.access_repeats * (static_cast<double>(study.access_points) + cubed(study.probe_grid));
+    const double timed =  // each run is preceded by one that is not timed
+        2 * study.access_repeats *
+        (static_cast<double>(study.access_points) + cubed(study.probe_grid));
     std::vector<std::optional<Forecast>> forecasts;
     for (std::size_t i = 0; i < prepared.cases().size(); ++i) {
         const Case& c = prepared.cases()[i];
@@ -113,7 +112,9 @@ std::vector<std::optional<Forecast>> forecast(const PreparedStudy& prepared) {
                 const Trial trial = entry.has<VoxelSize>() && !entry.has<VoxelLevels>()
                                         ? forecast_grid(prepared, c, workload)
                                         : forecast_patches(prepared, c, workload);
-                forecast = {trial.seconds + trial.query_seconds * (timed + probes), trial.bytes};
+                forecast = {
+                    study.creation_repeats * trial.seconds + trial.query_seconds * (timed + probes),
+                    trial.bytes};
                 const auto earlier = prepared.cases().first(i);
                 if (std::ranges::none_of(earlier,
                                          [&](const Case& e) { return share_probes(e, c); })) {

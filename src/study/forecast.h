@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "study/run.h"
+#include "controlspace/study/run.h"
 
 namespace controlspace {
 

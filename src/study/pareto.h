@@ -3,46 +3,40 @@
 #include <cstddef>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "study/row.h"
+#include "controlspace/study/measure.h"
 #include "study/text_table.h"
 
 namespace controlspace {
-
-/// What a row is weighed by against its error.
-enum class ParetoCost { bytes, access };
-
-/// Names and values are those of results.json: bytes_total, t_access_ns_random; δ_R at the finer
-/// probes, delta_R_fine_max or delta_R_fine_mean.
-enum class ParetoError { max, mean };
 
 struct ParetoPoint {
     std::size_t row = 0;
     double cost = 0;
     double error = 0;
-    bool on_front = false;  ///< no other point is at most as large in both and smaller in one
+    /// No point that is at most as large in error is smaller in cost, by more than the quartiles of
+    /// times; nor one of equal cost smaller in error.
+    bool on_front = false;
 };
 
 /// The rows of the same work: sources, law and reference, at whatever τ, target or voxel.
 struct ParetoPlot {
     std::string work;
-    ParetoCost cost = ParetoCost::bytes;
-    ParetoError error = ParetoError::max;
+    std::string cost;                 ///< key: bytes_total or t_access_ns_random
+    std::string error;                ///< key: delta_R_fine_max or delta_R_fine_mean
     std::vector<ParetoPoint> points;  ///< in the order of the rows
 };
 
-/// What tells rows of one plot apart: "K_L s_L, tau 0.5".
-std::string pareto_label(const Case& c);
-
 /// Every combination of cost and error for every work with two measured rows or more.
-std::vector<ParetoPlot> pareto_plots(std::span<const Row> rows);
+std::vector<ParetoPlot> pareto_plots(std::span<const Row> rows,
+                                     std::span<const CaseParameter> parameters = case_parameters());
 
-/// What pareto_plots gives as JSON: [{work, cost, error, points: [{label, cost, error, front}]}].
-std::string pareto_json(std::span<const Row> rows);
+/// The plots as JSON: [{work, cost, error, points: [{label, cost, error, front}]}].
+std::string pareto_json(std::span<const Row> rows,
+                        std::span<const CaseParameter> parameters = case_parameters());
 
-/// One table a work: the rows on a front of largest errors, by rising error.
-std::vector<TextTable> pareto_tables(std::span<const Row> rows);
+/// One table for each work: the rows on a front of largest errors, by rising error.
+std::vector<TextTable> pareto_tables(std::span<const Row> rows,
+                                     std::span<const CaseParameter> parameters = case_parameters());
 
 }  // namespace controlspace

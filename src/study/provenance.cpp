@@ -1,4 +1,4 @@
-#include "study/provenance.h"
+#include "controlspace/study/provenance.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

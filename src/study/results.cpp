@@ -1,70 +1,31 @@
-#include "study/results.h"
+#include "controlspace/study/results.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <nlohmann/json.hpp>
-#include <string_view>
+#include <algorithm>
+#include <fstream>
+#include <utility>
 
 #include "controlspace/error.h"
 #include "io/text/output_file.h"
 #include "study/pareto.h"
-#include "study/row_json.h"
-#include "study/settings.h"
+#include "study/results_json.h"
+#include "study/sampled_fields.h"
 #include "study/tables.h"
 
 namespace controlspace {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// File names and command lines need not be UTF-8; JSON must.
-std::string dump(const Json& json, int indent) {
-    return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
-
-Json to_json(ValueType type, const SettingValue& value) {
-    if (type == ValueType::whole_number) {
-        return static_cast<std::int64_t>(std::get<double>(value));
-    }
-    return std::visit([](const auto& v) { return Json(v); }, value);
-}
-
-template <class Target>
-void add_settings(Json& json, std::span<const Setting<Target>> settings, const Target& target) {
-    for (const Setting<Target>& setting : settings) {
-        if (!setting.same_as.empty()) continue;
-        const SettingValues values = setting.get(target);
-        Json list = Json::array();
-        for (const SettingValue& value : values) list.push_back(to_json(setting.type, value));
-        const bool single = setting.at_most == 1;
-        json[std::string(setting.key)] = !single          ? list
-                                         : values.empty() ? Json(nullptr)
-                                                          : list.front();
-    }
-}
-
-Json settings_json(const Study& study) {
-    Json json = Json::object();
-    add_settings(json, study_settings(), study);
-    json["runs"] = Json::array();
-    for (const Run& run : study.runs) {
-        Json run_json = Json::object();
-        add_settings(run_json, run_settings(), run);
-        json["runs"].push_back(std::move(run_json));
-    }
-    return json;
-}
 
 /// One field of a CSV file, quoted where it has to be (RFC 4180).
 std::string csv_field(const Json& value) {
     if (value.is_null()) return "";
     if (value.is_array()) {
         std::vector<std::string> items;
-        for (const Json& item : value) items.push_back(dump(item, -1));
+        for (const Json& item : value) items.push_back(dump(item));
         return fmt::format("{}", fmt::join(items, " "));
     }
-    if (!value.is_string()) return dump(value, -1);
+    if (!value.is_string()) return dump(value);
     const auto& text = value.get_ref<const std::string&>();
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string quoted = "\"";
@@ -72,60 +33,143 @@ std::string csv_field(const Json& value) {
     return quoted + '"';
 }
 
-}  // namespace
-
-std::string results_json(const Provenance& p, const Study& study, std::span<const Row> rows,
-                         bool complete) {
-    Json json;
-    json["schema_version"] = results_schema_version;
-    json["program"] = "controlspace";
-    json["version"] = p.version;
-    json["commit"] = p.commit;
-    json["dirty"] = p.dirty;
-    json["compiler"] = p.compiler;
-    json["flags"] = p.flags;
-    json["cpu"] = p.cpu;
-    json["cores"] = p.cores;
-    json["threads"] = p.threads;
-    json["seed"] = study.seed;
-    json["date"] = p.date;
-    json["command_line"] = p.command_line;
-    json["settings"] = settings_json(study);
-    json["complete"] = complete;
-    json["rows"] = Json::array();
-    for (const Row& row : rows) json["rows"].push_back(to_json(row));
-    return dump(json, 1) + "\n";
-}
-
-std::string results_csv(std::span<const Row> rows) {
+/// A line of what `field` makes of each key and value of a row but its files.
+template <class Field>
+std::string csv_line(Json json, const Field& field) {
+    json.erase("fields");
     std::string text;
-    const auto add_line = [&](const Json& json, auto&& field) {
-        for (const auto& [key, value] : json.items()) text += field(key, value) + ',';
-        text.back() = '\n';
-    };
-    // Every row has the same fields, an empty one too.
-    add_line(to_json(Row{}), [](const std::string& key, const Json&) { return key; });
-    for (const Row& row : rows) {
-        add_line(to_json(row),
-                 [](const std::string&, const Json& value) { return csv_field(value); });
-    }
+    for (const auto& [key, value] : json.items()) text += field(key, value) + ',';
+    text.back() = '\n';
     return text;
 }
 
-std::string results_summary(const Provenance& p, const Study& study, std::span<const Row> rows,
-                            bool complete) {
-    std::string text = fmt::format(
-        "# {}\n\ncontrolspace {}, {}, {} ({} cores, {} threads), {}.\n\nSources: {}. Seed {}.\n\n"
-        "`{}`\n\n",
-        study.name, version_text(p), p.compiler, p.cpu, p.cores, p.threads, p.date,
-        sources_name(study.sources), study.seed, p.command_line);
-    if (!complete) text += "Not complete: cases are missing.\n\n";
-    return text + render_tables(rows, TableStyle::markdown);
+std::string csv_line(const Row& row, const StudyRows& rows) {
+    return csv_line(to_json(row, rows),
+                    [](const std::string&, const Json& value) { return csv_field(value); });
+}
+
+/// A row in the list of results.json; rows are on one line each.
+std::string json_line(const Row& row, const StudyRows& rows, bool is_first) {
+    return (is_first ? "\n  " : ",\n  ") + dump(to_json(row, rows));
+}
+
+std::string json_tail(bool complete) {
+    return fmt::format("\n ],\n \"complete\": {}\n}}\n", complete);
+}
+
+std::string json_text(const Provenance& provenance, const Study& study, const StudyRows& rows,
+                      std::span<const Row> written) {
+    std::string text = dump(head_json(provenance, study, rows.parameters), 1);
+    text.erase(text.rfind("\n}"));
+    text += ",\n \"rows\": [";
+    for (const Row& row : written) text += json_line(row, rows, &row == &written.front());
+    return text;
+}
+
+std::string csv_text(const StudyRows& rows, std::span<const Row> written) {
+    std::string text =
+        csv_line(to_json(Row{}, rows), [](const std::string& key, const Json&) { return key; });
+    for (const Row& row : written) text += csv_line(row, rows);
+    return text;
+}
+
+std::filesystem::path made(std::filesystem::path folder) {
+    make_results_folder(folder, "results.json");
+    return folder;
+}
+
+}  // namespace
+
+GrowingFile::GrowingFile(std::filesystem::path path, std::string_view text, std::string tail)
+    : path_(std::move(path)), end_(text.size()), tail_(std::move(tail)) {
+    replace_file(path_, std::string(text) + tail_);
+}
+
+void GrowingFile::append(std::string_view text, std::string tail) {
+    const auto write = [&](const std::string& what) {
+        std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
+        file.seekp(static_cast<std::streamoff>(end_));
+        file.write(what.data(), static_cast<std::streamsize>(what.size())).flush();
+        std::error_code error;
+        std::filesystem::resize_file(path_, end_ + (file ? what.size() : tail_.size()), error);
+        return file && !error;
+    };
+    if (!write(std::string(text) + tail)) {
+        write(tail_);
+        throw InputError(fmt::format("{} cannot be written: is the disk full?", path_.string()));
+    }
+    end_ += text.size();
+    tail_ = std::move(tail);
+}
+
+ResultsFolder::ResultsFolder(std::filesystem::path folder, Provenance provenance, Study study,
+                             const StudyRows& rows)
+    : ResultsFolder(made(std::move(folder)), std::move(provenance), std::move(study), rows, {}) {}
+
+ResultsFolder::ResultsFolder(std::filesystem::path folder, Provenance provenance, Study study,
+                             const StudyRows& rows, std::vector<Row> earlier)
+    : provenance_(std::move(provenance)),
+      study_(std::move(study)),
+      rows_(rows),
+      folder_(std::move(folder)),
+      written_(std::move(earlier)),
+      json_(folder_ / "results.json", json_text(provenance_, study_, rows_, written_),
+            json_tail(false)),
+      csv_(folder_ / "results.csv", csv_text(rows_, written_), "") {
+    for (const Row& row : written_) {
+        if (row.fields) sampled_.push_back(row.setting);
+    }
+}
+
+void ResultsFolder::sample_fields(const Finished& finished, Row& row) {
+    const Case& c = row.setting;
+    const bool is_wanted =
+        sampled_.empty() ||
+        (setting_label(c, rows_.parameters) == setting_label(sampled_.front(), rows_.parameters) &&
+         c.sources == sampled_.front().sources &&
+         std::ranges::none_of(sampled_, [&](const Case& s) { return s.structure == c.structure; }));
+    if (!is_wanted) return;
+    row.fields = write_sampled_fields(folder_, finished, !sampled_.empty());
+    sampled_.push_back(c);
+}
+
+void ResultsFolder::add(const Row& row) {
+    json_.append(json_line(row, rows_, written_.empty()), json_tail(false));
+    csv_.append(csv_line(row, rows_), "");
+    written_.push_back(row);
+}
+
+void ResultsFolder::finish(bool complete) {
+    const Provenance& p = provenance_;
+    replace_file(
+        folder_ / "summary.md",
+        fmt::format("# {}\n\ncontrolspace {}, {}, {} ({} cores, {} threads), {}.\n\nSources: {}. "
+                    "Seed {}.\n\n`{}`\n\n{}",
+                    study_.name, version_text(p), p.compiler, p.cpu, p.cores, p.threads, p.date,
+                    sources_name(study_.sources), study_.seed, p.command_line,
+                    complete ? "" : "Not complete: cases are missing.\n\n") +
+            tables_text(written_, rows_, /*markdown=*/true));
+    replace_file(folder_ / "pareto.json", pareto_json(written_, rows_.parameters));
+    json_.append("", json_tail(complete));
+}
+
+std::string tables_text(std::span<const Row> rows, const StudyRows& columns, bool markdown) {
+    std::vector<TextTable> tables = measure_tables(rows, columns);
+    for (TextTable& table : pareto_tables(rows, columns.parameters)) {
+        tables.push_back(std::move(table));
+    }
+    return render(tables, markdown ? TableStyle::markdown : TableStyle::terminal);
 }
 
 std::string origin_text(const Provenance& p, bool complete) {
     return fmt::format("controlspace {}, {}, {}{}: `{}`", version_text(p), p.cpu, p.date,
                        complete ? "" : ", not complete", p.command_line);
+}
+
+void replace_file(const std::filesystem::path& path, std::string_view text) {
+    OutputFile file(path);
+    file.write(text);
+    file.commit();
 }
 
 void make_results_folder(const std::filesystem::path& folder, std::string_view file) {
@@ -136,33 +180,9 @@ void make_results_folder(const std::filesystem::path& folder, std::string_view f
                                      folder.string(), error ? error.message() : "it is a file"));
     }
     if (std::filesystem::exists(folder / file, error)) {
-        throw InputError(fmt::format("{}: holds results already: choose another output folder",
+        throw InputError(fmt::format("{}: contains results already: choose another output folder",
                                      folder.string()));
     }
-}
-
-void replace_file(const std::filesystem::path& path, std::string_view text) {
-    OutputFile file(path);
-    file.write(text);
-    file.commit();
-}
-
-ResultsFolder::ResultsFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
-    make_results_folder(folder_, "results.json");
-}
-
-ResultsFolder ResultsFolder::existing(std::filesystem::path folder) {
-    ResultsFolder results;
-    results.folder_ = std::move(folder);
-    return results;
-}
-
-void ResultsFolder::write(const Provenance& provenance, const Study& study,
-                          std::span<const Row> rows, bool complete) const {
-    replace_file(folder_ / "results.json", results_json(provenance, study, rows, complete));
-    replace_file(folder_ / "results.csv", results_csv(rows));
-    replace_file(folder_ / "summary.md", results_summary(provenance, study, rows, complete));
-    replace_file(folder_ / "pareto.json", pareto_json(rows));
 }
 
 std::filesystem::path results_path(const Study& study, const Provenance& provenance) {

@@ -1,77 +1,235 @@
-#include "study/run.h"
+#include "controlspace/study/run.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
+#include <list>
 #include <memory>
 #include <new>
 #include <stdexcept>
 #include <utility>
 
 #include "controlspace/error.h"
-#include "controlspace/space/sample_parallel.h"
 #include "study/equal_setting.h"
 
 namespace controlspace {
 namespace {
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 template <class Callback, class... Arguments>
-void tell(const std::function<Callback>& callback, const Arguments&... arguments) {
+void notify(const std::function<Callback>& callback, Arguments&&... arguments) {
     if (callback) callback(arguments...);
 }
 
-/// Probes that are needed again by later cases.
-class ProbeCache {
+/// Appends the times of a repeated creation.
+void append(Creation& creation, const Creation& again) {
+    creation.insert_s.push_back(again.insert_s.front());
+    creation.gradation_s.push_back(again.gradation_s.front());
+}
+
+std::uint64_t checksum_of(const ControlSpace& space, std::span<const Point> points) {
+    std::vector<Metric> answers(points.size());
+    space.sample(points, answers);
+    return checksum(answers);
+}
+
+/// A case of a batch: its structure where it could be made, to be timed with the others.
+struct Member {
+    Row row;
+    std::unique_ptr<ControlSpace> space;
+    std::optional<Finished> finished;
+};
+
+/// Runs the cases of a study in batches.
+class Runner {
 public:
-    explicit ProbeCache(std::span<const Case> cases) : cases_(cases) {}
+    Runner(const PreparedStudy& prepared, std::size_t finished_before,
+           const StudyObserver& observer)
+        : prepared_(prepared),
+          study_(prepared.study()),
+          rows_(prepared.rows()),
+          finished_before_(finished_before),
+          observer_(observer) {}
 
-    /// Probes of case `i`, made by `make` where they are not at hand.
-    template <class Make>
-    const ReferenceProbes& get(std::size_t i, Make&& make) {
-        for (const Entry& entry : entries_) {
-            if (share_probes(cases_[entry.first_use], cases_[i])) return *entry.probes;
-        }
-        entries_.push_back({i, std::make_unique<ReferenceProbes>(make())});
-        return *entries_.back().probes;
-    }
-
-    /// Frees what no case after `i` needs.
-    void drop_after(std::size_t i) {
-        std::erase_if(entries_, [&](const Entry& entry) {
-            const auto later = cases_.subspan(i + 1);
-            return std::none_of(later.begin(), later.end(), [&](const Case& c) {
-                return share_probes(cases_[entry.first_use], c);
+    /// `after(i)` is called when case i is done and its workload not needed for it any more.
+    template <class After>
+    void run(const After& after) {
+        const auto cases = prepared_.cases();
+        const double most_bytes = 0.5 * study_.max_memory_gib * 1024 * 1024 * 1024;
+        std::size_t first = 0;
+        double bytes = 0;
+        Clock::time_point start = Clock::now();
+        for (std::size_t i = 0; i < cases.size(); ++i) {
+            make(i);
+            const auto& finished = batch_.back().finished;
+            if (finished) bytes += static_cast<double>(finished->footprint.bytes_total());
+            const bool ends = i + 1 == cases.size() || !share_probes(cases[i], cases[i + 1]) ||
+                              bytes > most_bytes || seconds_since(start) > longest_batch_s;
+            if (!ends) continue;
+            finish_batch();
+            for (; first <= i; ++first) after(first);
+            std::erase_if(probes_, [&](const auto& known) {
+                return std::ranges::none_of(cases.subspan(i + 1), [&](const Case& c) {
+                    return share_probes(c, cases[known.first]);
+                });
             });
-        });
+            bytes = 0;
+            start = Clock::now();
+        }
     }
 
 private:
-    struct Entry {
-        std::size_t first_use;
-        std::unique_ptr<ReferenceProbes> probes;
-    };
-    std::span<const Case> cases_;
-    std::vector<Entry> entries_;
-};
+    /// An interrupted run loses no more.
+    static constexpr double longest_batch_s = 600;
 
-/// A field is followed by adaptation; without a target for it only what keeps its elements can be.
-void require_follows(const Case& c, const CatalogueEntry& entry) {
-    if (c.target_delta || !entry.has<SourceLeaves>()) {
-        return;
+    /// Probes of case `i`, which earlier cases may have needed.
+    const ReferenceProbes& probes_of(std::size_t i) {
+        const Case& c = prepared_.cases()[i];
+        for (const auto& [first, probes] : probes_) {
+            if (share_probes(prepared_.cases()[first], c)) return *probes;
+        }
+        notify(observer_.phase_started, "reference field");
+        return *probes_
+                    .emplace_back(i, std::make_unique<ReferenceProbes>(
+                                         make_reference_probes(study_, c, prepared_.workload(c))))
+                    .second;
     }
-    throw InputError("an analytic field is followed by adaptation: set target_delta, for trees");
-}
 
-void follow_at_nodes(NodeBuilder& builder, const ControlSpace& field) {
-    ControlNodes nodes = builder.control_nodes(Neighbourhood::faces);
-    sample_parallel(field, positions(nodes.graph), nodes.metrics);
-    builder.assign(nodes.metrics);
-}
+    /// Adds a case to the batch.
+    void make(std::size_t i) {
+        const Case& c = prepared_.cases()[i];
+        const Workload& workload = prepared_.workload(c);
+        notify(observer_.case_started, c);
+        const auto start = Clock::now();
+        Member& member = batch_.emplace_back();
+        member.row.setting = c;
+        member.row.sources = workload.sources.size();
+        try {
+            const ReferenceProbes& probes = probes_of(i);
+            const std::string shortfall = choose_voxels(member.row.setting, workload, probes);
+            make_and_check(member, i, workload, probes);
+            std::string& remark = member.finished->creation.remark;
+            if (remark.empty()) remark = member.finished->footprint.remark;
+            remark += (remark.empty() || shortfall.empty() ? "" : "; ") + shortfall;
+        } catch (const std::bad_alloc&) {
+            member.row.error = "out of memory: lower max_memory, or raise tau";
+        } catch (const std::exception& error) {
+            member.row.error = error.what();
+        }
+        if (!member.row.error.empty()) {
+            member.finished.reset();
+            member.space.reset();
+        } else if (observer_.case_checked) {
+            observer_.case_checked(*member.finished, member.row);
+        }
+        member.row.seconds = seconds_since(start);
+    }
+
+    /// Chooses the voxels of a case that asks for it; says if they fall short.
+    std::string choose_voxels(Case& c, const Workload& workload, const ReferenceProbes& probes) {
+        if (!c.equal_delta && !c.equal_memory) return "";
+        const EqualSetting found = find_equal_setting(
+            c, prepared_.entry(c), workload.domain.edges().maxCoeff(), workload.finest_length,
+            [&](const Case& trial) {
+                const auto space = make_and_fill(study_, trial, rows_, workload).build(trial);
+                return Trial{accuracy(*space, probes.coarse).max,
+                             static_cast<double>(space->footprint().bytes_total())};
+            });
+        c = found.setting;
+        return found.shortfall;
+    }
+
+    /// Makes the structure as often as asked for, with the same answers, and measures its accuracy.
+    void make_and_check(Member& member, std::size_t i, const Workload& workload,
+                        const ReferenceProbes& probes) {
+        const Case& c = member.row.setting;
+        const auto places = random_points(workload.domain, study_.access_points, study_.seed);
+        Creation creation;
+        std::uint64_t expected = 0;
+        for (int repeat = 0; repeat < study_.creation_repeats; ++repeat) {
+            member.space.reset();  // its memory first
+            const Filled filled = make_and_fill(study_, c, rows_, workload, observer_);
+            member.space = filled.build(c);
+            const std::uint64_t sum = checksum_of(*member.space, places);
+            if (repeat == 0) {
+                creation = filled.creation;
+                expected = sum;
+            } else {
+                append(creation, filled.creation);
+                if (sum != expected) {
+                    throw std::logic_error("a structure made again gives other answers");
+                }
+            }
+        }
+        notify(observer_.phase_started, "accuracy");
+        member.finished.emplace(Finished{finished_before_ + i, study_, c, workload, probes,
+                                         *member.space, std::move(creation),
+                                         member.space->footprint()});
+        Finished& finished = *member.finished;
+        finished.accuracy = accuracy(*member.space, probes.coarse);
+        finished.accuracy_fine = accuracy(*member.space, probes.fine);
+        finished.source_accuracy = source_accuracy(*member.space, workload.sources);
+        finished.access_batch = finished_before_ + i + 1 - batch_.size();
+    }
+
+    /// Times the access of all structures of the batch in turns, and hands out the rows.
+    void finish_batch() {
+        std::string error;
+        try {
+            time_batch();
+        } catch (const std::exception& e) {
+            error = e.what();
+        }
+        for (Member& member : batch_) {
+            if (member.row.error.empty()) member.row.error = error;
+            if (member.row.error.empty()) {
+                for (const Measure& measure : rows_.measures) {
+                    member.row.values[measure.key] = measure.value(*member.finished);
+                }
+            }
+            notify(observer_.case_finished, std::as_const(member.row));
+        }
+        batch_.clear();
+    }
+
+    void time_batch() {
+        std::vector<Member*> timed;
+        std::vector<const ControlSpace*> spaces;
+        for (Member& member : batch_) {
+            if (!member.space) continue;
+            timed.push_back(&member);
+            spaces.push_back(member.space.get());
+        }
+        if (timed.empty()) return;
+        notify(observer_.phase_started, "access");
+        const auto start = Clock::now();
+        const Finished& any = *timed.front()->finished;
+        const auto places = random_points(any.workload.domain, study_.access_points, study_.seed);
+        const auto random = access_times(spaces, places, study_.access_repeats);
+        const auto grid = access_times(spaces, any.probes.coarse.points, study_.access_repeats);
+        const double each = seconds_since(start) / static_cast<double>(timed.size());
+        for (std::size_t i = 0; i < timed.size(); ++i) {
+            timed[i]->finished->access_random = random[i];
+            timed[i]->finished->access_grid = grid[i];
+            timed[i]->row.seconds += each;
+        }
+    }
+
+    const PreparedStudy& prepared_;
+    const Study& study_;
+    const StudyRows& rows_;
+    std::size_t finished_before_;
+    const StudyObserver& observer_;
+    /// By the first case that needs them.
+    std::vector<std::pair<std::size_t, std::unique_ptr<ReferenceProbes>>> probes_;
+    std::list<Member> batch_;  // a Finished refers to its row
+};
 
 }  // namespace
 
@@ -83,113 +241,28 @@ const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> ca
     return *find_entry(catalogue, c.structure);
 }
 
-std::unique_ptr<ControlSpaceBuilder> make_and_fill(const Study& study, const Case& c,
-                                                   const CatalogueEntry& entry,
-                                                   const Workload& workload, Measures& m,
-                                                   const StudyObserver& observer) {
-    if (c.target_delta || has_field(c.sources)) {
-        require_follows(c, entry);
-        tell(observer.phase_started, "adaptation");
-        AdaptationGoal goal{workload.sources, workload.field.field, c.g_r};
-        if (c.target_delta) goal.target = *c.target_delta;
-        const auto start = std::chrono::steady_clock::now();
-        auto builder = entry.make(space_options(study, c, workload));
-        const AdaptationReport report = builder->adapt(goal);
-        m.insert_s = seconds_since(start);
-        if (const auto nodes = control_nodes(*builder->build(), Neighbourhood::faces)) {
-            m.gradation.largest_ratio_left =
-                largest_gradation(nodes->graph, nodes->metrics, GradationLaw::cone);
-        }
-        if (c.target_delta) {
-            m.footprint.remark =
-                fmt::format("δ {:.4g} reached{}{}", report.reached,
-                            report.shortfall.empty() ? "" : "; ", report.shortfall);
-        }
-        return builder;
-    }
-    tell(observer.phase_started, "insertion");
-    auto start = std::chrono::steady_clock::now();
-    auto builder = entry.make(space_options(study, c, workload));
-    m.sources_inserted = builder->insert(std::span<const PointSource>(workload.sources)).inserted;
-    m.insert_s = seconds_since(start);
-
-    tell(observer.phase_started, "gradation");
-    start = std::chrono::steady_clock::now();
-    m.gradation = builder->grade(
-        {.law = c.law, .schedule = c.schedule, .ratio = c.g_r, .neighbourhood = c.neighbourhood});
-    m.gradation_s = seconds_since(start);
-    if (c.node_values == NodeValues::exact) {
-        follow_at_nodes(dynamic_cast<NodeBuilder&>(*builder), *make_reference(study, c, workload));
-    }
-    return builder;
-}
-
-std::unique_ptr<ControlSpace> finish(ControlSpaceBuilder& builder, const Case& c) {
-    if (c.frozen == Frozen::no) return builder.build();
-    return builder.build(
-        {.precision = c.frozen == Frozen::floats ? Precision::floats : Precision::doubles});
-}
-
-/// Chooses the voxels of a case that asks for it, and says in the row if they fall short.
-std::string choose_equal_setting(const Study& study, Case& c, const CatalogueEntry& entry,
-                                 const Workload& workload, const ReferenceProbes& probes) {
-    if (!c.equal_delta && !c.equal_memory) return "";
-    const double longest_edge = workload.domain.edges().maxCoeff();
-    const EqualSetting found =
-        find_equal_setting(c, entry, longest_edge, workload.finest_length, [&](const Case& trial) {
-            Measures ignored;
-            const auto space =
-                finish(*make_and_fill(study, trial, entry, workload, ignored, {}), trial);
-            return Trial{accuracy(*space, probes.coarse).max,
-                         static_cast<double>(space->footprint().bytes_total())};
-        });
-    c = found.setting;
-    return found.shortfall;
-}
-
-Measures run_case(const Study& study, const Case& c, const CatalogueEntry& entry,
-                  const Workload& workload, const ReferenceProbes& probes,
-                  const StudyObserver& observer) {
-    Measures m;
-    const auto space = finish(*make_and_fill(study, c, entry, workload, m, observer), c);
-    const std::string remark = std::move(m.footprint.remark);
-    m.footprint = space->footprint();
-    if (!remark.empty()) m.footprint.remark = remark;
-
-    tell(observer.phase_started, "access");
-    const auto random = random_points(workload.domain, study.access_points, study.seed);
-    m.access_random = access_time(*space, random, study.access_repeats);
-    m.access_grid = access_time(*space, probes.coarse.points, study.access_repeats);
-
-    tell(observer.phase_started, "accuracy");
-    m.accuracy = accuracy(*space, probes.coarse);
-    m.accuracy_fine = accuracy(*space, probes.fine);
-    m.source_accuracy = source_accuracy(*space, workload.sources);
-    return m;
-}
-
-PreparedStudy::PreparedStudy(Study study, std::span<const CatalogueEntry> catalogue,
-                             const FileReaders& readers, std::size_t finished)
-    : study_(std::move(study)), catalogue_(catalogue), cases_(expand(study_, catalogue)) {
+PreparedStudy::PreparedStudy(Study study, const StudyRows& rows, const FileReaders& readers,
+                             std::size_t finished)
+    : study_(std::move(study)), rows_(rows), finished_(finished), cases_(expand(study_, rows)) {
     cases_.erase(cases_.begin(), cases_.begin() + static_cast<std::ptrdiff_t>(finished));
     for (std::size_t i = 0; i < cases_.size(); ++i) {
         const Case& c = cases_[i];
-        const bool known =
-            std::any_of(sources_.begin(), sources_.end(),
-                        [&](const SharedSources& shared) { return shared.choice == c.sources; });
+        const bool known = std::ranges::any_of(
+            sources_, [&](const SharedSources& shared) { return shared.choice == c.sources; });
         if (!known) sources_.push_back({c.sources, make_workload(study_, c.sources, readers), i});
         SharedSources& shared = sources_of(c);
         shared.last_use = i;
         source_counts_.push_back(shared.workload.sources.size());
-        space_options(study_, c, shared.workload);
+        space_options(study_, c, shared.workload, rows_.parameters);
     }
 }
 
-const CatalogueEntry& PreparedStudy::entry(const Case& c) const { return entry_of(c, catalogue_); }
+const CatalogueEntry& PreparedStudy::entry(const Case& c) const {
+    return entry_of(c, rows_.structures);
+}
 
 const PreparedStudy::SharedSources& PreparedStudy::sources_of(const Case& c) const {
-    return *std::find_if(sources_.begin(), sources_.end(),
-                         [&](const SharedSources& shared) { return shared.choice == c.sources; });
+    return *std::ranges::find(sources_, c.sources, &SharedSources::choice);
 }
 
 PreparedStudy::SharedSources& PreparedStudy::sources_of(const Case& c) {
@@ -197,32 +270,10 @@ PreparedStudy::SharedSources& PreparedStudy::sources_of(const Case& c) {
 }
 
 void PreparedStudy::run(const StudyObserver& observer) && {
-    ProbeCache probe_cache(cases_);
-    for (std::size_t i = 0; i < cases_.size(); ++i) {
-        const Case& c = cases_[i];
-        SharedSources& shared = sources_of(c);
-        tell(observer.case_started, c);
-        Row row{c, shared.workload.sources.size(), std::nullopt, {}};
-        try {
-            const ReferenceProbes& probes = probe_cache.get(i, [&] {
-                tell(observer.phase_started, "reference field");
-                return make_reference_probes(study_, c, shared.workload);
-            });
-            const CatalogueEntry& entry = this->entry(c);
-            const std::string shortfall =
-                choose_equal_setting(study_, row.setting, entry, shared.workload, probes);
-            row.measures = run_case(study_, row.setting, entry, shared.workload, probes, observer);
-            std::string& remark = row.measures->footprint.remark;
-            remark += (remark.empty() || shortfall.empty() ? "" : "; ") + shortfall;
-        } catch (const std::bad_alloc&) {
-            row.error = "out of memory: lower max_memory, or raise tau";
-        } catch (const std::exception& error) {
-            row.error = error.what();
-        }
-        probe_cache.drop_after(i);
+    Runner(*this, finished_, observer).run([this](std::size_t i) {
+        SharedSources& shared = sources_of(cases_[i]);
         if (shared.last_use == i) shared.workload.sources = {};
-        tell(observer.case_finished, row);
-    }
+    });
 }
 
 }  // namespace controlspace

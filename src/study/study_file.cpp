@@ -1,5 +1,3 @@
-#include "study/study_file.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
@@ -7,8 +5,8 @@
 #include <algorithm>
 
 #include "controlspace/error.h"
+#include "controlspace/study/study.h"
 #include "io/text/text_file.h"
-#include "study/settings.h"
 
 namespace controlspace {
 namespace {
@@ -18,51 +16,62 @@ namespace {
     throw InputError(fmt::format("{}:{}: {}", place.string(), source.begin.line, what));
 }
 
-/// The settings that stand in one table of the file.
+/// The keys and values of one table of the file.
 class Section {
 public:
     Section(const toml::table& table, const std::filesystem::path& place)
         : table_(table), place_(place) {}
 
-    template <class Target>
-    void apply(std::span<const Setting<Target>> settings, Target& target) const {
-        for (const Setting<Target>& setting : settings) {
-            const toml::node* node = table_.get(setting.key);
-            if (node == nullptr) continue;
-            if (!setting.same_as.empty()) require_alone(settings, setting, *node);
-            const SettingValues given = values(*node);
-            try {
-                set_checked(setting, target, given);
-            } catch (const InputError& error) {
-                fail(place_, node->source(), fmt::format("{}: {}", setting.key, error.what()));
-            }
+    void apply(Study& study) const {
+        for (const Parameter<Study>& p : study_parameters()) {
+            if_given(p.key, [&](const Values& v) { set_checked(p.access, study, v); });
         }
     }
 
-    void require_known(const std::vector<std::string_view>& known) const {
+    void apply(std::span<const CaseParameter> parameters, Run& run) const {
+        if_given(structures_key, [&](const Values& v) { run.set_structures(v); });
+        for (const CaseParameter& p : parameters) {
+            if_given(p.key, [&](const Values& v) {
+                require_alone(parameters, p);
+                run.set(p, v, parameters);
+            });
+        }
+    }
+
+    void require_known(const std::vector<std::string>& known) const {
         for (const auto& [key, node] : table_) {
-            if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
+            if (std::ranges::count(known, key.str()) > 0) continue;
             fail(place_, key.source(),
                  fmt::format("unknown key '{}': known are {}", key.str(), fmt::join(known, ", ")));
         }
     }
 
 private:
+    template <class Set>
+    void if_given(const std::string& key, const Set& set) const {
+        const toml::node* node = table_.get(key);
+        if (node == nullptr) return;
+        const Values given = values(*node);
+        try {
+            set(given);
+        } catch (const InputError& error) {
+            fail(place_, node->source(), fmt::format("{}: {}", key, error.what()));
+        }
+    }
+
     /// Of the keys that set one value in several forms only one may be given.
-    template <class Target>
-    void require_alone(std::span<const Setting<Target>> settings, const Setting<Target>& setting,
-                       const toml::node& node) const {
-        for (const Setting<Target>& other : settings) {
-            const bool related = other.key == setting.same_as || other.same_as == setting.same_as;
-            if (related && other.key != setting.key && table_.contains(other.key)) {
-                fail(place_, node.source(),
-                     fmt::format("{} and {} say the same: give one", setting.key, other.key));
+    void require_alone(std::span<const CaseParameter> parameters, const CaseParameter& one) const {
+        if (one.same_as.empty()) return;
+        for (const CaseParameter& other : parameters) {
+            const bool related = other.key == one.same_as || other.same_as == one.same_as;
+            if (related && other.key != one.key && table_.contains(other.key)) {
+                throw InputError(fmt::format("{} says the same: give one", other.key));
             }
         }
     }
 
-    SettingValues values(const toml::node& node) const {
-        SettingValues values;
+    Values values(const toml::node& node) const {
+        Values values;
         const auto add = [&](const toml::node& item) {
             if (const auto* x = item.as_floating_point()) {
                 values.emplace_back(x->get());
@@ -86,46 +95,47 @@ private:
     const std::filesystem::path& place_;
 };
 
-template <class Target>
-void add_keys(std::vector<std::string_view>& keys, std::span<const Setting<Target>> settings) {
-    for (const Setting<Target>& setting : settings) keys.push_back(setting.key);
-}
-
-void read_runs(const toml::node& node, const std::filesystem::path& place, Study& study) {
+void read_runs(const toml::node& node, const std::filesystem::path& place,
+               std::span<const CaseParameter> parameters, const std::vector<std::string>& keys,
+               Study& study) {
     const toml::array* tables = node.as_array();
     if (tables == nullptr || tables->empty() || !tables->is_homogeneous<toml::table>()) {
         fail(place, node.source(), "runs: give tables [[runs]]");
     }
-    std::vector<std::string_view> keys;
-    add_keys(keys, run_settings());
     const Run defaults = study.runs.front();
     study.runs.clear();
     for (const toml::node& table : *tables) {
         const Section section(*table.as_table(), place);
         section.require_known(keys);
-        section.apply(run_settings(), study.runs.emplace_back(defaults));
+        section.apply(parameters, study.runs.emplace_back(defaults));
     }
 }
 
 }  // namespace
 
-Study parse_study(std::string_view text, const std::filesystem::path& place) {
+Study parse_study(std::string_view text, const std::filesystem::path& place,
+                  std::span<const CaseParameter> parameters) {
     toml::table table;
     try {
         table = toml::parse(text, place.string());
     } catch (const toml::parse_error& error) {
         fail(place, error.source(), error.description());
     }
+    std::vector<std::string> run_keys{structures_key};
+    for (const CaseParameter& p : parameters) run_keys.push_back(p.key);
+    std::vector<std::string> keys = run_keys;
+    for (const Parameter<Study>& p : study_parameters()) keys.push_back(p.key);
+    keys.emplace_back("runs");
+
     Study study;
     study.name = place.stem().string();
     const Section top(table, place);
-    std::vector<std::string_view> keys{"runs"};
-    add_keys(keys, study_settings());
-    add_keys(keys, run_settings());
     top.require_known(keys);
-    top.apply(study_settings(), study);
-    top.apply(run_settings(), study.runs.front());
-    if (const toml::node* runs = table.get("runs")) read_runs(*runs, place, study);
+    top.apply(study);
+    top.apply(parameters, study.runs.front());
+    if (const toml::node* runs = table.get("runs")) {
+        read_runs(*runs, place, parameters, run_keys, study);
+    }
     if (study.sources.kind == SourcesKind::file) {
         study.sources.file = place.parent_path() / study.sources.file;
     }
@@ -134,8 +144,8 @@ Study parse_study(std::string_view text, const std::filesystem::path& place) {
     return study;
 }
 
-Study read_study(const std::filesystem::path& file) {
-    return parse_study(read_text_file(file), file);
+Study read_study(const std::filesystem::path& file, std::span<const CaseParameter> parameters) {
+    return parse_study(read_text_file(file), file, parameters);
 }
 
 }  // namespace controlspace

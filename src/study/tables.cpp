@@ -1,96 +1,97 @@
 #include "study/tables.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-
-#include "study/names.h"
-#include "study/pareto.h"
+#include <utility>
 
 namespace controlspace {
 namespace {
 
-constexpr double mb = 1e6;  // bytes
-
 constexpr std::string_view absent = "–";
 
-std::vector<std::string> measure_cells(const Row& row) {
-    const Case& c = row.setting;
-    std::vector<std::string> cells{variant_label(c), std::string(c.split ? name_of(*c.split) : "")};
-    if (!row.measures) {
-        cells.insert(cells.end(), 12, std::string(absent));
-        cells.push_back("failed: " + row.error);
-        return cells;
+using Rows = std::vector<const Row*>;
+
+/// "Fastest access: K_L s_L." where its quartiles are below those of all others; otherwise those
+/// that overlap with the smallest median.
+std::string verdict(const Measure& measure, const Rows& rows, const StudyRows& columns) {
+    Rows timed = rows;
+    std::erase_if(timed, [](const Row* row) { return !row->is_measured(); });
+    if (timed.size() < 2 || measure.column.least.empty()) return "";
+    std::string what = measure.column.least;
+    what.front() = static_cast<char>(std::toupper(what.front()));
+    const auto in_batch = [&](const Row* row) { return row->number("access_batch"); };
+    if (std::ranges::any_of(
+            timed, [&](const Row* row) { return in_batch(row) != in_batch(timed.front()); })) {
+        return fmt::format(" {}: no statement, since the rows were not timed in turns.", what);
     }
-    const Measures& m = *row.measures;
-    cells.push_back(m.footprint.leaves > 0 ? fmt::format("{}", m.footprint.leaves)
-                                           : std::string(absent));
-    cells.push_back(fmt::format("{:.2f}", static_cast<double>(m.footprint.bytes_total()) / mb));
-    cells.push_back(fmt::format("{:.3f}", m.insert_s + m.gradation_s));
-    cells.push_back(fmt::format("{:.1f}", m.access_random.median_ns()));
-    cells.push_back(fmt::format("{:.1f}", m.access_grid.median_ns()));
-    cells.push_back(fmt::format("{:.4f}", m.accuracy.max));
-    cells.push_back(fmt::format("{:.4f}", m.accuracy.mean));
-    cells.push_back(fmt::format("{:.4f}", m.accuracy.p99));
-    cells.push_back(fmt::format("{:.4f}", m.accuracy_fine.max));
-    const Accuracy& fine = m.accuracy_fine;
-    cells.push_back(fmt::format("{:.2f} %", 100 * fine.coarser_share));
-    cells.push_back(fmt::format("{:.3f}", fine.coarser_max));
-    cells.push_back(fmt::format("{:.4f}", m.gradation.largest_ratio_left));
-    cells.push_back(m.footprint.remark);
-    return cells;
+    const Row* least = *std::ranges::min_element(
+        timed, {}, [&](const Row* row) { return row->number(measure.key); });
+    std::vector<std::string> labels;
+    for (const Row* row : timed) {
+        if (row->number(measure.key + "_q1") <= least->number(measure.key + "_q3")) {
+            labels.push_back(structure_label(row->setting, columns.parameters));
+        }
+    }
+    return fmt::format(" {}: {}{}.", what, labels.size() > 1 ? "indistinguishable between " : "",
+                       fmt::join(labels, "; "));
 }
 
-TextTable empty_measure_table(const std::string& title) {
-    return {
+TextTable table_of(const std::string& title, const Rows& rows, const StudyRows& columns) {
+    TextTable table{
         title,
-        "Fine: at the finer probes. Coarser: share of them where a length asked for exceeds the "
+        "Fine: at the finer probes. Coarser: share of them where a requested length exceeds the "
         "reference's by over 1 % in some direction; worst: largest ratio of the two.",
-        {{"structure", Align::left},
-         {"split", Align::left},
-         {"leaves"},
-         {"MB"},
-         {"creation s"},
-         {"random ns"},
-         {"grid ns"},
-         {"δ_R max"},
-         {"δ_R mean"},
-         {"δ_R p99"},
-         {"fine max"},
-         {"fine coarser"},
-         {"worst"},
-         {"G left"},
-         {"remark", Align::left}},
+        {{"structure", Align::left}},
         {}};
+    for (const Row* row : rows) {
+        table.rows.push_back({structure_label(row->setting, columns.parameters)});
+    }
+    for (const Measure& measure : columns.measures) {
+        if (measure.column.header.empty()) continue;
+        const bool is_text = measure.key == "remark";
+        table.columns.push_back({measure.column.header, is_text ? Align::left : Align::right});
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const auto value = rows[i]->values.find(measure.key);
+            table.rows[i].push_back(value != rows[i]->values.end()
+                                        ? cell_of(value->second, measure.column)
+                                    : is_text ? "failed: " + rows[i]->error
+                                              : std::string(absent));
+        }
+        table.note += verdict(measure, rows, columns);
+    }
+    return table;
 }
 
 }  // namespace
 
-std::vector<TextTable> measure_tables(std::span<const Row> rows) {
-    std::vector<TextTable> tables;
-    for (const Row& row : rows) {
-        const std::string title = "All measures: " + setting_label(row.setting);
-        auto table = std::find_if(tables.begin(), tables.end(),
-                                  [&](const TextTable& t) { return t.title == title; });
-        if (table == tables.end()) {
-            table = tables.insert(tables.end(), empty_measure_table(title));
-        }
-        table->rows.push_back(measure_cells(row));
+std::string cell_of(const MeasuredValue& value, const Column& column) {
+    const auto scaled = [&](double x) {
+        return fmt::format(fmt::runtime(column.format), column.scale * x);
+    };
+    if (const auto* text = std::get_if<std::string>(&value)) return *text;
+    if (const auto* x = std::get_if<double>(&value)) return scaled(*x);
+    if (const auto* whole = std::get_if<std::int64_t>(&value)) {
+        return column.format == "{}" ? fmt::format("{}", *whole)
+                                     : scaled(static_cast<double>(*whole));
     }
-    return tables;
+    return std::string(absent);
 }
 
-std::string render_tables(std::span<const Row> rows, TableStyle style) {
-    std::string text;
-    const auto add = [&](const std::vector<TextTable>& tables) {
-        for (const TextTable& table : tables) {
-            if (!text.empty()) text += '\n';
-            text += render(table, style);
-        }
-    };
-    add(measure_tables(rows));
-    add(pareto_tables(rows));
-    return text;
+std::vector<TextTable> measure_tables(std::span<const Row> rows, const StudyRows& columns) {
+    std::vector<std::pair<std::string, Rows>> settings;
+    for (const Row& row : rows) {
+        const std::string title = "All measures: " + setting_label(row.setting, columns.parameters);
+        auto found = std::ranges::find(settings, title, &std::pair<std::string, Rows>::first);
+        if (found == settings.end()) found = settings.insert(found, {title, {}});
+        found->second.push_back(&row);
+    }
+    std::vector<TextTable> tables;
+    for (const auto& [title, members] : settings) {
+        tables.push_back(table_of(title, members, columns));
+    }
+    return tables;
 }
 
 }  // namespace controlspace

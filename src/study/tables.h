@@ -1,18 +1,18 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
-#include "study/row.h"
+#include "controlspace/study/measure.h"
 #include "study/text_table.h"
 
 namespace controlspace {
 
-/// All measures of all rows, one table for each setting and mode.
-std::vector<TextTable> measure_tables(std::span<const Row> rows);
+/// A value as its column shows it.
+std::string cell_of(const MeasuredValue& value, const Column& column);
 
-/// The same, and the fronts (pareto_tables).
-std::string render_tables(std::span<const Row> rows, TableStyle style);
+/// All measures that have columns, one table for each setting. A note says which structure is the
+/// fastest, where the quartiles of its access times do not overlap with those of others.
+std::vector<TextTable> measure_tables(std::span<const Row> rows, const StudyRows& columns);
 
 }  // namespace controlspace

@@ -70,4 +70,12 @@ std::string render(const TextTable& table, TableStyle style) {
     return text;
 }
 
+std::string render(const std::vector<TextTable>& tables, TableStyle style) {
+    std::string text;
+    for (const TextTable& table : tables) {
+        text += (text.empty() ? "" : "\n") + render(table, style);
+    }
+    return text;
+}
+
 }  // namespace controlspace

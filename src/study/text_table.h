@@ -23,5 +23,7 @@ enum class TableStyle { terminal, markdown };
 
 /// Title, note and aligned columns; UTF-8 counts by characters.
 std::string render(const TextTable& table, TableStyle style);
+/// One after the other.
+std::string render(const std::vector<TextTable>& tables, TableStyle style);
 
 }  // namespace controlspace

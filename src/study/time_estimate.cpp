@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "controlspace/study/parameter.h"
+
 namespace controlspace {
 
 std::string duration_text(double seconds) {

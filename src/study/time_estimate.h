@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "study/case.h"
+#include "controlspace/study/case.h"
 
 namespace controlspace {
 

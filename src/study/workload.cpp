@@ -1,10 +1,8 @@
-#include "study/workload.h"
+#include "controlspace/study/workload.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,7 +12,6 @@
 #include "controlspace/io/read_sources.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/space/control_space.h"
-#include "study/names.h"
 
 namespace controlspace {
 namespace {
@@ -25,31 +22,10 @@ namespace {
                     file.string(), lower_case_extension(file)));
 }
 
-constexpr std::array<std::string_view, 4> with_arrays{".vtu", ".vtp", ".msh", ".pos"};
-constexpr std::array<std::string_view, 4> surfaces{".stl", ".obj", ".ply", ".off"};
-
-bool is_one_of(const std::string& ending, std::span<const std::string_view> endings) {
-    return std::find(endings.begin(), endings.end(), ending) != endings.end();
-}
-
 /// Formats that other libraries read.
 bool needs_reader(const std::string& ending) {
-    return ending == ".vdb" || ending == ".vtu" || ending == ".vtp" || is_one_of(ending, surfaces);
-}
-
-/// What is given for files of another format would be passed over.
-void require_fitting_options(const SourcesChoice& choice, const std::string& ending) {
-    const auto fail = [&](const char* keys, const char* formats) {
-        throw InputError(fmt::format("{} are for {}: leave them out with {}", keys, formats,
-                                     choice.file.string()));
-    };
-    const FileSources plain;
-    if (choice.in_file.array != plain.array && !is_one_of(ending, with_arrays)) {
-        fail("names of arrays (source_array)", ".vtu, .vtp, .msh and .pos");
-    }
-    if (choice.in_file.curvature != plain.curvature && !is_one_of(ending, surfaces)) {
-        fail("surface_angle, surface_h_min and surface_h_max", ".stl, .obj, .ply and .off");
-    }
+    constexpr std::string_view endings[] = {".vdb", ".vtu", ".vtp", ".stl", ".obj", ".ply", ".off"};
+    return std::ranges::count(endings, ending) > 0;
 }
 
 std::vector<PointSource> make_sources(const SourcesChoice& s, std::uint64_t seed,
@@ -103,7 +79,6 @@ double finest_length_of(const Workload& workload) {
 
 std::vector<PointSource> read_source_file(const SourcesChoice& choice, const FileReaders& readers) {
     const std::string ending = lower_case_extension(choice.file);
-    require_fitting_options(choice, ending);
     if (const auto reader = readers.sources.find(ending); reader != readers.sources.end()) {
         return reader->second(choice);
     }
@@ -125,7 +100,8 @@ Workload make_workload(const Study& study, const SourcesChoice& choice,
     return workload;
 }
 
-SpaceOptions space_options(const Study& study, const Case& c, const Workload& workload) {
+SpaceOptions space_options(const Study& study, const Case& c, const Workload& workload,
+                           std::span<const CaseParameter> parameters) {
     constexpr double gib = 1024.0 * 1024 * 1024;
     SpaceOptions options;
     options.domain = workload.domain;
@@ -139,12 +115,15 @@ SpaceOptions space_options(const Study& study, const Case& c, const Workload& wo
     options.voxel = c.voxel.value_or(0);
     if (c.voxel_factor) options.voxel_factor = *c.voxel_factor;
     options.prune_delta = c.prune_delta.value_or(0);
+    for (const CaseParameter& parameter : parameters) {
+        if (parameter.apply && !values_of(parameter, c).empty()) parameter.apply(c, options);
+    }
     require_valid(options);
     return options;
 }
 
 std::shared_ptr<const ControlSpace> make_reference(const Study& study, const Case& c,
-                                                  const Workload& workload) {
+                                                   const Workload& workload) {
     const double largest = workload.domain.half_diagonal();
     if (c.reference == ReferenceKind::published_sphere) {
         const SourcesChoice& s = c.sources;

@@ -11,7 +11,7 @@
 
 #include "controlspace/baselines/catalogue.h"
 #include "editable_space.h"
-#include "measure/access_time.h"
+#include "controlspace/measure/access_time.h"
 #include "scratch_directory.h"
 
 using namespace controlspace;

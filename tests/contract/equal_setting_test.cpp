@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "controlspace/baselines/catalogue.h"
-#include "study/run.h"
+#include "controlspace/study/run.h"
 
 using namespace controlspace;
 
@@ -15,45 +15,45 @@ std::vector<Row> rows_of(const Run& run) {
     study.sources.h = 0.1;
     study.access_points = 1000;
     study.access_repeats = 3;
+    study.creation_repeats = 1;
     study.probe_grid = 12;
     study.fine_probe_grid = 3;
     study.runs = {run};
     std::vector<Row> rows;
-    PreparedStudy(study, structures())
-        .run({.case_started = {}, .phase_started = {}, .case_finished = [&](const Row& row) {
-                  rows.push_back(row);
-              }});
+    StudyObserver observer;
+    observer.case_finished = [&](const Row& row) { rows.push_back(row); };
+    PreparedStudy(study, {structures()}).run(observer);
     return rows;
 }
 
 }  // namespace
 
 TEST_CASE("every grid comes to an accuracy, and the row says by which voxels") {
-    for (const Row& row : rows_of({.structures = {"baselines"},
-                          .equal_delta = {0.05},
-                          .node_values = {NodeValues::exact}})) {
+    for (const Row& row : rows_of({{"structures", {"baselines"}},
+                                   {"equal_delta", {0.05}},
+                                   {"node_values", {"exact"}}})) {
         if (row.setting.structure == "direct") continue;
         CAPTURE(structure_label(row.setting), row.error);
-        REQUIRE(row.measures);
-        CHECK(row.measures->accuracy.max <= 0.05);
+        REQUIRE(row.is_measured());
+        CHECK(row.number("delta_R_max") <= 0.05);
         REQUIRE(row.setting.voxel);
-        Run again{.structures = {row.setting.structure}, .node_values = {NodeValues::exact}};
-        again.voxel = {*row.setting.voxel};
-        again.voxel_factor = {row.setting.voxel_factor.value_or(1)};
-        again.prune_delta = {row.setting.prune_delta.value_or(0)};
+        Run again{{"structures", {row.setting.structure}}, {"node_values", {"exact"}}};
+        again["voxel"] = {*row.setting.voxel};
+        again["voxel_factor"] = {row.setting.voxel_factor.value_or(1)};
+        again["prune_delta"] = {row.setting.prune_delta.value_or(0)};
         const Row other = rows_of(again).front();
-        REQUIRE(other.measures);
-        CHECK(other.measures->accuracy.max == row.measures->accuracy.max);
-        CHECK(other.measures->footprint.bytes_total() == row.measures->footprint.bytes_total());
+        REQUIRE(other.is_measured());
+        CHECK(other.number("delta_R_max") == row.number("delta_R_max"));
+        CHECK(other.number("bytes_total") == row.number("bytes_total"));
     }
 }
 
 TEST_CASE("every grid keeps to a memory, and uses it") {
-    for (const Row& row : rows_of({.structures = {"baselines"}, .equal_memory = {8}})) {
+    for (const Row& row : rows_of({{"structures", {"baselines"}}, {"equal_memory", {8}}})) {
         if (row.setting.structure == "direct") continue;
         CAPTURE(structure_label(row.setting), row.error);
-        REQUIRE(row.measures);
-        CHECK(row.measures->footprint.bytes_total() <= 8'000'000);
-        CHECK(row.measures->footprint.bytes_total() > 4'000'000);
+        REQUIRE(row.is_measured());
+        CHECK(row.number("bytes_total") <= 8'000'000);
+        CHECK(row.number("bytes_total") > 4'000'000);
     }
 }

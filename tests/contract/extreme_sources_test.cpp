@@ -7,7 +7,7 @@
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"
-#include "measure/access_time.h"
+#include "controlspace/measure/access_time.h"
 #include "metric/draw.h"
 
 using namespace controlspace;

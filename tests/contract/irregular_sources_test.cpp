@@ -5,7 +5,7 @@
 #include "controlspace/metric/intersection.h"
 #include "controlspace/sources/scattered_surfaces.h"
 #include "editable_space.h"
-#include "measure/access_time.h"
+#include "controlspace/measure/access_time.h"
 
 using namespace controlspace;
 

@@ -7,7 +7,7 @@
 #include "contract/structure_case.h"
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"
-#include "measure/access_time.h"
+#include "controlspace/measure/access_time.h"
 
 using namespace controlspace;
 

@@ -5,7 +5,7 @@
 #include "controlspace/error.h"
 #include "controlspace/space/control_space_file.h"
 #include "editable_space.h"
-#include "measure/access_time.h"
+#include "controlspace/measure/access_time.h"
 #include "sources/files.h"
 
 using namespace controlspace;

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "controlspace/error.h"
-#include "measure/access_time.h"
+#include "controlspace/measure/access_time.h"
 #include "measure/fake_spaces.h"
 #include "metric/draw.h"
 

@@ -14,7 +14,7 @@
 #include "counting_allocator.h"
 #include "editable_space.h"
 #include "geometry/random_fractions.h"
-#include "measure/access_time.h"
+#include "controlspace/measure/access_time.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

@@ -7,7 +7,7 @@
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
 #include "editable_space.h"
-#include "measure/access_time.h"
+#include "controlspace/measure/access_time.h"
 
 using namespace controlspace;
 

@@ -14,9 +14,9 @@ Study small_sphere() {
     Study study;
     study.sources.h = 0.03;
     study.access_points = 100;
-    study.access_repeats = 1;
+    study.access_repeats = study.creation_repeats = 1;
     study.probe_grid = study.fine_probe_grid = 3;
-    study.runs[0].splits = {SplitRule::middle};
+    study.runs[0]["splits"] = {"s_L"};
     return study;
 }
 
@@ -24,7 +24,7 @@ Study small_sphere() {
 
 TEST_CASE("memory is foretold within a factor of 1.5, for every structure") {
     const Study study = small_sphere();
-    PreparedStudy prepared(study, structures());
+    PreparedStudy prepared(study, {structures()});
     const auto forecasts = forecast(prepared);
     REQUIRE(forecasts.size() == structures().size());
     std::vector<Row> rows;
@@ -34,9 +34,9 @@ TEST_CASE("memory is foretold within a factor of 1.5, for every structure") {
     REQUIRE(rows.size() == forecasts.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
         INFO(structure_label(rows[i].setting));
-        REQUIRE(rows[i].measures);
+        REQUIRE(rows[i].is_measured());
         REQUIRE(forecasts[i]);
-        const auto bytes = static_cast<double>(rows[i].measures->footprint.bytes_total());
+        const double bytes = rows[i].number("bytes_total");
         CHECK(forecasts[i]->bytes > bytes / 1.5);
         CHECK(forecasts[i]->bytes < bytes * 1.5);
         CHECK(forecasts[i]->seconds > 0);
@@ -45,10 +45,10 @@ TEST_CASE("memory is foretold within a factor of 1.5, for every structure") {
 
 TEST_CASE("more sources take more memory; what only running tells has no forecast") {
     Study study = small_sphere();
-    study.runs[0].structures = {"K_oL"};
-    study.runs[0].rho = {1, 0.5};
-    study.runs[0].target_delta = {0, 0.1};
-    const PreparedStudy prepared(study, structures());
+    study.runs[0]["structures"] = {"K_oL"};
+    study.runs[0]["rho"] = {1, 0.5};
+    study.runs[0]["target_delta"] = {0, 0.1};
+    const PreparedStudy prepared(study, {structures()});
     const auto forecasts = forecast(prepared);
     std::vector<double> bytes;
     for (std::size_t i = 0; i < forecasts.size(); ++i) {
@@ -59,17 +59,17 @@ TEST_CASE("more sources take more memory; what only running tells has no forecas
     CHECK(bytes[0] < bytes[1]);
     CHECK_THAT(forecast_text(prepared, forecasts),
                Contains("4 cases: about 0:") && Contains("2 of them (–) not counted"));
-    study.runs[0].target_delta = {0.1};
-    const PreparedStudy adapted(study, structures());
+    study.runs[0]["target_delta"] = {0.1};
+    const PreparedStudy adapted(study, {structures()});
     CHECK_THAT(forecast_text(adapted, forecast(adapted)), Contains("2 cases: no trial tells"));
 }
 
 TEST_CASE("a grid that outgrows the cap on memory is foretold at the cap") {
     Study study = small_sphere();
-    study.runs[0].structures = {"uniform-nearest"};
-    study.runs[0].voxel = {0.001};
+    study.runs[0]["structures"] = {"uniform-nearest"};
+    study.runs[0]["voxel"] = {0.001};
     study.max_memory_gib = 0.01;
-    const PreparedStudy prepared(study, structures());
+    const PreparedStudy prepared(study, {structures()});
     const auto forecasts = forecast(prepared);
     REQUIRE(forecasts[0]);
     CHECK(forecasts[0]->bytes == Approx(0.01 * 1024 * 1024 * 1024));

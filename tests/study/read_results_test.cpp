@@ -1,15 +1,11 @@
-#include "study/read_results.h"
-
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "controlspace/error.h"
+#include "controlspace/study/results.h"
 #include "scratch_directory.h"
-#include "study/results.h"
-#include "study/row_json.h"
+#include "study/results_json.h"
 #include "study/sample_rows.h"
 
 using namespace controlspace;
@@ -29,13 +25,23 @@ std::vector<Row> some_rows() {
     rows[1].setting.voxel_factor = 0.7;
     rows[1].setting.prune_delta = 0.05;
     rows[1].setting.target_delta = 0.1;
-    rows[1].measures->footprint.bytes_published.reset();
-    rows.push_back({published_case(), 36186, std::nullopt, "out of memory, \"really\""});
+    rows[1].values["bytes_published_accounting"] = MeasuredValue();
+    rows[1].fields = FieldFiles{{Point(0, 1, 2), Point(3, 4, 5)}, 1, "a", "b", "", "d", "e"};
+    rows.push_back(failed_row());
     return rows;
 }
 
+const StudyRows rows_of_trees = tree_rows();
+
+void write(const std::filesystem::path& folder, const Provenance& provenance, const Study& study,
+           std::vector<Row> rows, bool complete) {
+    ResultsFolder(folder, provenance, study, rows_of_trees, std::move(rows)).finish(complete);
+}
+
 Json valid_json() {
-    return Json::parse(results_json(current_provenance(), Study{}, some_rows(), true));
+    const ScratchDirectory folder;
+    write(folder.path(), current_provenance(), Study{}, some_rows(), true);
+    return Json::parse(file_text(folder.path() / "results.json"));
 }
 
 }  // namespace
@@ -55,9 +61,10 @@ TEST_CASE("what was written is read back") {
     rows[1].setting.sources.field.kind = FieldKind::ugawg_polar_1;
     Provenance provenance = current_provenance();
     provenance.command_line = "controlspace compare";
-    ResultsFolder(folder.path()).write(provenance, study, rows, false);
+    write(folder.path(), provenance, study, rows, false);
+    const std::string text = file_text(folder.path() / "results.json");
 
-    const StoredResults read = read_results(folder.path());
+    const StoredResults read = read_results(folder.path(), rows_of_trees);
     CHECK_FALSE(read.complete);
     CHECK(read.study.name == "mine");
     CHECK(read.study.seed == 7);
@@ -67,39 +74,26 @@ TEST_CASE("what was written is read back") {
     REQUIRE(read.rows.size() == rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
         CHECK(read.rows[i].setting == rows[i].setting);
-        CHECK(to_json(read.rows[i]) == to_json(rows[i]));
+        CHECK(to_json(read.rows[i], rows_of_trees) == to_json(rows[i], rows_of_trees));
     }
-    CHECK(results_json(read.provenance, read.study, read.rows, false) ==
-          results_json(provenance, study, rows, false));
-}
-
-TEST_CASE("results of before grids, samplings and fields had settings are read") {
-    const ScratchDirectory folder;
-    Json json = valid_json();
-    for (Json& row : json["rows"]) {
-        for (const char* field :
-             {"voxel", "voxel_factor", "prune_delta", "target_delta", "sampling", "field"})
-            row.erase(field);
-    }
-    folder.file("results.json", json.dump());
-    const StoredResults read = read_results(folder.path());
-    REQUIRE(read.rows.size() == some_rows().size());
-    CHECK(read.rows[0].setting == some_rows()[0].setting);
-    CHECK_FALSE(read.rows[1].setting.voxel);
+    write(folder.path(), read.provenance, read.study, read.rows, false);
+    CHECK(file_text(folder.path() / "results.json") == text);
 }
 
 TEST_CASE("what is no file of results is refused by name") {
     const ScratchDirectory folder;
-    CHECK_THROWS_WITH(read_results(folder.path() / "none"), Contains("results.json"));
-    CHECK_THROWS_AS(read_results(folder.path()), InputError);
+    CHECK_THROWS_WITH(read_results(folder.path() / "none", rows_of_trees),
+                      Contains("results.json"));
+    CHECK_THROWS_AS(read_results(folder.path(), rows_of_trees), InputError);
     const auto refuse = [&](const std::string& text, const std::string& expected) {
         folder.file("results.json", text);
-        CHECK_THROWS_AS(read_results(folder.path()), InputError);
-        CHECK_THROWS_WITH(read_results(folder.path()),
+        CHECK_THROWS_AS(read_results(folder.path(), rows_of_trees), InputError);
+        CHECK_THROWS_WITH(read_results(folder.path(), rows_of_trees),
                           Contains("results.json: ") && Contains(expected));
     };
     folder.file("results.json", "");
-    CHECK_THROWS_WITH(read_results(folder.path()), Contains("results.json is empty"));
+    CHECK_THROWS_WITH(read_results(folder.path(), rows_of_trees),
+                      Contains("results.json is empty"));
     refuse("{", "parse error");
     refuse("[]", "not written by this program");
     refuse("{}", "not written by this program");
@@ -133,36 +127,17 @@ TEST_CASE("a row that is no row is refused by its number") {
         Json json = valid_json();
         json["rows"][1][field] = value;
         folder.file("results.json", json.dump());
-        CHECK_THROWS_WITH(read_results(folder.path()), Contains("row 2: ") && Contains(expected));
+        CHECK_THROWS_WITH(read_results(folder.path(), rows_of_trees),
+                          Contains("row 2: ") && Contains(expected));
     };
-    refuse("split", "s_X", "unknown split 's_X'");
-    refuse("law", "none", "unknown law 'none'");
-    refuse("tau", "1", "type");
-    refuse("leaves", nullptr, "type");
-    refuse("checksum", "xyz", "no checksum");
-    refuse("t_access_ns_random_samples", "1 2", "type");
-    refuse("t_access_ns_random_samples", Json::array(), "no samples");
+    refuse("split", "s_X", "split: unknown value 's_X'");
+    refuse("law", "none", "law: unknown value 'none'");
+    refuse("tau", "1", "tau: '1' is not a number");
+    refuse("cells", Json::object(), "type");
+    refuse("t_access_ns_random_samples", Json{"1", "2"}, "type");
     Json json = valid_json();
     json["rows"][1].erase("delta_R_max");
     folder.file("results.json", json.dump());
-    CHECK_THROWS_WITH(read_results(folder.path()), Contains("row 2: ") && Contains("delta_R_max"));
-}
-
-TEST_CASE("an infinite error is read back; what old results do not have is unknown") {
-    const ScratchDirectory folder;
-    auto rows = some_rows();
-    rows[0].measures->accuracy.max = std::numeric_limits<double>::infinity();
-    rows[0].measures->accuracy.coarser_max = std::numeric_limits<double>::infinity();
-    Json json = Json::parse(results_json(current_provenance(), Study{}, rows, true));
-    for (const char* field :
-         {"coarser_max", "coarser_share", "coarser_fine_max", "coarser_fine_share"}) {
-        json["rows"][1].erase(field);
-    }
-    folder.file("results.json", json.dump());
-    const StoredResults read = read_results(folder.path());
-    CHECK(std::isinf(read.rows[0].measures->accuracy.max));
-    CHECK(std::isinf(read.rows[0].measures->accuracy.coarser_max));
-    CHECK(read.rows[0].measures->accuracy.coarser_share == 0.06);
-    CHECK(std::isnan(read.rows[1].measures->accuracy.coarser_max));
-    CHECK(std::isnan(read.rows[1].measures->accuracy_fine.coarser_share));
+    CHECK_THROWS_WITH(read_results(folder.path(), rows_of_trees),
+                      Contains("row 2: ") && Contains("delta_R_max"));
 }

@@ -1,4 +1,4 @@
-#include "study/results.h"
+#include "controlspace/study/results.h"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -6,7 +6,7 @@
 
 #include "controlspace/error.h"
 #include "scratch_directory.h"
-#include "study/row_json.h"
+#include "study/results_json.h"
 #include "study/sample_rows.h"
 
 using namespace controlspace;
@@ -16,32 +16,32 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 const std::vector<std::string> row_fields{"structure",
-                                          "split",
+                                          "field",
+                                          "sampling",
                                           "rho",
-                                          "tau",
-                                          "epsilon",
-                                          "g_r",
                                           "s_a",
                                           "s_n",
-                                          "sampling",
-                                          "field",
+                                          "g_r",
+                                          "reference",
+                                          "law",
+                                          "schedule",
+                                          "epsilon",
+                                          "tau",
+                                          "split",
                                           "max_depth",
-                                          "voxel",
-                                          "voxel_factor",
-                                          "prune_delta",
                                           "target_delta",
                                           "equal_delta",
                                           "equal_memory",
+                                          "voxel",
+                                          "voxel_factor",
+                                          "neighbourhood",
                                           "node_values",
                                           "frozen",
-                                          "law",
-                                          "schedule",
-                                          "neighbourhood",
-                                          "reference",
+                                          "prune_delta",
                                           "sources",
                                           "sources_inserted",
-                                          "elements",
-                                          "leaves",
+                                          "tree_nodes",
+                                          "cells",
                                           "control_nodes",
                                           "depth",
                                           "bytes_total",
@@ -50,7 +50,17 @@ const std::vector<std::string> row_fields{"structure",
                                           "bytes_auxiliary",
                                           "bytes_published_accounting",
                                           "t_insert_s",
+                                          "t_insert_s_q1",
+                                          "t_insert_s_q3",
+                                          "t_insert_s_samples",
                                           "t_gradation_s",
+                                          "t_gradation_s_q1",
+                                          "t_gradation_s_q3",
+                                          "t_gradation_s_samples",
+                                          "t_creation_s",
+                                          "t_creation_s_q1",
+                                          "t_creation_s_q3",
+                                          "t_creation_s_samples",
                                           "t_access_ns_random",
                                           "t_access_ns_random_q1",
                                           "t_access_ns_random_q3",
@@ -59,6 +69,7 @@ const std::vector<std::string> row_fields{"structure",
                                           "t_access_ns_grid_q1",
                                           "t_access_ns_grid_q3",
                                           "t_access_ns_grid_samples",
+                                          "access_batch",
                                           "delta_S_max",
                                           "delta_R_max",
                                           "delta_R_mean",
@@ -79,16 +90,12 @@ const std::vector<std::string> row_fields{"structure",
                                           "remark",
                                           "error"};
 
+const StudyRows rows_of_trees = tree_rows();
+
 std::vector<std::string> keys(const Json& json) {
     std::vector<std::string> result;
     for (const auto& [key, value] : json.items()) result.push_back(key);
     return result;
-}
-
-Row failed_row() {
-    Row row{published_case(), 5, std::nullopt, "reason, \"as\" given"};
-    row.setting.sources.kind = SourcesKind::file;
-    return row;
 }
 
 /// Fields of the first record of a CSV text, which is taken away from it.
@@ -117,13 +124,15 @@ std::vector<std::string> take_record(std::string_view& csv) {
 }  // namespace
 
 TEST_CASE("a row has exactly the documented fields, measured or not") {
-    CHECK(keys(to_json(sample_row(published_case()))) == row_fields);
-    CHECK(keys(to_json(failed_row())) == row_fields);
-    CHECK(keys(to_json(Row{})) == row_fields);
+    std::vector<std::string> expected = row_fields;
+    expected.push_back("fields");
+    CHECK(keys(to_json(sample_row(published_case()), rows_of_trees)) == expected);
+    CHECK(keys(to_json(failed_row(), rows_of_trees)) == expected);
+    CHECK(keys(to_json(Row{}, rows_of_trees)) == expected);
 }
 
 TEST_CASE("each field of a row has its own measure") {
-    const Json json = to_json(sample_row(published_case()));
+    const Json json = to_json(sample_row(published_case()), rows_of_trees);
     CHECK(json["structure"] == "K_L");
     CHECK(json["split"] == "s_L");
     CHECK(json["rho"] == 1);
@@ -133,14 +142,18 @@ TEST_CASE("each field of a row has its own measure") {
     CHECK(json["reference"] == "published-sphere");
     CHECK(json["sources"] == 36186);
     CHECK(json["sources_inserted"] == 101);
-    CHECK(json["elements"] == 102);
-    CHECK(json["leaves"] == 103);
+    CHECK(json["tree_nodes"] == 102);
+    CHECK(json["cells"] == 103);
     CHECK(json["control_nodes"] == 104);
-    CHECK(json["depth"] == 22);
+    CHECK(json["depth"] == 21);
     CHECK(json["bytes_total"] == 1'230'000);
     CHECK(json["bytes_published_accounting"] == 17'070'000);
     CHECK(json["t_insert_s"] == 1.5);
+    CHECK(json["t_insert_s_samples"] == std::vector<double>{1.5, 1.4, 1.9});
+    CHECK(json["t_insert_s_q1"] == 1.45);
     CHECK(json["t_gradation_s"] == 0.25);
+    CHECK(json["t_creation_s"] == 1.75);
+    CHECK(json["access_batch"] == 3);
     CHECK(json["t_access_ns_random"] == 51);
     CHECK(json["t_access_ns_random_samples"] == std::vector<double>{52, 50, 51});
     CHECK(json["t_access_ns_grid"] == 11);
@@ -159,8 +172,8 @@ TEST_CASE("each field of a row has its own measure") {
 }
 
 TEST_CASE("what does not apply or was not measured is null") {
-    const Json json = to_json(failed_row());
-    for (const char* field : {"rho", "s_a", "s_n", "elements", "t_insert_s", "checksum"}) {
+    const Json json = to_json(failed_row(), rows_of_trees);
+    for (const char* field : {"rho", "s_a", "s_n", "tree_nodes", "t_insert_s", "checksum"}) {
         CHECK(json[field].is_null());
     }
     CHECK(json["tau"] == 1);
@@ -168,12 +181,15 @@ TEST_CASE("what does not apply or was not measured is null") {
 }
 
 TEST_CASE("CSV and JSON say the same") {
+    const ScratchDirectory root;
     const std::vector<Row> rows{sample_row(published_case()), failed_row()};
-    const std::string text = results_csv(rows);
+    ResultsFolder folder(root / "a", {}, Study{}, rows_of_trees);
+    for (const Row& row : rows) folder.add(row);
+    const std::string text = file_text(root / "a" / "results.csv");
     std::string_view csv = text;
     CHECK(take_record(csv) == row_fields);
     for (const Row& row : rows) {
-        const Json json = to_json(row);
+        const Json json = to_json(row, rows_of_trees);
         const auto record = take_record(csv);
         REQUIRE(record.size() == row_fields.size());
         for (std::size_t i = 0; i < record.size(); ++i) {
@@ -194,49 +210,68 @@ TEST_CASE("CSV and JSON say the same") {
 }
 
 TEST_CASE("results.json says who made it and what was asked for") {
+    const ScratchDirectory root;
     Provenance provenance = current_provenance();
     provenance.command_line = "controlspace \xff";  // no UTF-8
-    const Study study;
-    const Json json = Json::parse(
-        results_json(provenance, study, std::vector{sample_row(published_case())}, true));
+    ResultsFolder folder(root / "a", provenance, Study{}, rows_of_trees);
+    folder.add(sample_row(published_case()));
+    folder.finish(true);
+    const Json json = Json::parse(file_text(root / "a" / "results.json"));
     for (const char* field :
          {"schema_version", "program", "version", "commit", "dirty", "compiler", "flags", "cpu",
           "cores", "threads", "seed", "date", "command_line", "settings", "complete", "rows"}) {
         CHECK(json.contains(field));
     }
+    CHECK(json["schema_version"] == 2);
     CHECK(json["complete"] == true);
     CHECK(json["rows"].size() == 1);
     CHECK(json["settings"]["sources"] == "sphere");
     CHECK(json["settings"]["domain"] == Json::array());
+    CHECK(json["settings"]["runs"][0]["structures"] == Json{"all"});
     CHECK(json["settings"]["runs"][0]["splits"] == Json{"s_L", "s_G", "s_M"});
     CHECK_FALSE(json["settings"]["runs"][0].contains("mmg_hgrad"));
     CHECK(json["version"].get<std::string>().find('.') != std::string::npos);
 }
 
-TEST_CASE("a folder of results holds whole files only, and is not written over") {
+TEST_CASE("a folder of results is whole after each row, and is not written over") {
     const ScratchDirectory root;
     const auto path = root / "a" / "b";
     {
-        const ResultsFolder folder(path);
-        folder.write({}, Study{}, {}, false);
-        folder.write({}, Study{}, std::vector{sample_row(published_case())}, true);
+        ResultsFolder folder(path, {}, Study{}, rows_of_trees);
+        const auto stored = [&] { return Json::parse(file_text(path / "results.json")); };
+        CHECK(stored()["rows"].empty());
+        folder.add(sample_row(published_case()));
+        CHECK(stored()["rows"].size() == 1);
+        folder.add(failed_row());
+        CHECK(stored()["rows"][1]["error"] == failed_row().error);
+        CHECK(stored()["complete"] == false);
+        folder.finish(true);
+        CHECK(stored()["rows"].size() == 2);
+        CHECK(stored()["complete"] == true);
     }
-    CHECK(Json::parse(file_text(path / "results.json"))["rows"].size() == 1);
-    CHECK_THAT(file_text(path / "summary.md"), Contains("## All measures"));
-    CHECK_THAT(file_text(path / "results.csv"), Contains("K_L,s_L,1.0,"));
+    CHECK_THAT(file_text(path / "summary.md"), Contains("| K_L s_L"));
+    CHECK_THAT(file_text(path / "results.csv"), Contains("K_L,none,regular,1.0,"));
     CHECK(names_in(path) ==
           std::vector<std::string>{"pareto.json", "results.csv", "results.json", "summary.md"});
-    CHECK_THROWS_WITH(ResultsFolder(path), Contains("holds results already"));
-    CHECK_THROWS_AS(ResultsFolder(path / "results.csv"), InputError);
-    CHECK_THROWS_AS(ResultsFolder(path / "results.csv" / "c"), InputError);
+    const auto again = [&](const std::filesystem::path& folder) {
+        ResultsFolder(folder, {}, Study{}, rows_of_trees);
+    };
+    CHECK_THROWS_WITH(again(path), Contains("contains results already"));
+    CHECK_THROWS_AS(again(path / "results.csv"), InputError);
+    CHECK_THROWS_AS(again(path / "results.csv" / "c"), InputError);
 }
 
-TEST_CASE("a file of results that cannot be written leaves nothing behind") {
+TEST_CASE("a row that cannot be written leaves the rows before it") {
     const ScratchDirectory root;
-    const ResultsFolder folder(root.path());
-    std::filesystem::create_directories(root / "results.json" / "in the way");
-    CHECK_THROWS_WITH(folder.write({}, Study{}, {}, false), Contains("results.json: it is"));
-    CHECK(names_in(root.path()) == std::vector<std::string>{"results.json"});
+    GrowingFile file(root / "f", "head", "tail");
+    CHECK(file_text(root / "f") == "headtail");
+    file.append(" row", " t");
+    CHECK(file_text(root / "f") == "head row t");
+    std::filesystem::rename(root / "f", root / "g");
+    CHECK_THROWS_WITH(file.append("lost", "lost"), Contains("cannot be written"));
+    std::filesystem::rename(root / "g", root / "f");
+    file.append("!", "");
+    CHECK(file_text(root / "f") == "head row!");
 }
 
 TEST_CASE("results go to the folder asked for, or to one named after study and time") {

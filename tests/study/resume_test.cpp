@@ -1,8 +1,7 @@
-#include "study/resume.h"
-
 #include <catch2/catch.hpp>
 
 #include "controlspace/error.h"
+#include "controlspace/study/results.h"
 #include "study/sample_rows.h"
 
 using namespace controlspace;
@@ -42,7 +41,7 @@ TEST_CASE("a run goes on after the cases that were finished") {
 
 TEST_CASE("failed cases are finished too, and so are those that found voxels themselves") {
     Interrupted run;
-    run.earlier.rows[0].measures.reset();
+    run.earlier.rows[0].values.clear();
     run.earlier.rows[0].error = "out of memory";
     run.cases[1].equal_delta = 0.1;
     run.earlier.rows[1].setting.equal_delta = 0.1;

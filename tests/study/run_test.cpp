@@ -1,4 +1,4 @@
-#include "study/run.h"
+#include "controlspace/study/run.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -13,40 +13,41 @@ using Catch::Matchers::Contains;
 namespace {
 
 /// A small sphere in few probes: a second for all trees.
-Study small_study(std::vector<std::string> structures) {
+Study small_study(Values structures) {
     Study study;
     study.sources.h = 0.2;
     study.access_points = 1000;
     study.access_repeats = 3;
+    study.creation_repeats = 2;
     study.probe_grid = 8;
     study.fine_probe_grid = 9;
-    study.runs[0].structures = std::move(structures);
-    study.runs[0].splits = {SplitRule::middle};
+    study.runs[0]["structures"] = std::move(structures);
+    study.runs[0]["splits"] = {"s_L"};
     return study;
+}
+
+std::vector<double> samples(const Row& row, const std::string& key) {
+    return std::get<std::vector<double>>(row.values.at(key));
 }
 
 std::vector<Row> run(const Study& study, std::span<const CatalogueEntry> catalogue) {
     std::vector<Row> rows;
-    PreparedStudy(study, catalogue)
-        .run({.case_started = {}, .phase_started = {}, .case_finished = [&](const Row& row) {
-                  rows.push_back(row);
-              }});
+    StudyObserver observer;
+    observer.case_finished = [&](const Row& row) { rows.push_back(row); };
+    PreparedStudy(study, {catalogue}).run(observer);
     return rows;
 }
 
-/// The first tree under another name, and one that cannot be made.
+/// The trees, and two that cannot be made.
 std::vector<CatalogueEntry> catalogue_with_failures() {
     const auto trees = tree_catalogue();
     std::vector<CatalogueEntry> entries(trees.begin(), trees.end());
-    CatalogueEntry broken = entries.front();
-    broken.id = "broken";
-    broken.capabilities.clear();
+    CatalogueEntry broken{.id = "broken", .description = ""};
     broken.construct = [](const SpaceOptions&) -> std::unique_ptr<ControlSpaceBuilder> {
         throw InputError("cannot be made");
     };
     entries.insert(entries.begin(), broken);
-    CatalogueEntry greedy = broken;
-    greedy.id = "greedy";
+    CatalogueEntry greedy{.id = "greedy", .description = ""};
     greedy.construct = [](const SpaceOptions&) -> std::unique_ptr<ControlSpaceBuilder> {
         throw std::bad_alloc();
     };
@@ -61,18 +62,18 @@ TEST_CASE("a study gives a row with measures for every case") {
     REQUIRE(rows.size() == 6);
     for (const Row& row : rows) {
         INFO(structure_label(row.setting));
-        REQUIRE(row.measures);
-        CHECK(row.error.empty());
-        const Measures& m = *row.measures;
+        REQUIRE(row.is_measured());
         CHECK(row.sources > 100);
-        CHECK(m.sources_inserted > 0);
-        CHECK(m.sources_inserted <= row.sources);
-        CHECK(m.footprint.leaves > 1);
-        CHECK(m.access_random.samples_ns.size() == 3);
-        CHECK(m.access_random.checksum != m.access_grid.checksum);
-        CHECK(m.accuracy.max > 0);
-        CHECK(m.accuracy.mean < m.accuracy.max);
-        CHECK(m.gradation.largest_ratio_left < 1.2501);
+        CHECK(row.number("sources_inserted") > 0);
+        CHECK(row.number("sources_inserted") <= static_cast<double>(row.sources));
+        CHECK(row.number("cells") > 1);
+        CHECK(samples(row, "t_access_ns_random_samples").size() == 3);
+        CHECK(samples(row, "t_insert_s_samples").size() == 2);
+        CHECK(row.number("t_access_ns_grid") > 0);
+        CHECK(row.number("access_batch") == 0);
+        CHECK(row.number("delta_R_max") > 0);
+        CHECK(row.number("delta_R_mean") < row.number("delta_R_max"));
+        CHECK(row.number("gradation_max_left") < 1.2501);
     }
 }
 
@@ -82,9 +83,8 @@ TEST_CASE("the same study gives the same answers") {
     const auto second = run(study, tree_catalogue());
     REQUIRE(first.size() == second.size());
     for (std::size_t i = 0; i < first.size(); ++i) {
-        CHECK(first[i].measures->access_random.checksum ==
-              second[i].measures->access_random.checksum);
-        CHECK(first[i].measures->accuracy_fine.mean == second[i].measures->accuracy_fine.mean);
+        CHECK(first[i].values.at("checksum") == second[i].values.at("checksum"));
+        CHECK(first[i].number("delta_R_fine_mean") == second[i].number("delta_R_fine_mean"));
     }
 }
 
@@ -92,46 +92,47 @@ TEST_CASE("structures that cannot run are rows with their reason, and others sti
     const auto rows = run(small_study({"all"}), catalogue_with_failures());
     REQUIRE(rows.size() == 8);
     CHECK(rows[0].error == "cannot be made");
-    CHECK_FALSE(rows[0].measures);
-    CHECK(rows[1].measures);
+    CHECK(rows[0].values.empty());
+    CHECK(rows[1].is_measured());
     CHECK_THAT(rows[7].error, Contains("out of memory"));
 }
 
 TEST_CASE("reference and sources are made once for the cases that share them") {
     Study study = small_study({"K_L", "K_oL"});
-    study.runs[0].rho = {1, 0.7};
-    study.runs[0].reference = {ReferenceKind::exact, ReferenceKind::published_sphere};
+    study.runs[0]["rho"] = {1, 0.7};
+    study.runs[0]["reference"] = {"exact", "published-sphere"};
     study.runs.push_back(study.runs[0]);
-    study.runs[1].tau = {2};
-    PreparedStudy prepared(study, tree_catalogue());
+    study.runs[1]["tau"] = {2};
+    PreparedStudy prepared(study, {tree_catalogue()});
     CHECK(prepared.cases().size() == 16);
     CHECK(std::set<std::size_t>(prepared.source_counts().begin(), prepared.source_counts().end())
               .size() == 2);
     std::map<std::string_view, int> phases;
     std::size_t failed = 0;
-    std::move(prepared).run(
-        {.case_started = {},
-         .phase_started = [&](std::string_view phase) { ++phases[phase]; },
-         .case_finished = [&](const Row& row) { failed += row.measures ? 0 : 1; }});
+    StudyObserver observer;
+    observer.phase_started = [&](std::string_view phase) { ++phases[phase]; };
+    observer.case_finished = [&](const Row& row) { failed += row.is_measured() ? 0 : 1; };
+    std::move(prepared).run(observer);
     CHECK(failed == 0);
     CHECK(phases["reference field"] == 4);
-    CHECK(phases["insertion"] == 16);
+    CHECK(phases["insertion"] == 2 * 16);
 }
 
 TEST_CASE("with a target, trees are adapted, once for all rules, and say what they reached") {
     Study study = small_study({"K_V", "K_oL"});
-    study.runs[0].splits = {SplitRule::middle, SplitRule::golden};
-    study.runs[0].target_delta = {0, 0.3};
+    study.runs[0]["splits"] = {"s_L", "s_G"};
+    study.runs[0]["target_delta"] = {0, 0.3};
     const auto rows = run(study, tree_catalogue());
     REQUIRE(rows.size() == 5);
     for (const Row& row : rows) {
-        REQUIRE(row.measures);
+        REQUIRE(row.is_measured());
+        const std::string remark = std::get<std::string>(row.values.at("remark"));
         if (!row.setting.target_delta) {
-            CHECK(row.measures->footprint.remark.empty());
+            CHECK(remark.empty());
             continue;
         }
-        CHECK(row.measures->footprint.remark.find("reached") != std::string::npos);
-        CHECK(row.measures->accuracy.max <= 0.3);
+        CHECK(remark.find("reached") != std::string::npos);
+        CHECK(row.number("delta_R_max") <= 0.3);
         CHECK(structure_label(row.setting) == row.setting.structure + ", δ <= 0.3");
     }
 }
@@ -139,20 +140,20 @@ TEST_CASE("with a target, trees are adapted, once for all rules, and say what th
 TEST_CASE("a study that cannot be run is refused before anything runs") {
     Study study = small_study({"K_L"});
     study.domain = Box{Point::Constant(0), Point::Constant(1)};
-    CHECK_THROWS_AS(PreparedStudy(study, tree_catalogue()), InputError);
+    CHECK_THROWS_AS(PreparedStudy(study, {tree_catalogue()}), InputError);
     study = small_study({"K_L"});
-    study.runs[0].kd_depth = {1000};
-    CHECK_THROWS_AS(PreparedStudy(study, tree_catalogue()), InputError);
+    study.runs[0]["kd_depth"] = {1000};
+    CHECK_THROWS_AS(PreparedStudy(study, {tree_catalogue()}), InputError);
     study = small_study({"K_L"});
     study.sources = {.kind = SourcesKind::file, .file = "no/such/file.csv"};
-    CHECK_THROWS_WITH(PreparedStudy(study, tree_catalogue()), Contains("no/such/file.csv"));
+    CHECK_THROWS_WITH(PreparedStudy(study, {tree_catalogue()}), Contains("no/such/file.csv"));
 }
 
 TEST_CASE("with a field, trees are adapted to it and the sources; without a target they say so") {
     Study study = small_study({"K_V", "K_oL"});
     study.sources.field.lengths = {.across = 0.1, .along = 0.4};
-    study.runs[0].field = {FieldKind::planes};
-    study.runs[0].target_delta = {0, 0.3};
+    study.runs[0]["field"] = {"planes"};
+    study.runs[0]["target_delta"] = {0, 0.3};
     const auto check = [&](bool has_sources) {
         const auto rows = run(study, tree_catalogue());
         REQUIRE(rows.size() == 4);
@@ -163,10 +164,10 @@ TEST_CASE("with a field, trees are adapted to it and the sources; without a targ
                 CHECK_THAT(row.error, Contains("target_delta"));
                 continue;
             }
-            REQUIRE(row.measures);
-            CHECK(row.measures->footprint.control_nodes > 8);
-            CHECK(row.measures->accuracy.max <= 0.3);
-            CHECK((row.measures->source_accuracy > 0) == has_sources);
+            REQUIRE(row.is_measured());
+            CHECK(row.number("control_nodes") > 8);
+            CHECK(row.number("delta_R_max") <= 0.3);
+            CHECK((row.number("delta_S_max") > 0) == has_sources);
         }
     };
     check(true);
@@ -177,19 +178,20 @@ TEST_CASE("with a field, trees are adapted to it and the sources; without a targ
 
 TEST_CASE("frozen trees answer alike, in less memory; what cannot be frozen is as it was") {
     Study study = small_study({"K_oV", "K_LA"});
-    study.runs[0].frozen = {Frozen::no, Frozen::doubles, Frozen::floats};
+    study.runs[0]["frozen"] = {"no", "doubles", "floats"};
     const auto trees = tree_catalogue();
     std::vector<CatalogueEntry> catalogue(trees.begin(), trees.end());
     const auto anchored = anchored_catalogue();
     catalogue.insert(catalogue.end(), anchored.begin(), anchored.end());
     const auto rows = run(study, catalogue);
     REQUIRE(rows.size() == 4);
-    for (const Row& row : rows) REQUIRE(row.measures);
+    for (const Row& row : rows) REQUIRE(row.is_measured());
     CHECK(structure_label(rows[2].setting) == "K_oV, frozen with floats");
-    const auto bytes = [&](std::size_t i) { return rows[i].measures->footprint.bytes_total(); };
-    CHECK(rows[1].measures->access_random.checksum == rows[0].measures->access_random.checksum);
-    CHECK(rows[2].measures->access_random.checksum != rows[0].measures->access_random.checksum);
-    CHECK(rows[2].measures->accuracy.max == Approx(rows[0].measures->accuracy.max).epsilon(1e-4));
+    const auto bytes = [&](std::size_t i) { return rows[i].number("bytes_total"); };
+    const auto sum = [&](std::size_t i) { return rows[i].values.at("checksum"); };
+    CHECK(sum(1) == sum(0));
+    CHECK(sum(2) != sum(0));
+    CHECK(rows[2].number("delta_R_max") == Approx(rows[0].number("delta_R_max")).epsilon(1e-4));
     CHECK(bytes(1) < bytes(0));
     CHECK(bytes(2) < bytes(1));
     CHECK(rows[3].setting.structure == "K_LA");
@@ -197,7 +199,7 @@ TEST_CASE("frozen trees answer alike, in less memory; what cannot be frozen is a
 
 TEST_CASE("with the reference at their nodes, structures err between nodes only") {
     Study study = small_study({"K_oV", "K_LA"});
-    study.runs[0].node_values = {NodeValues::graded, NodeValues::exact};
+    study.runs[0]["node_values"] = {"graded", "exact"};
     const auto trees = tree_catalogue();
     std::vector<CatalogueEntry> catalogue(trees.begin(), trees.end());
     const auto anchored = anchored_catalogue();
@@ -212,6 +214,64 @@ TEST_CASE("with the reference at their nodes, structures err between nodes only"
     });
     REQUIRE(graded != rows.end());
     REQUIRE(exact != rows.end());
-    CHECK(exact->measures->accuracy.mean < 0.8 * graded->measures->accuracy.mean);
-    CHECK(exact->measures->footprint.bytes_total() == graded->measures->footprint.bytes_total());
+    CHECK(exact->number("delta_R_mean") < 0.8 * graded->number("delta_R_mean"));
+    CHECK(exact->number("bytes_total") == graded->number("bytes_total"));
+}
+
+TEST_CASE("structures that answer otherwise when made again have no times") {
+    CatalogueEntry moody{.id = "moody", .description = "", .capabilities = {MetricNodes()}};
+    moody.construct = [](const SpaceOptions& options) {
+        static int made = 0;
+        auto builder = find_entry(tree_catalogue(), "K_oL")->make(options);
+        if (made++ == 1) builder->insert(PointSource{Point::Zero(), Metric::isotropic(0.01)});
+        return builder;
+    };
+    const auto rows = run(small_study({"moody"}), std::vector{moody});
+    REQUIRE(rows.size() == 1);
+    CHECK_THAT(rows[0].error, Contains("other answers"));
+    CHECK(rows[0].values.empty());
+}
+
+TEST_CASE("rows are timed in batches of cases that share their probes") {
+    Study study = small_study({"K_L", "K_oL"});
+    study.runs[0]["tau"] = {1, 1.01};
+    study.runs[0]["g_r"] = {1.25, 1.5};
+    const auto rows = run(study, tree_catalogue());
+    REQUIRE(rows.size() == 8);
+    for (std::size_t i = 0; i < 8; ++i) CHECK(rows[i].number("access_batch") == (i < 4 ? 0 : 4));
+    double largest = 0;
+    for (const Row& row : rows) largest = std::max(largest, row.number("bytes_total"));
+    study.max_memory_gib = 3 * largest / (1024 * 1024 * 1024.0);
+    std::set<double> batches;
+    for (const Row& row : run(study, tree_catalogue())) {
+        INFO(row.error);
+        REQUIRE(row.is_measured());
+        batches.insert(row.number("access_batch"));
+    }
+    CHECK(batches.size() > 2);
+}
+
+TEST_CASE("a study takes rows of measures and parameters from outside") {
+    std::vector<Measure> more(measures().begin(), measures().end());
+    more.push_back({"nodes_per_cell", "", [](const Finished& f) -> MeasuredValue {
+                        return static_cast<double>(f.footprint.control_nodes) /
+                               static_cast<double>(f.footprint.leaves);
+                    }});
+    std::vector<CaseParameter> parameters(case_parameters().begin(), case_parameters().end());
+    CaseParameter stretch{{"stretch", "", "factor of l_min", other_number("stretch", positive)}};
+    stretch.role = Role::structure;
+    stretch.defaults = {1, 2};
+    stretch.apply = [](const Case& c, SpaceOptions& o) {
+        o.l_min *= c.other.at("stretch").number();
+    };
+    stretch.label = [](const Case& c) { return "stretch " + to_string({c.other.at("stretch")}); };
+    parameters.push_back(stretch);
+    std::vector<Row> rows;
+    StudyObserver observer;
+    observer.case_finished = [&](const Row& row) { rows.push_back(row); };
+    PreparedStudy(small_study({"K_oL"}), {tree_catalogue(), parameters, more}).run(observer);
+    REQUIRE(rows.size() == 2);
+    CHECK(structure_label(rows[1].setting, parameters) == "K_oL, stretch 2");
+    CHECK(rows[1].number("cells") < rows[0].number("cells"));
+    CHECK(rows[0].number("nodes_per_cell") == 1);
 }

@@ -1,12 +1,11 @@
-#include "study/study_file.h"
-
 #include <catch2/catch.hpp>
 #include <utility>
 
 #include "controlspace/error.h"
 #include "controlspace/gradation/law.h"
+#include "controlspace/study/study.h"
 #include "data_folder.h"
-#include "study/settings.h"
+#include "study/embedded.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;
@@ -32,8 +31,8 @@ TEST_CASE("an empty study file is one run of defaults, named as the file") {
     CHECK(study.name == "my-study");
     CHECK(study.sources == SourcesChoice{});
     REQUIRE(study.runs.size() == 1);
-    CHECK(study.runs[0].structures == std::vector<std::string>{"all"});
-    CHECK(study.runs[0].tau == std::vector<double>{1});
+    CHECK(study.runs[0].structures() == Values{"all"});
+    CHECK(study.runs[0].find("tau") == nullptr);
 }
 
 TEST_CASE("every key of a study file is read") {
@@ -51,6 +50,7 @@ TEST_CASE("every key of a study file is read") {
         threads = 3
         access_points = 1000
         access_repeats = 5
+        creation_repeats = 2
         probe_grid = 12
         fine_probe_grid = 13
         reference_tolerance = 0.001
@@ -97,6 +97,7 @@ TEST_CASE("every key of a study file is read") {
     CHECK(study.threads == 3);
     CHECK(study.access_points == 1000);
     CHECK(study.access_repeats == 5);
+    CHECK(study.creation_repeats == 2);
     CHECK(study.probe_grid == 12);
     CHECK(study.fine_probe_grid == 13);
     CHECK(study.reference_tolerance == 0.001);
@@ -107,35 +108,35 @@ TEST_CASE("every key of a study file is read") {
     CHECK(field.slope == 0.5);
     CHECK(field.lengths == SurfaceLengths{0.01, 0.04, 0.125, 0.5});
     REQUIRE(study.runs.size() == 3);
-    const Run& run = study.runs[0];
-    CHECK(run.structures == std::vector<std::string>{"K_L", "K_V"});
-    CHECK(run.splits == std::vector{SplitRule::golden, SplitRule::metric});
-    CHECK(run.rho == std::vector{1, 0.5});
-    CHECK(run.tau == std::vector{0.25});
-    CHECK(run.epsilon == std::vector{0.1});
-    CHECK(run.g_r == std::vector{1.5, 2.0});
-    CHECK(run.s_a == std::vector{4.0});
-    CHECK(run.s_n == std::vector{0.25});
-    CHECK(run.sampling == std::vector{Sampling::regular, Sampling::poisson});
-    CHECK(run.field == std::vector{FieldKind::none, FieldKind::ugawg_polar_2});
-    CHECK(run.kd_depth == std::vector{10, 20});
-    CHECK(run.octree_depth == std::vector{9});
-    CHECK(run.voxel == std::vector{0, 0.01});
-    CHECK(run.voxel_factor == std::vector{0.5});
-    CHECK(run.prune_delta == std::vector{0, 0.1});
-    CHECK(run.law == std::vector{GradationLaw::cone, GradationLaw::mean_length});
-    CHECK(run.schedule == std::vector{GradationSchedule::passes});
-    CHECK(run.reference == std::vector{ReferenceKind::published_sphere});
-    CHECK(study.runs[1].g_r == std::vector{gradation_ratio_from_mmg(1.3)});
-    CHECK(study.runs[2].g_r == std::vector{gradation_ratio_from_refine(1.5)});
+    const auto list = [&](const std::string& key) { return to_string(*study.runs[0].find(key)); };
+    CHECK(list("structures") == "K_L, K_V");
+    CHECK(list("splits") == "s_G, s_M");
+    CHECK(list("rho") == "1, 0.5");
+    CHECK(list("tau") == "0.25");
+    CHECK(list("epsilon") == "0.1");
+    CHECK(list("g_r") == "1.5, 2");
+    CHECK(list("s_a") == "4");
+    CHECK(list("s_n") == "0.25");
+    CHECK(list("sampling") == "regular, poisson");
+    CHECK(list("field") == "none, ugawg-polar-2");
+    CHECK(list("kd_depth") == "10, 20");
+    CHECK(list("octree_depth") == "9");
+    CHECK(list("voxel") == "0, 0.01");
+    CHECK(list("voxel_factor") == "0.5");
+    CHECK(list("prune_delta") == "0, 0.1");
+    CHECK(list("law") == "cone, mean-length");
+    CHECK(list("schedule") == "passes");
+    CHECK(list("reference") == "published-sphere");
+    CHECK(*study.runs[1].find("g_r") == Values{gradation_ratio_from_mmg(1.3)});
+    CHECK(*study.runs[2].find("g_r") == Values{gradation_ratio_from_refine(1.5)});
 }
 
 TEST_CASE("keys of a run at the top are for all runs that do not set them") {
     const Study study = parse("tau = [1, 0.5]\nrho = 0.2\n[[runs]]\n[[runs]]\ntau = 0.1\n");
     REQUIRE(study.runs.size() == 2);
-    CHECK(study.runs[0].tau == std::vector{1, 0.5});
-    CHECK(study.runs[1].tau == std::vector{0.1});
-    CHECK(study.runs[1].rho == std::vector{0.2});
+    CHECK(*study.runs[0].find("tau") == Values{1, 0.5});
+    CHECK(*study.runs[1].find("tau") == Values{0.1});
+    CHECK(*study.runs[1].find("rho") == Values{0.2});
 }
 
 TEST_CASE("a study may have no sources, or those of a file called so") {
@@ -163,8 +164,8 @@ TEST_CASE("what is wrong in a study file is named with its line") {
         {"rho = -inf", ":1: rho: -inf is not a finite number"},
         {"g_r = 0.9", ":1: g_r: 0.9 is out of range"},
         {"mmg_hgrad = 0.5", ":1: mmg_hgrad: 0.5 is out of range"},
-        {"g_r = 1.2\nmmg_hgrad = 1.3", "say the same"},
-        {"refine_beta = 1.2\nmmg_hgrad = 1.3", "say the same"},
+        {"g_r = 1.2\nmmg_hgrad = 1.3", "says the same"},
+        {"refine_beta = 1.2\nmmg_hgrad = 1.3", "says the same"},
         {"epsilon = -1", "epsilon: -1 is not positive"},
         {"kd_depth = 1.5", "kd_depth: 1.5 is not a whole number"},
         {"voxel = -0.1", "voxel: -0.1 is out of range"},
@@ -206,23 +207,25 @@ TEST_CASE("study files that cannot be read are named") {
     CHECK_THROWS_AS(read_study("/"), InputError);
 }
 
-TEST_CASE("each setting gives back what it was set to") {
-    Study study;
-    for (const auto& setting : study_settings()) {
-        const SettingValues values = setting.get(study);
+TEST_CASE("each parameter gives back what it was set to") {
+    for (const auto& p : study_parameters()) {
+        const Values values = p.access.get(Study{});
         if (values.empty()) continue;
         Study other;
         other.name = "another";
-        set_checked(setting, other, values);
-        CHECK(setting.get(other) == values);
+        set_checked(p.access, other, values);
+        CHECK(p.access.get(other) == values);
     }
-    for (const auto& setting : run_settings()) {
-        const SettingValues values = setting.get(Run{});
-        CHECK(values.empty() == !setting.same_as.empty());
-        if (values.empty()) continue;
-        Run run;
-        set_checked(setting, run, values);
-        CHECK(setting.get(run) == values);
+    for (const auto& p : case_parameters()) {
+        INFO(p.key);
+        CHECK(p.defaults.empty() == !p.same_as.empty());
+        for (const Value& value : p.defaults) {
+            Case c;
+            if (p.key == "kd_depth") c.split = SplitRule::golden;
+            set_checked(p.access, c, {value});
+            const Values got = p.access.get(c);
+            CHECK((got == Values{value} || (got.empty() && value == Value(0))));
+        }
     }
 }
 
@@ -230,7 +233,7 @@ TEST_CASE("the study files of the project can be read") {
     const std::filesystem::path folder = data_folder() / "studies";
     const Study full = read_study(folder / "paper-sphere.toml");
     REQUIRE(full.runs.size() == 2);
-    CHECK(full.runs[1].law == std::vector{GradationLaw::mean_length});
+    CHECK(*full.runs[1].find("law") == Values{"mean-length"});
     const Study quick = read_study(folder / "paper-sphere-quick.toml");
     const Study built_in = parse_study(quick_study_text(), "built-in");
     CHECK(quick.name == built_in.name);
@@ -238,7 +241,7 @@ TEST_CASE("the study files of the project can be read") {
     CHECK(read_study(folder / "sources.toml").runs.size() == 3);
     for (const auto& [name, fields] : {std::pair{"fields.toml", 4u}, {"mixtures.toml", 2u}}) {
         const Study study = read_study(folder / name);
-        CHECK(study.runs[0].field.size() == fields);
+        CHECK(study.runs[0].find("field")->size() == fields);
         CHECK(study.domain == Box{Point::Zero(), Point::Ones()});
     }
 }

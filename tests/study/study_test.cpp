@@ -1,11 +1,11 @@
-#include "study/study.h"
+#include "controlspace/study/study.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
 
 #include "controlspace/error.h"
 #include "data_folder.h"
-#include "study/study_file.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;
@@ -16,18 +16,18 @@ namespace {
 std::vector<CatalogueEntry> catalogue_with_a_grid() {
     const auto trees = tree_catalogue();
     std::vector<CatalogueEntry> entries(trees.begin(), trees.end());
-    entries.push_back({.id = "grid", .description = "", .construct = nullptr});
+    entries.push_back({.id = "grid", .description = "", .capabilities = {MetricNodes()}});
     return entries;
 }
 
 std::vector<Case> expand(const Study& study) {
     const auto catalogue = catalogue_with_a_grid();
-    return expand(study, catalogue);
+    return expand(study, {catalogue});
 }
 
-Study study_of(std::vector<std::string> structures) {
+Study study_of(Values structures) {
     Study study;
-    study.runs[0].structures = std::move(structures);
+    study.runs[0]["structures"] = std::move(structures);
     return study;
 }
 
@@ -35,8 +35,8 @@ Study study_of(std::vector<std::string> structures) {
 
 TEST_CASE("splits multiply kd-trees only, depths those that have them") {
     Study study = study_of({"K_L", "K_oV", "grid"});
-    study.runs[0].kd_depth = {42, 100};
-    study.runs[0].octree_depth = {14, 13, 12};
+    study.runs[0]["kd_depth"] = {42, 100};
+    study.runs[0]["octree_depth"] = {14, 13, 12};
     const auto cases = expand(study);
     REQUIRE(cases.size() == 3 * 2 + 3 + 1);
     CHECK(cases[0].split == SplitRule::middle);
@@ -51,16 +51,17 @@ TEST_CASE("splits multiply kd-trees only, depths those that have them") {
 
 TEST_CASE("voxels, levels and pruning multiply the grids that have them") {
     std::vector<CatalogueEntry> catalogue = catalogue_with_a_grid();
-    catalogue.push_back({.id = "flat", .description = "", .capabilities = {VoxelSize()}});
+    catalogue.push_back(
+        {.id = "flat", .description = "", .capabilities = {MetricNodes(), VoxelSize()}});
     catalogue.push_back({.id = "levels",
                          .description = "",
-                         .capabilities = {VoxelSize(), VoxelLevels(), Pruning()},
+                         .capabilities = {MetricNodes(), VoxelSize(), VoxelLevels(), Pruning()},
                          .former_id = "stack"});
     Study study = study_of({"K_oL", "grid", "flat", "stack"});
-    study.runs[0].voxel = {0, 0.5};
-    study.runs[0].voxel_factor = {1, 0.5, 0.25};
-    study.runs[0].prune_delta = {0, 0.1};
-    const auto cases = expand(study, catalogue);
+    study.runs[0]["voxel"] = {0, 0.5};
+    study.runs[0]["voxel_factor"] = {1, 0.5, 0.25};
+    study.runs[0]["prune_delta"] = {0, 0.1};
+    const auto cases = expand(study, {catalogue});
     REQUIRE(cases.size() == 1 + 1 + 2 + 2 * 3 * 2);
     CHECK_FALSE(cases[1].voxel_factor);
     CHECK_FALSE(cases[2].voxel);
@@ -73,41 +74,42 @@ TEST_CASE("voxels, levels and pruning multiply the grids that have them") {
     CHECK_FALSE(cases[4].prune_delta);
     CHECK(structure_label(cases.back()) == "levels, voxel 0.5, c 0.25, pruned at 0.1");
 
-    study.runs[0].field = {FieldKind::none, FieldKind::ugawg_linear};
+    study.runs[0]["field"] = {"none", "ugawg-linear"};
     study.sources.kind = SourcesKind::sphere;
-    CHECK(expand(study, catalogue).size() == 2 * (1 + 1 + 2) + 2 * 3 * 2);
-    study.runs[0].field = {FieldKind::ugawg_linear};
-    study.runs[0].structures = {"levels"};
-    CHECK_THROWS_WITH(expand(study, catalogue), Contains("not a grid in levels"));
+    CHECK(expand(study, {catalogue}).size() == 2 * (1 + 1 + 2) + 2 * 3 * 2);
+    study.runs[0]["field"] = {"ugawg-linear"};
+    study.runs[0]["structures"] = {"levels"};
+    CHECK_THROWS_WITH(expand(study, {catalogue}), Contains("not a grid in levels"));
 }
 
 TEST_CASE("goals that voxels are chosen for multiply grids, node values what holds metrics") {
     std::vector<CatalogueEntry> catalogue = catalogue_with_a_grid();
-    catalogue.push_back({.id = "flat", .description = "", .capabilities = {VoxelSize()}});
+    catalogue.push_back(
+        {.id = "flat", .description = "", .capabilities = {MetricNodes(), VoxelSize()}});
     catalogue.push_back({.id = "keeper", .description = "", .capabilities = {KeptSources()}});
     Study study = study_of({"K_oL", "flat", "keeper"});
-    study.runs[0].equal_delta = {0, 0.1};
-    study.runs[0].node_values = {NodeValues::graded, NodeValues::exact};
-    const auto cases = expand(study, catalogue);
+    study.runs[0]["equal_delta"] = {0, 0.1};
+    study.runs[0]["node_values"] = {"graded", "exact"};
+    const auto cases = expand(study, {catalogue});
     REQUIRE(cases.size() == 2 + 4 + 1);
     CHECK(structure_label(cases[1]) == "K_oL, exact at nodes");
     CHECK(structure_label(cases[5]) == "flat, for delta 0.1, exact at nodes");
-    study.runs[0].equal_memory = {5};
-    CHECK_THROWS_WITH(expand(study, catalogue), Contains("give one of them"));
+    study.runs[0]["equal_memory"] = {5};
+    CHECK_THROWS_WITH(expand(study, {catalogue}), Contains("give one of them"));
 }
 
 TEST_CASE("lists expand to their product, rho outermost and structures innermost") {
     Study study = study_of({"K_oL", "grid"});
-    study.runs[0].rho = {1, 0.2};
-    study.runs[0].tau = {1, 0.5, 0.2};
-    study.runs[0].law = {GradationLaw::cone, GradationLaw::mean_length};
+    study.runs[0]["rho"] = {1, 0.2};
+    study.runs[0]["tau"] = {1, 0.5, 0.2};
+    study.runs[0]["law"] = {"cone", "mean-length"};
     const auto cases = expand(study);
     REQUIRE(cases.size() == 2 * 3 * 2 * 2);
     for (std::size_t i = 0; i < cases.size(); ++i) {
         CHECK(cases[i].structure == (i % 2 == 0 ? "K_oL" : "grid"));
-        CHECK(cases[i].tau == study.runs[0].tau[i / 2 % 3]);
-        CHECK(cases[i].law == study.runs[0].law[i / 6 % 2]);
-        CHECK(cases[i].sources.rho == study.runs[0].rho[i / 12]);
+        CHECK(cases[i].tau == study.runs[0]["tau"][i / 2 % 3].number());
+        CHECK(name_of(cases[i].law) == study.runs[0]["law"][i / 6 % 2].text());
+        CHECK(cases[i].sources.rho == study.runs[0]["rho"][i / 12].number());
     }
 }
 
@@ -140,43 +142,43 @@ TEST_CASE("studies that make no sense are refused") {
     Study study = study_of({"K_L"});
     study.sources.kind = SourcesKind::file;
     CHECK_NOTHROW(expand(study));
-    study.runs[0].rho = {0.5};
-    CHECK_THROWS_WITH(expand(study), Contains("rho, s_a, s_n and sampling"));
-    study.runs[0].rho = {1};
+    study.runs[0]["rho"] = {0.5};
+    CHECK_THROWS_WITH(expand(study), Contains("rho is for sampled surfaces"));
+    study.runs[0]["rho"] = {1};
     study.sources.radius = 0.5;
-    CHECK_THROWS_WITH(expand(study), Contains("radius and centre are for the sphere"));
+    CHECK_THROWS_WITH(expand(study), Contains("radius is for the sphere"));
     study.sources.radius = SourcesChoice{}.radius;
     study.sources.slope = 0.5;
     CHECK_THROWS_WITH(expand(study), Contains("slope is for the planes"));
     study.sources.slope = SourcesChoice{}.slope;
-    study.runs[0].reference = {ReferenceKind::published_sphere};
+    study.runs[0]["reference"] = {"published-sphere"};
     CHECK_THROWS_WITH(expand(study), Contains("for the sphere"));
     study.sources.kind = SourcesKind::sphere;
     CHECK_NOTHROW(expand(study));
-    study.runs[0].s_n = {1, 0.5};
+    study.runs[0]["s_n"] = {1, 0.5};
     CHECK_THROWS_WITH(expand(study), Contains("isotropic"));
 
     Study huge = study_of({"K_L"});
-    huge.runs[0].rho.assign(1000, 1);
-    huge.runs[0].tau.assign(1000, 1);
+    huge.runs[0]["rho"].assign(1000, 1);
+    huge.runs[0]["tau"].assign(1000, 1);
     CHECK_THROWS_WITH(expand(huge), Contains("more than 5000 cases"));
 }
 
 TEST_CASE("samplings and fields multiply all structures") {
     Study study = study_of({"K_oL", "grid"});
-    study.runs[0].field = {FieldKind::none, FieldKind::ugawg_linear};
-    study.runs[0].sampling = {Sampling::regular, Sampling::random, Sampling::clustered};
+    study.runs[0]["field"] = {"none", "ugawg-linear"};
+    study.runs[0]["sampling"] = {"regular", "random", "clustered"};
     const auto cases = expand(study);
     REQUIRE(cases.size() == 2 * 3 * 2);
     std::set<std::string> tables;
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        CHECK(cases[i].sources.field.kind == study.runs[0].field[i / 6]);
-        CHECK(cases[i].sources.sampling == study.runs[0].sampling[i / 2 % 3]);
+        CHECK(name_of(cases[i].sources.field.kind) == study.runs[0]["field"][i / 6].text());
+        CHECK(name_of(cases[i].sources.sampling) == study.runs[0]["sampling"][i / 2 % 3].text());
         tables.insert(setting_label(cases[i]));
     }
     CHECK(tables.size() == 6);
-    CHECK(tables.count("field ugawg-linear, random sources, rho 1, s_a 2, s_n 1, tau 1, epsilon "
-                       "0.2, g_r 1.25; cone law, queue, exact reference") == 1);
+    CHECK(tables.count("field ugawg-linear, random sources, rho 1, s_a 2, s_n 1, g_r 1.25, exact "
+                       "reference, cone law, queue, epsilon 0.2, tau 1") == 1);
 }
 
 TEST_CASE("fields and sources that do not fit together are refused") {
@@ -193,42 +195,42 @@ TEST_CASE("fields and sources that do not fit together are refused") {
     CHECK(complaint([](SourcesChoice&, Run&) {}).empty());
     CHECK(complaint([](SourcesChoice& s, Run& run) {
               s.kind = SourcesKind::none;
-              run.field = {FieldKind::ugawg_linear};
+              run["field"] = {"ugawg-linear"};
           }).empty());
     CHECK_THAT(complaint([](SourcesChoice& s, Run&) { s.kind = SourcesKind::none; }),
                Contains("neither sources nor a field"));
     CHECK_THAT(complaint([](SourcesChoice& s, Run& run) {
                    s.kind = SourcesKind::none;
-                   run.field = {FieldKind::sphere};
-                   run.sampling = {Sampling::random};
+                   run["field"] = {"sphere"};
+                   run["sampling"] = {"random"};
                }),
-               Contains("sampling are for sampled surfaces"));
+               Contains("sampling is for sampled surfaces"));
     CHECK_THAT(complaint([](SourcesChoice& s, Run&) { s.field.radius = 0.5; }),
                Contains("field_radius"));
     CHECK_THAT(complaint([](SourcesChoice& s, Run& run) {
                    s.field.slope = 0.5;
-                   run.field = {FieldKind::sphere};
+                   run["field"] = {"sphere"};
                }),
                Contains("field_slope"));
     CHECK_THAT(complaint([](SourcesChoice& s, Run& run) {
                    s.field.lengths.growth = 0.5;
-                   run.field = {FieldKind::ugawg_linear};
+                   run["field"] = {"ugawg-linear"};
                }),
                Contains("field_growth"));
     CHECK_THAT(complaint([](SourcesChoice& s, Run& run) {
                    s.kind = SourcesKind::planes;
                    s.centre = Point(1, 0, 0);
-                   run.field = {FieldKind::sphere};
+                   run["field"] = {"sphere"};
                }),
                Contains("centre"));
     CHECK_THAT(complaint([](SourcesChoice&, Run& run) {
-                   run.field = {FieldKind::sphere};
-                   run.reference = {ReferenceKind::published_sphere};
+                   run["field"] = {"sphere"};
+                   run["reference"] = {"published-sphere"};
                }),
                Contains("for the sphere alone"));
     CHECK_THAT(complaint([](SourcesChoice& s, Run& run) {
                    s.centre = Point(0.1, 0, 0);
-                   run.reference = {ReferenceKind::published_sphere};
+                   run["reference"] = {"published-sphere"};
                }),
                Contains("around the origin"));
 }

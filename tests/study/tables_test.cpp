@@ -9,16 +9,30 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// The cell of `structure`, `split` under `column`.
-std::string cell(const TextTable& table, const std::string& structure, const std::string& split,
-                 const std::string& column) {
+/// The cell of `structure` under `column`.
+std::string cell(const TextTable& table, const std::string& structure, const std::string& column) {
     for (const auto& row : table.rows) {
-        if (row[0] != structure || row[1] != split) continue;
+        if (row[0] != structure) continue;
         for (std::size_t j = 0; j < table.columns.size(); ++j) {
             if (table.columns[j].header == column) return row[j];
         }
     }
     return "no such cell";
+}
+
+Row timed_row(const char* structure, std::vector<double> samples_ns, std::size_t batch = 0) {
+    Case c{.structure = structure};
+    Finished finished = sample_finished(c);
+    finished.access_random.samples_ns = std::move(samples_ns);
+    finished.access_batch = batch;
+    Row row;
+    row.setting = c;
+    for (const Measure& measure : measures()) row.values[measure.key] = measure.value(finished);
+    return row;
+}
+
+std::string note_of(const std::vector<Row>& rows) {
+    return measure_tables(rows, tree_rows()).front().note;
 }
 
 }  // namespace
@@ -32,25 +46,37 @@ TEST_CASE("every row is in one table of measures that names its mode") {
     grid.structure = "uniform-nearest";
     grid.split.reset();
     std::vector<Row> rows{sample_row(defaults), sample_row(published_case()), sample_row(grid)};
-    rows[2].measures.reset();
+    rows[2].values.clear();
     rows[2].error = "no memory";
-    const auto tables = measure_tables(rows);
+    const auto tables = measure_tables(rows, tree_rows());
     REQUIRE(tables.size() == 2);
-    CHECK_THAT(tables[0].title, Contains("tau 1") && Contains("cone law, queue, exact reference"));
-    CHECK_THAT(tables[1].title, Contains("mean-length law, passes, published-sphere reference"));
+    CHECK_THAT(tables[0].title, Contains("exact reference, cone law, queue") && Contains("tau 1"));
+    CHECK_THAT(tables[1].title, Contains("published-sphere reference, mean-length law, passes"));
     CHECK(tables[0].rows.size() == 2);
-    CHECK(cell(tables[0], "K_L", "s_L", "MB") == "1.23");
-    CHECK(cell(tables[0], "K_L", "s_L", "leaves") == "103");
-    CHECK(cell(tables[0], "K_L", "s_L", "creation s") == "1.750");
-    CHECK(cell(tables[0], "K_L", "s_L", "random ns") == "51.0");
-    CHECK(cell(tables[0], "K_L", "s_L", "grid ns") == "11.0");
-    CHECK(cell(tables[0], "K_L", "s_L", "δ_R p99") == "0.4000");
-    CHECK(cell(tables[0], "K_L", "s_L", "fine max") == "2.7800");
-    CHECK(cell(tables[0], "K_L", "s_L", "fine coarser") == "7.00 %");
-    CHECK(cell(tables[0], "K_L", "s_L", "worst") == "1.400");
-    CHECK(cell(tables[0], "K_L", "s_L", "G left") == "1.2499");
-    CHECK(cell(tables[0], "uniform-nearest", "", "remark") == "failed: no memory");
+    CHECK(cell(tables[0], "K_L s_L", "MB") == "1.23");
+    CHECK(cell(tables[0], "K_L s_L", "cells") == "103");
+    CHECK(cell(tables[0], "K_L s_L", "creation s") == "1.750");
+    CHECK(cell(tables[0], "K_L s_L", "random ns") == "51.0");
+    CHECK(cell(tables[0], "K_L s_L", "grid ns") == "11.0");
+    CHECK(cell(tables[0], "K_L s_L", "δ_R p99") == "0.4000");
+    CHECK(cell(tables[0], "K_L s_L", "fine max") == "2.7800");
+    CHECK(cell(tables[0], "K_L s_L", "fine coarser") == "7.00 %");
+    CHECK(cell(tables[0], "K_L s_L", "worst") == "1.400");
+    CHECK(cell(tables[0], "K_L s_L", "G left") == "1.2499");
+    CHECK(cell(tables[0], "uniform-nearest", "MB") == "–");
+    CHECK(cell(tables[0], "uniform-nearest", "remark") == "failed: no memory");
     for (const auto& table : tables) {
         for (const auto& row : table.rows) CHECK(row.size() == table.columns.size());
     }
+}
+
+TEST_CASE("the fastest is named only where quartiles do not overlap, in one batch") {
+    const Row slow = timed_row("slow", {50, 51, 52}), fast = timed_row("fast", {40, 41, 42});
+    const Row middle = timed_row("middle", {40.5, 41.4, 60});
+    const std::string place = "Fastest access at random places: ";
+    CHECK_THAT(note_of({slow, fast}), Contains(place + "fast."));
+    CHECK_THAT(note_of({slow, middle, fast}),
+               Contains(place + "indistinguishable between middle; fast."));
+    CHECK_THAT(note_of({slow, timed_row("later", {1, 1, 1}, 1)}), Contains(place + "no statement"));
+    CHECK_THAT(note_of({fast}), !Contains("Fastest"));
 }

@@ -1,4 +1,4 @@
-#include "study/workload.h"
+#include "controlspace/study/workload.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "controlspace/geometry/box.h"
+#include "controlspace/space/control_space.h"
+
+namespace controlspace {
+
+/// `n` places drawn uniformly from `box`; the same for the same seed on every machine. Throws
+/// InputError for more than 2^28.
+std::vector<Point> random_points(const Box& box, std::size_t n, std::uint64_t seed);
+
+/// 64-bit checksum of the metrics' bits, in order: another if any one number differs in any bit.
+std::uint64_t checksum(std::span<const Metric> metrics);
+
+/// Quartile 1, 2 (the median) or 3 of samples in any order, between them by linear interpolation.
+/// Throws InputError where there is no sample.
+double quartile(std::vector<double> samples, int number);
+
+/// Raw samples of the access time t_a (paper §5.1), nanoseconds per query of one batch on one
+/// thread.
+struct AccessTime {
+    std::vector<double> samples_ns;
+    std::uint64_t checksum = 0;  ///< of the answers; equal for timed and untimed runs
+
+    double median_ns() const { return quartile(samples_ns, 2); }
+};
+
+/// Times `sample` of several structures on the same batch of points in turns, so that what else
+/// the machine does affects all of them alike: in each of the `repeats` rounds each structure
+/// answers the batch once untimed, which warms the caches, and then as often as it takes to spend
+/// `shortest_s` in it, which gives one sample. The clock is read twice a run (some 50 ns), so the
+/// batch should have a thousand points or more. Throws std::logic_error if a structure answers
+/// otherwise than the first time, InputError for no points or no repeats.
+std::vector<AccessTime> access_times(std::span<const ControlSpace* const> spaces,
+                                     std::span<const Point> points, int repeats,
+                                     double shortest_s = 0.005);
+
+/// The same of one structure.
+AccessTime access_time(const ControlSpace& space, std::span<const Point> points, int repeats,
+                       double shortest_s = 0.005);
+
+}  // namespace controlspace

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "controlspace/gradation/grade.h"
+#include "controlspace/space/split_words.h"
+#include "controlspace/study/sources_choice.h"
+#include "controlspace/study/value.h"
+
+namespace controlspace {
+
+/// What δ_R is measured against.
+enum class ReferenceKind {
+    /// Intersection of all sources' cones (paper §5.2) and, as it stands, of the field.
+    exact,
+    published_sphere,  ///< the analytic field behind the paper's Table 4; spheres only
+};
+
+/// What the control nodes of a graded structure hold.
+enum class NodeValues {
+    graded,  ///< the result of gradation
+    exact,   ///< the reference at their positions: the remaining error is that of interpolation
+};
+
+/// Whether a structure is built in its compact form (BuildOptions::precision).
+enum class Frozen { no, doubles, floats };
+
+/// One structure under one setting; a row of results belongs to it. Its members are set by the rows
+/// of case_parameters(). What does not apply to the structure is none, or stays at its default.
+struct Case {
+    std::string structure = "K_L";        ///< id in the catalogue
+    std::optional<SplitRule> split = {};  ///< kd-trees only
+    SourcesChoice sources = {};
+    double tau = 1;        ///< l_min: longest edge of a source's leaf, in the source's metric
+    double epsilon = 0.2;  ///< ε_δ of insertion
+    double g_r = 1.25;     ///< gradation ratio
+    std::optional<int> max_depth = {};        ///< trees only
+    std::optional<double> voxel = {};         ///< grids only; none: by tau and the sources
+    std::optional<double> voxel_factor = {};  ///< grids in levels only
+    std::optional<double> prune_delta = {};   ///< OpenVDB only; none: nothing is pruned
+    /// Trees only: adapted to this δ in place of insertion and gradation; none: they are not.
+    std::optional<double> target_delta = {};
+    /// Grids only: δ_R, or memory [MB], that voxels are chosen for (study/equal_setting.h).
+    std::optional<double> equal_delta = {};
+    std::optional<double> equal_memory = {};
+    NodeValues node_values = NodeValues::graded;  ///< structures that hold metrics only
+    Frozen frozen = Frozen::no;                   ///< structures with compact forms only
+    GradationLaw law = GradationLaw::cone;
+    GradationSchedule schedule = GradationSchedule::queue;
+    Neighbourhood neighbourhood = Neighbourhood::faces;  ///< structures that hold metrics only
+    ReferenceKind reference = ReferenceKind::exact;
+    /// Values of parameters that are defined outside the library, by key.
+    std::map<std::string, Value> other = {};
+
+    bool operator==(const Case&) const = default;
+};
+
+template <>
+struct Words<GradationLaw> {
+    static constexpr Word<GradationLaw> table[] = {
+        {GradationLaw::cone, "cone", "h1 <= h0 + (g_r - 1) |v|, as in the exact reference"},
+        {GradationLaw::mean_length, "mean-length",
+         "the paper's: over the mean of both metric lengths"}};
+};
+template <>
+struct Words<GradationSchedule> {
+    static constexpr Word<GradationSchedule> table[] = {
+        {GradationSchedule::queue, "queue", "until nothing changes"},
+        {GradationSchedule::passes, "passes", "at most ten passes, as in the paper's tables"}};
+};
+template <>
+struct Words<Neighbourhood> {
+    static constexpr Word<Neighbourhood> table[] = {
+        {Neighbourhood::faces, "faces", "nodes across faces, at vertices along edges"},
+        {Neighbourhood::all, "all", "those across edges and corners too"}};
+};
+template <>
+struct Words<ReferenceKind> {
+    static constexpr Word<ReferenceKind> table[] = {
+        {ReferenceKind::exact, "exact", "intersection of the cones of all sources"},
+        {ReferenceKind::published_sphere, "published-sphere",
+         "the analytic field behind the paper's Table 4"}};
+};
+template <>
+struct Words<NodeValues> {
+    static constexpr Word<NodeValues> table[] = {
+        {NodeValues::graded, "graded", "the result of gradation"},
+        {NodeValues::exact, "exact", "the reference there: the error of interpolation alone"}};
+};
+template <>
+struct Words<Frozen> {
+    static constexpr Word<Frozen> table[] = {
+        {Frozen::no, "no", "trees as they are made"},
+        {Frozen::doubles, "doubles", "compact and read-only, the same bits"},
+        {Frozen::floats, "floats", "compact, metrics rounded by 6e-8"}};
+};
+
+}  // namespace controlspace

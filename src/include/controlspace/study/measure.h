@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "controlspace/measure/access_time.h"
+#include "controlspace/measure/accuracy.h"
+#include "controlspace/space/control_space.h"
+#include "controlspace/study/workload.h"
+
+namespace controlspace {
+
+/// How a structure was made: once for each of creation_repeats, with the same answers.
+struct Creation {
+    std::uint64_t sources_inserted = 0;  ///< sources that changed the structure
+    std::vector<double> insert_s;        ///< making the structure and inserting all sources
+    std::vector<double> gradation_s;
+    GradationReport gradation;
+    std::string remark;
+};
+
+/// A finished structure of a study, and what was measured of it: what rows of measures are computed
+/// from. The references are valid during the call.
+struct Finished {
+    std::size_t index = 0;  ///< of the case in the study, from 0
+    const Study& study;
+    const Case& setting;
+    const Workload& workload;
+    const ReferenceProbes& probes;
+    const ControlSpace& space;
+    Creation creation = {};
+    Footprint footprint = {};
+    Accuracy accuracy = {};         ///< δ_R at the coarse probes
+    Accuracy accuracy_fine = {};    ///< δ_R at the fine probes
+    double source_accuracy = 0;     ///< δ_S
+    AccessTime access_random = {};  ///< at random places
+    AccessTime access_grid = {};    ///< at the coarse probes, x fastest
+    std::size_t access_batch = 0;   ///< first case of its batch: those were timed in turns
+};
+
+/// A value in a row of results: none where the measure does not apply.
+using MeasuredValue =
+    std::variant<std::monostate, double, std::int64_t, std::string, std::vector<double>>;
+
+/// How a measure is shown in tables.
+struct Column {
+    std::string header;  ///< empty: not in tables
+    std::string format;  ///< of the number times `scale`: "{:.2f} %"; of others "{}"
+    double scale = 1;
+    /// "fastest", for times whose smallest value is worth a statement; there are measures with
+    /// `_q1` and `_q3` after their key then.
+    std::string least = {};
+};
+
+/// One measure: the row that drives results.json in both directions, results.csv and all tables.
+struct Measure {
+    std::string key;   ///< in results.json and results.csv
+    std::string unit;  ///< empty for pure numbers and texts
+    std::function<MeasuredValue(const Finished&)> value;
+    Column column = {};
+};
+
+/// All measures of the library, in the order of columns.
+std::span<const Measure> measures();
+
+/// The rows of a measure of which there are many samples: its median under `key`, its quartiles
+/// under key_q1 and key_q3, and the samples under key_samples.
+std::vector<Measure> sampled_measure(const std::string& key, const std::string& unit,
+                                     std::function<std::vector<double>(const Finished&)> samples,
+                                     const Column& column);
+
+/// Files of sampled fields, relative to the folder of results (see study/sampled_fields.h).
+struct FieldFiles {
+    Box domain;
+    double z = 0;                                                    ///< height of the slice
+    std::string slice, probes, outlines, exact_slice, exact_probes;  ///< outlines may be empty
+};
+
+/// The outcome of one case: measures by key, or the reason why there are none.
+struct Row {
+    Case setting;
+    std::size_t sources = 0;
+    std::map<std::string, MeasuredValue> values;  ///< empty where there is an error
+    std::string error;
+    std::optional<FieldFiles> fields;
+    double seconds = 0;  ///< that the case took
+
+    bool is_measured() const { return error.empty(); }
+    /// A number; NaN where there is none.
+    double number(const std::string& key) const;
+};
+
+}  // namespace controlspace

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "controlspace/study/measure.h"
+#include "controlspace/study/provenance.h"
+#include "controlspace/study/study.h"
+
+namespace controlspace {
+
+/// Of results.json: another number where its fields mean something else.
+constexpr int results_schema_version = 2;
+
+/// What a folder of results holds.
+struct StoredResults {
+    Provenance provenance;
+    Study study;  ///< with default runs: the rows say what was run
+    std::vector<Row> rows;
+    bool complete = false;
+};
+
+/// Reads FOLDER/results.json. Throws InputError, naming the file, and the row counted from 1, for
+/// what cannot be read, is no such file, is of another schema or was made with other parameters or
+/// measures than `rows` has.
+StoredResults read_results(const std::filesystem::path& folder, const StudyRows& rows);
+
+/// The rows that an interrupted run of `study` left behind: those of its first cases, in order.
+/// Throws InputError where going on would mix what must not be mixed: results that are complete, of
+/// another study or other settings, or made by another build or on another processor.
+std::vector<Row> rows_to_go_on_from(const StoredResults& earlier, const Study& study,
+                                    std::span<const Case> cases, const Provenance& now);
+
+/// A text file that is written at its end, where a tail is replaced each time: it is whole after
+/// every call.
+class GrowingFile {
+public:
+    /// Replaces the file by `text` and `tail`. Throws InputError, naming it, if that fails.
+    GrowingFile(std::filesystem::path path, std::string_view text, std::string tail);
+    /// Adds `text` in front of `tail`, which replaces the one before. If that fails, the file stays
+    /// as it was, and InputError is thrown.
+    void append(std::string_view text, std::string tail);
+
+private:
+    std::filesystem::path path_;
+    std::uintmax_t end_;  ///< of the text
+    std::string tail_;
+};
+
+/// The folder that a study's results go to, a sink for its rows: results.json and results.csv grow
+/// with each row, and hold all rows at any time; fields/ gets the sampled fields of the rows of the
+/// first setting; summary.md and pareto.json are written at the end.
+class ResultsFolder {
+public:
+    /// Makes the folder with its parents. Throws InputError if that fails, if results are in it
+    /// already, or if it cannot be written to.
+    ResultsFolder(std::filesystem::path folder, Provenance provenance, Study study,
+                  const StudyRows& rows);
+    /// The folder of an interrupted run, which holds `earlier` rows and goes on.
+    ResultsFolder(std::filesystem::path folder, Provenance provenance, Study study,
+                  const StudyRows& rows, std::vector<Row> earlier);
+
+    const std::filesystem::path& path() const { return folder_; }
+    std::span<const Row> rows() const { return written_; }
+
+    /// Samples the field of a structure that is one of the first setting's (see sampled_fields.h),
+    /// and names the files in `row`. For StudyObserver::case_checked.
+    void sample_fields(const Finished& finished, Row& row);
+    /// Throws InputError, naming the file, if it cannot be written.
+    void add(const Row& row);
+    /// Writes the tables; `complete` is false where cases are missing.
+    void finish(bool complete);
+
+private:
+    Provenance provenance_;
+    Study study_;
+    StudyRows rows_;
+    std::filesystem::path folder_;
+    std::vector<Row> written_;
+    std::vector<Case> sampled_;  ///< whose fields are in files
+    std::size_t checked_ = 0;    ///< cases, written or not
+    GrowingFile json_;
+    GrowingFile csv_;
+};
+
+/// All tables: measures for each setting, and the fronts (see pareto.h).
+std::string tables_text(std::span<const Row> rows, const StudyRows& columns, bool markdown);
+
+/// One line: program, machine, command line and date of results.
+std::string origin_text(const Provenance& provenance, bool complete);
+
+/// Makes a folder for results with its parents. Throws InputError if that fails, or if `file`,
+/// which marks results, is in it already.
+void make_results_folder(const std::filesystem::path& folder, std::string_view file);
+
+/// Replaces `path` at once: readers see the old text or the new one, never a part. Throws
+/// InputError.
+void replace_file(const std::filesystem::path& path, std::string_view text);
+
+/// study.output, or results/NAME-DATE-TIME (UTC).
+std::filesystem::path results_path(const Study& study, const Provenance& provenance);
+
+}  // namespace controlspace

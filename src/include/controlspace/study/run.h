@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "controlspace/study/measure.h"
+#include "controlspace/study/study.h"
+#include "controlspace/study/workload.h"
+
+namespace controlspace {
+
+/// Receives what a study does; each function may be empty.
+struct StudyObserver {
+    std::function<void(const Case&)> case_started;
+    std::function<void(std::string_view)> phase_started;  ///< within a case: "insertion"
+    /// A structure is finished and checked, not yet timed; it may add to the row.
+    std::function<void(const Finished&, Row&)> case_checked;
+    std::function<void(const Row&)> case_finished;  ///< in the order of the cases
+};
+
+/// A study made ready to run: every case checked, every set of sources in memory.
+class PreparedStudy {
+public:
+    /// Without the `finished` cases that come first. Throws InputError for anything about the study
+    /// that cannot be run. The rows must outlive it.
+    PreparedStudy(Study study, const StudyRows& rows, const FileReaders& readers = {},
+                  std::size_t finished = 0);
+
+    const Study& study() const { return study_; }
+    const StudyRows& rows() const { return rows_; }
+    std::span<const Case> cases() const { return cases_; }
+    /// Of a case of the study: its structure, and its sources, until `run` has freed them.
+    const CatalogueEntry& entry(const Case& c) const;
+    const Workload& workload(const Case& c) const { return sources_of(c).workload; }
+    /// Number of sources of each case.
+    std::span<const std::size_t> source_counts() const { return source_counts_; }
+
+    /// Runs the cases. Each structure is made creation_repeats times and checked, one after the
+    /// other, so that none disturbs the timing of another; finished structures of consecutive cases
+    /// with the same sources and reference are kept in a batch, within half of max_memory, and
+    /// their access is timed in turns. A time is reported only for answers that were checked. A
+    /// case that fails gives a row with its reason. Sources and probes are freed after the last
+    /// case that needs them, so it runs once.
+    void run(const StudyObserver& observer) &&;
+
+private:
+    struct SharedSources {
+        SourcesChoice choice;
+        Workload workload;
+        std::size_t last_use = 0;  ///< index of a case
+    };
+
+    const SharedSources& sources_of(const Case& c) const;
+    SharedSources& sources_of(const Case& c);
+
+    Study study_;
+    StudyRows rows_;
+    std::size_t finished_;  ///< cases that came before
+    std::vector<Case> cases_;
+    std::vector<SharedSources> sources_;
+    std::vector<std::size_t> source_counts_;
+};
+
+/// The cases whose probes are the same: same sources, same reference, same g_r.
+bool share_probes(const Case& a, const Case& b);
+
+/// The entry of the structure of `c`, which `expand` has found in `catalogue`.
+const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> catalogue);
+
+/// A builder that holds what case `c` asks for, graded. Exceptions pass through.
+struct Filled {
+    std::unique_ptr<ControlSpaceBuilder> builder;
+    Creation creation;  ///< of this one
+
+    /// In the form that the case asks for.
+    std::unique_ptr<ControlSpace> build(const Case& c) const;
+};
+Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
+                     const Workload& workload, const StudyObserver& observer = {});
+
+}  // namespace controlspace

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "controlspace/fields/analytic_field.h"
+#include "controlspace/geometry/box.h"
+#include "controlspace/measure/accuracy.h"
+#include "controlspace/sources/point_source.h"
+#include "controlspace/study/study.h"
+
+namespace controlspace {
+
+/// Readers of file formats, by the program that links their libraries.
+struct FileReaders {
+    /// Sources of kind `file`, by the ending of the file's name in small letters (".vdb").
+    std::map<std::string, std::function<std::vector<PointSource>(const SourcesChoice&)>> sources;
+    /// A field of kind `file`; may be empty.
+    std::function<AnalyticField(const FieldChoice&)> vdb_field;
+};
+
+/// What all cases with the same sources share.
+struct Workload {
+    std::vector<PointSource> sources;
+    AnalyticField field;  ///< `field.field` is null where there is none
+    Box domain;
+    double finest_length = 0;  ///< smallest length that any source or the field asks for
+};
+
+/// The sources of the file that `choice`, of kind `file`, names: by the reader of its ending, or
+/// by read_sources. Throws InputError.
+std::vector<PointSource> read_source_file(const SourcesChoice& choice, const FileReaders& readers);
+
+/// Samples or reads the sources, and checks that each lies in the domain, and the domain where the
+/// field is defined. Throws InputError.
+Workload make_workload(const Study& study, const SourcesChoice& choice,
+                       const FileReaders& readers = {});
+
+/// The options that the structure of case `c` is made with. Throws InputError where they are out
+/// of range.
+SpaceOptions space_options(const Study& study, const Case& c, const Workload& workload,
+                           std::span<const CaseParameter> parameters = case_parameters());
+
+/// Places at which structures are compared with their reference, and the reference there.
+struct ReferenceProbes {
+    Probes coarse;  ///< probe_grid^3 cell centres
+    Probes fine;    ///< fine_probe_grid^3 cell centres
+};
+
+/// What δ_R of `c` is measured against; a structure that follows a field follows this one. Depends
+/// on the sources, the kind of reference and g_r of `c`, and on the study's reference_tolerance,
+/// only.
+std::shared_ptr<const ControlSpace> make_reference(const Study& study, const Case& c,
+                                                  const Workload& workload);
+
+/// The same at the probes.
+ReferenceProbes make_reference_probes(const Study& study, const Case& c, const Workload& workload);
+
+}  // namespace controlspace

@@ -1,0 +1,281 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "controlspace/gradation/law.h"
+#include "controlspace/study/parameter.h"
+
+namespace controlspace {
+namespace {
+
+/// A member of Case::sources.
+template <class Member>
+auto of_sources(Member SourcesChoice::*member) {
+    return [member](auto& c) -> auto& { return c.sources.*member; };
+}
+auto field_kind = [](auto& c) -> auto& { return c.sources.field.kind; };
+
+template <class Place>
+Access<Case> number_of(Place place, Check check = positive) {
+    return number<Case>(place, std::move(check));
+}
+template <class Place>
+Access<Case> number_or_none(Place place) {
+    return number<Case>(place, at_least(0), Zero::is_none);
+}
+
+bool samples(const Case& c) { return is_sampled(c.sources); }
+
+template <class Capability>
+bool has(const CatalogueEntry& entry, const Case&) {
+    return entry.has<Capability>();
+}
+bool is_octree(const CatalogueEntry& entry, const Case&) {
+    return entry.has<SourceLeaves>() && !entry.has<SplitRules>();
+}
+/// An adapted tree is not graded: it is exact at its nodes.
+bool is_graded(const CatalogueEntry& entry, const Case& c) {
+    return entry.has<MetricNodes>() && !c.target_delta;
+}
+
+/// The deepest level of trees of one kind.
+Access<Case> depth_if(bool with_split) {
+    Access<Case> depth = number_of(
+        [](auto& c) -> auto& { return c.max_depth; }, within(0, 1000));
+    depth.get = [get = depth.get, with_split](const Case& c) {
+        return c.split.has_value() == with_split ? get(c) : Values{};
+    };
+    return depth;
+}
+
+/// Adapted trees follow no rule: one of the rules stands for all.
+Access<Case> target() {
+    Access<Case> access = number_or_none(&Case::target_delta);
+    access.set = [set = access.set](Case& c, const Values& values) {
+        set(c, values);
+        if (c.target_delta && c.split) c.split = SplitRule::middle;
+    };
+    return access;
+}
+
+/// g_r from another program's number, above 1 as its logarithm is taken.
+Access<Case> ratio_from(double (*convert)(double)) {
+    Access<Case> access;
+    access.set = [convert, check = at_least(1)](Case& c, const Values& values) {
+        c.g_r = convert(check(values.front().number()));
+    };
+    access.get = [](const Case&) { return Values{}; };
+    return access;
+}
+
+using Label = std::function<std::string(const Case&)>;
+
+/// FORMAT of the number at `place`, where there is one.
+template <class Place>
+Label if_given(const char* format, Place place) {
+    return [=](const Case& c) -> std::string {
+        const std::optional<double> x = std::invoke(place, c);
+        return x ? fmt::format(fmt::runtime(format), *x) : "";
+    };
+}
+/// FORMAT of the word at `place`, where it is not that of a new Case.
+template <class Place>
+Label if_chosen(const char* format, Place place) {
+    return [=](const Case& c) -> std::string {
+        const auto value = std::invoke(place, c);
+        static const Case defaults;
+        if (value == std::invoke(place, defaults)) return "";
+        return fmt::format(fmt::runtime(format), name_of(value));
+    };
+}
+template <class Place>
+Label word_label(const char* format, Place place) {
+    return [=](const Case& c) {
+        return fmt::format(fmt::runtime(format), name_of(std::invoke(place, c)));
+    };
+}
+
+/// Rows of each role.
+CaseParameter work(const char* key, const char* unit, const char* help, Access<Case> access,
+                   Values defaults, Label label) {
+    return {
+        {key, unit, help, std::move(access)}, Role::work, std::move(defaults), std::move(label)};
+}
+CaseParameter of_samples(CaseParameter row) {
+    row.applies_to = {"sampled surfaces", samples};
+    row.label = [label = row.label](const Case& c) { return samples(c) ? label(c) : ""; };
+    return row;
+}
+CaseParameter form_of_g_r(const char* key, const char* help, double (*convert)(double)) {
+    return {{key, "", help, ratio_from(convert)}, Role::work, {}, {}, {}, {}, "g_r"};
+}
+CaseParameter method(const char* key, const char* unit, const char* help, Access<Case> access,
+                     Values defaults, Label label) {
+    return {
+        {key, unit, help, std::move(access)}, Role::method, std::move(defaults), std::move(label)};
+}
+using Fits = std::function<bool(const CatalogueEntry&, const Case&)>;
+CaseParameter structure(const char* key, const char* unit, const char* help, Access<Case> access,
+                        Values defaults, Fits fits, Label label, const char* result_key = "") {
+    return {{key, unit, help, std::move(access)},
+            Role::structure,
+            std::move(defaults),
+            std::move(label),
+            std::move(fits),
+            result_key};
+}
+
+std::vector<CaseParameter> all_rows() {
+    using S = SourcesChoice;
+    std::vector<CaseParameter> rows{
+        work("field", "", "Continuous field that is requested besides the sources",
+             word<Case>(field_kind), {"none"}, if_chosen("field {}", field_kind)),
+        of_samples(work("sampling", "", "How sampled sources are placed",
+                        word<Case>(of_sources(&S::sampling)), {"regular"},
+                        if_chosen("{} sources", of_sources(&S::sampling)))),
+        of_samples(work("rho", "h", "Spacing of sampled sources", number_of(of_sources(&S::rho)),
+                        {1}, if_given("rho {}", of_sources(&S::rho)))),
+        of_samples(work("s_a", "h", "Tangential length of sampled sources",
+                        number_of(of_sources(&S::s_a)), {2},
+                        if_given("s_a {}", of_sources(&S::s_a)))),
+        of_samples(work("s_n", "tangential length", "Normal length of sampled sources",
+                        number_of(of_sources(&S::s_n)), {1},
+                        if_given("s_n {}", of_sources(&S::s_n)))),
+        work("g_r", "", "Gradation ratio, 1 or more", number_of(&Case::g_r, within(1, 1e6)), {1.25},
+             if_given("g_r {:.6g}", &Case::g_r)),
+        form_of_g_r("mmg_hgrad", "Gradation ratio as MMG's -hgrad: g_r = 1 + ln(hgrad)",
+                    gradation_ratio_from_mmg),
+        form_of_g_r("refine_beta", "Gradation ratio as refine's beta: g_r = 1 + ln(beta)",
+                    gradation_ratio_from_refine),
+        work("reference", "", "Field to compare with", word<Case>(&Case::reference), {"exact"},
+             word_label("{} reference", &Case::reference)),
+        work("law", "", "Law of gradation", word<Case>(&Case::law), {"cone"},
+             word_label("{} law", &Case::law)),
+        method("schedule", "", "Order of gradation", word<Case>(&Case::schedule), {"queue"},
+               word_label("{}", &Case::schedule)),
+        method("epsilon", "",
+               "Insertion tolerance: non-conformity below which a source is satisfied",
+               number_of(&Case::epsilon), {0.2}, if_given("epsilon {}", &Case::epsilon)),
+        method("tau", "metric length at the source", "l_min: longest edge of the leaf of a source",
+               number_of(&Case::tau), {1}, if_given("tau {}", &Case::tau)),
+        structure("splits", "", "Where kd-trees cut", word<Case>(&Case::split),
+                  {"s_L", "s_G", "s_M"}, has<SplitRules>, {}, "split"),
+        structure("kd_depth", "", "Deepest level of kd-trees, the root being 0", depth_if(true),
+                  {42}, has<SplitRules>, {}, "max_depth"),
+        structure("octree_depth", "", "Deepest level of octrees, the root being 0", depth_if(false),
+                  {14}, is_octree, {}, "max_depth"),
+        structure("target_delta", "",
+                  "Non-conformity to the exact field that trees are adapted to, in place of "
+                  "insertion and gradation; 0: not adapted",
+                  target(), {0}, has<SourceLeaves>, if_given("δ <= {:.4g}", &Case::target_delta)),
+        structure("equal_delta", "",
+                  "Largest delta_R that the voxels of a grid (in levels voxel_factor too; and "
+                  "prune_delta, where that saves memory) are chosen for; 0: as they are set. "
+                  "Trees have target_delta",
+                  number_or_none(&Case::equal_delta), {0}, has<VoxelSize>,
+                  if_given("for delta {:.4g}", &Case::equal_delta)),
+        structure("equal_memory", "MB",
+                  "Memory of the finished grid that its voxels are chosen for; 0: as they are set",
+                  number_or_none(&Case::equal_memory), {0}, has<VoxelSize>,
+                  if_given("for {:.4g} MB", &Case::equal_memory)),
+        structure("voxel", "length",
+                  "Longest edge of a grid's finest voxels; 0: tau times the smallest requested "
+                  "length",
+                  number_or_none(&Case::voxel), {0}, has<VoxelSize>,
+                  if_given("voxel {:.4g}", &Case::voxel)),
+        structure("voxel_factor", "metric length of the metric it holds",
+                  "c of grids in levels: longest edge of a voxel", number_of(&Case::voxel_factor),
+                  {1}, has<VoxelLevels>,
+                  [](const Case& c) {
+                      const double factor = c.voxel_factor.value_or(1);
+                      return factor == 1 ? "" : fmt::format("c {:.4g}", factor);
+                  }),
+        structure("neighbourhood", "",
+                  "Nodes that gradation compares: faces, those across faces (at vertices: along "
+                  "edges) as in the paper; all, those across edges and corners too (at vertices: "
+                  "of the same leaf or voxel). Structures that keep sources and adapted trees "
+                  "compare none",
+                  word<Case>(&Case::neighbourhood), {"faces"}, is_graded,
+                  if_chosen("{} neighbours", &Case::neighbourhood)),
+        structure("node_values", "",
+                  "What control nodes hold: graded, the result of gradation; exact, the reference "
+                  "there, which shows the error of interpolation alone",
+                  word<Case>(&Case::node_values), {"graded"}, is_graded,
+                  if_chosen("{} at nodes", &Case::node_values)),
+        structure("frozen", "",
+                  "Whether trees are converted to their compact, read-only form at the end, which "
+                  "is not timed: no; doubles, the same bits; floats, metrics rounded by 6e-8",
+                  word<Case>(&Case::frozen), {"no"}, has<CompactForm>,
+                  if_chosen("frozen with {}", &Case::frozen)),
+        structure("prune_delta", "",
+                  "Non-conformity up to which OpenVDB grids join voxels once they are graded; 0: "
+                  "they do not",
+                  number_or_none(&Case::prune_delta), {0}, has<Pruning>,
+                  if_given("pruned at {:.4g}", &Case::prune_delta)),
+    };
+    std::ranges::find(rows, "reference", &CaseParameter::key)->use = Use::accuracy;
+    return rows;
+}
+
+/// The non-empty labels of parameters of a role, joined by commas.
+template <class Wanted>
+std::string joined(const Case& c, std::span<const CaseParameter> parameters, const Wanted& wanted) {
+    std::string text;
+    for (const CaseParameter& parameter : parameters) {
+        if (!parameter.label || !wanted(parameter)) continue;
+        const std::string label = parameter.label(c);
+        if (!label.empty()) text += (text.empty() ? "" : ", ") + label;
+    }
+    return text;
+}
+
+}  // namespace
+
+std::span<const CaseParameter> case_parameters() {
+    static const std::vector<CaseParameter> all = all_rows();
+    return all;
+}
+
+Access<Case> other_number(const std::string& key, Check check) {
+    Access<Case> access;
+    access.set = [key, check = std::move(check)](Case& c, const Values& values) {
+        c.other[key] = check(values.front().number());
+    };
+    access.get = [key](const Case& c) {
+        const auto found = c.other.find(key);
+        return found == c.other.end() ? Values{} : Values{found->second};
+    };
+    return access;
+}
+
+Values values_of(const CaseParameter& parameter, const Case& c) {
+    return parameter.applies(c) ? parameter.access.get(c) : Values{};
+}
+
+std::string structure_label(const Case& c, std::span<const CaseParameter> parameters) {
+    std::string label = c.structure;
+    if (c.split && !c.target_delta) label += fmt::format(" {}", name_of(*c.split));
+    const std::string own =
+        joined(c, parameters, [](const CaseParameter& p) { return p.role == Role::structure; });
+    return own.empty() ? label : label + ", " + own;
+}
+
+std::string setting_label(const Case& c, std::span<const CaseParameter> parameters) {
+    return joined(c, parameters, [](const CaseParameter& p) { return p.role != Role::structure; });
+}
+
+std::string work_label(const Case& c, std::span<const CaseParameter> parameters) {
+    return joined(c, parameters, [](const CaseParameter& p) { return p.role == Role::work; });
+}
+
+std::string method_label(const Case& c, std::span<const CaseParameter> parameters) {
+    const std::string method = joined(c, parameters, [&](const CaseParameter& p) {
+        if (p.role != Role::method) return false;
+        const Values values = values_of(p, c);
+        return !values.empty() && values.front() != p.defaults.front();
+    });
+    return structure_label(c, parameters) + (method.empty() ? "" : ", " + method);
+}
+
+}  // namespace controlspace

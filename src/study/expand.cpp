@@ -1,0 +1,184 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "controlspace/error.h"
+#include "controlspace/study/study.h"
+
+namespace controlspace {
+namespace {
+
+std::vector<const CatalogueEntry*> chosen(const Values& names,
+                                          std::span<const CatalogueEntry> catalogue) {
+    std::vector<const CatalogueEntry*> entries;
+    for (const Value& value : names) {
+        const std::string& name = value.text();
+        bool known = name == "all";
+        std::string all = "all";
+        for (const CatalogueEntry& entry : catalogue) {
+            all += ", " + entry.id;
+            const bool former = !name.empty() && entry.former_id == name;
+            if (name != "all" && entry.id != name && entry.family != name && !former) continue;
+            known = true;
+            if (std::ranges::count(entries, &entry) == 0) entries.push_back(&entry);
+        }
+        if (!known) {
+            throw InputError(fmt::format(
+                "unknown structure '{}': give a family (trees, anchored, baselines) or some of {}",
+                name, all));
+        }
+    }
+    return entries;
+}
+
+/// Lists multiply: a slip in a study file should not ask for a year of work, or for all memory.
+void require_few(std::size_t cases) {
+    constexpr std::size_t most = 5000;
+    if (cases > most) {
+        throw InputError(fmt::format("the study has more than {} cases: shorten its lists", most));
+    }
+}
+
+/// Replaces each case by one for each value; the first list multiplied varies slowest.
+void multiply(std::vector<Case>& cases, const CaseParameter& parameter, const Values& values) {
+    std::vector<Case> product;
+    require_few(cases.size() * values.size());
+    for (const Case& c : cases) {
+        for (const Value& value : values) {
+            set_checked(parameter.access, product.emplace_back(c), {value});
+        }
+    }
+    cases = std::move(product);
+}
+
+/// A value other than the default where it does not apply is a slip: it was meant for other
+/// sources.
+bool is_needed(const CaseParameter& parameter, const Run& run, const Case& c) {
+    if (parameter.applies(c)) return true;
+    if (run.values(parameter) == parameter.defaults) return false;
+    throw InputError(
+        fmt::format("{} is for {}: leave it out", parameter.key, parameter.applies_to.what));
+}
+
+std::vector<Case> settings_of(const Study& study, const Run& run,
+                              std::span<const CaseParameter> parameters) {
+    std::vector<Case> cases(1);
+    cases.front().sources = study.sources;
+    for (const CaseParameter& p : parameters) {
+        if (p.role == Role::structure || !p.same_as.empty()) continue;
+        if (is_needed(p, run, cases.front())) multiply(cases, p, run.values(p));
+    }
+    return cases;
+}
+
+/// One structure under one setting: what it does not have does not multiply it.
+std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const Case& setting,
+                              std::span<const CaseParameter> parameters) {
+    // Nothing but sources makes grids in levels finer.
+    if (entry.has<VoxelLevels>() && has_field(setting.sources)) return {};
+    std::vector<Case> cases{setting};
+    cases.front().structure = entry.id;
+    for (const CaseParameter& p : parameters) {
+        if (p.role != Role::structure) continue;
+        std::vector<Case> product;
+        for (const Case& c : cases) {
+            std::vector<Case> made{c};
+            if (!p.fits || p.fits(entry, c)) multiply(made, p, run.values(p));
+            product.insert(product.end(), made.begin(), made.end());
+        }
+        cases = std::move(product);
+    }
+    return cases;
+}
+
+void require_reference(const SourcesChoice& sources) {
+    if (sources.kind != SourcesKind::sphere || has_field(sources)) {
+        throw InputError("reference published-sphere is for the sphere alone: use exact");
+    }
+    if (sources.centre != Point::Zero()) {
+        throw InputError("reference published-sphere is around the origin: use exact");
+    }
+    if (sources.s_n != 1) {
+        throw InputError("reference published-sphere is isotropic: use exact, or s_n = 1");
+    }
+}
+
+void require_sensible(const Case& c) {
+    if (c.sources.kind == SourcesKind::none && !has_field(c.sources)) {
+        throw InputError("neither sources nor a field: give one of them");
+    }
+    if (c.sources.field.kind == FieldKind::file && c.sources.field.file.empty()) {
+        throw InputError("field = \"file\" needs field_file: name a .vdb");
+    }
+    if (c.reference == ReferenceKind::published_sphere) require_reference(c.sources);
+    if (c.equal_delta && c.equal_memory) {
+        throw InputError("equal_delta and equal_memory choose the same voxels: give one of them");
+    }
+    if ((c.equal_delta || c.equal_memory) && (c.voxel || c.voxel_factor.value_or(1) != 1)) {
+        throw InputError(
+            "equal_delta and equal_memory choose voxel and voxel_factor: leave those out");
+    }
+}
+
+}  // namespace
+
+const Values* Run::find(const std::string& key) const {
+    const auto found = lists_.find(key);
+    return found == lists_.end() ? nullptr : &found->second;
+}
+
+const Values& Run::values(const CaseParameter& parameter) const {
+    const Values* list = find(parameter.key);
+    return list != nullptr ? *list : parameter.defaults;
+}
+
+Values Run::structures() const {
+    const Values* list = find(structures_key);
+    return list != nullptr ? *list : Values{"all"};
+}
+
+void Run::set_structures(const Values& names) {
+    require_fit(ValueType::text, 0, names);
+    lists_[structures_key] = names;
+}
+
+void Run::set(const CaseParameter& parameter, const Values& values,
+              std::span<const CaseParameter> all) {
+    require_fit(parameter.access.type, 0, values);
+    const auto target = parameter.same_as.empty()
+                            ? &parameter
+                            : &*std::ranges::find(all, parameter.same_as, &CaseParameter::key);
+    Values list;
+    for (const Value& value : values) {
+        Case c;
+        set_checked(parameter.access, c, {value});
+        list.push_back(target == &parameter ? value : target->access.get(c).front());
+    }
+    lists_[target->key] = std::move(list);
+}
+
+std::vector<Case> expand(const Study& study, const StudyRows& rows) {
+    require_applicable(study);
+    std::vector<Case> cases;
+    for (const Run& run : study.runs) {
+        const auto entries = chosen(run.structures(), rows.structures);
+        for (const Case& setting : settings_of(study, run, rows.parameters)) {
+            for (const CatalogueEntry* entry : entries) {
+                for (const Case& c : variants_of(*entry, run, setting, rows.parameters)) {
+                    require_sensible(c);
+                    if (std::ranges::count(cases, c) == 0) cases.push_back(c);
+                }
+                require_few(cases.size());
+            }
+        }
+    }
+    if (cases.empty()) {
+        throw InputError(
+            "the study has no cases: give at least one structure, and for a field one that is not "
+            "a grid in levels");
+    }
+    return cases;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "controlspace/error.h"
+#include "controlspace/space/control_nodes.h"
+#include "controlspace/space/sample_parallel.h"
+#include "controlspace/study/run.h"
+
+namespace controlspace {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// A field is followed by adaptation; without a target only what keeps its cells can follow it.
+void require_follows(const Case& c, const CatalogueEntry& entry) {
+    if (c.target_delta || !entry.has<SourceLeaves>()) return;
+    throw InputError("an analytic field is followed by adaptation: set target_delta, for trees");
+}
+
+void adapt(Filled& filled, const Case& c, const Workload& workload) {
+    AdaptationGoal goal{workload.sources, workload.field.field, c.g_r};
+    if (c.target_delta) goal.target = *c.target_delta;
+    const AdaptationReport report = filled.builder->adapt(goal);
+    if (c.target_delta) {
+        filled.creation.remark =
+            fmt::format("δ {:.4g} reached{}{}", report.reached,
+                        report.shortfall.empty() ? "" : "; ", report.shortfall);
+    }
+}
+
+void follow_at_nodes(NodeBuilder& builder, const ControlSpace& field) {
+    ControlNodes nodes = builder.control_nodes(Neighbourhood::faces);
+    sample_parallel(field, positions(nodes.graph), nodes.metrics);
+    builder.assign(nodes.metrics);
+}
+
+}  // namespace
+
+Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
+                     const Workload& workload, const StudyObserver& observer) {
+    const CatalogueEntry& entry = entry_of(c, rows.structures);
+    const bool is_adapted = c.target_delta || has_field(c.sources);
+    if (is_adapted) require_follows(c, entry);
+    const auto phase = [&](std::string_view name) {
+        if (observer.phase_started) observer.phase_started(name);
+        return std::chrono::steady_clock::now();
+    };
+    Filled filled;
+    Creation& creation = filled.creation;
+    auto start = phase(is_adapted ? "adaptation" : "insertion");
+    filled.builder = entry.make(space_options(study, c, workload, rows.parameters));
+    if (is_adapted) {
+        adapt(filled, c, workload);
+        creation.insert_s = {seconds_since(start)};
+        creation.gradation_s = {0};
+        if (const auto nodes = control_nodes(*filled.builder->build(), Neighbourhood::faces)) {
+            creation.gradation.largest_ratio_left =
+                largest_gradation(nodes->graph, nodes->metrics, GradationLaw::cone);
+        }
+        return filled;
+    }
+    const std::span<const PointSource> sources = workload.sources;
+    creation.sources_inserted = filled.builder->insert(sources).inserted;
+    creation.insert_s = {seconds_since(start)};
+
+    start = phase("gradation");
+    creation.gradation = filled.builder->grade(
+        {.law = c.law, .schedule = c.schedule, .ratio = c.g_r, .neighbourhood = c.neighbourhood});
+    creation.gradation_s = {seconds_since(start)};
+    if (c.node_values == NodeValues::exact) {
+        follow_at_nodes(dynamic_cast<NodeBuilder&>(*filled.builder),
+                        *make_reference(study, c, workload));
+    }
+    return filled;
+}
+
+std::unique_ptr<ControlSpace> Filled::build(const Case& c) const {
+    if (c.frozen == Frozen::no) return builder->build();
+    return builder->build(
+        {.precision = c.frozen == Frozen::floats ? Precision::floats : Precision::doubles});
+}
+
+}  // namespace controlspace

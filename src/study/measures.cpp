@@ -1,0 +1,160 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "controlspace/study/measure.h"
+
+namespace controlspace {
+namespace {
+
+using Samples = std::vector<double>;
+
+template <class Number>
+MeasuredValue count(Number number) {
+    return static_cast<std::int64_t>(number);
+}
+
+/// A row of a number that counts something.
+template <class Get>
+Measure counted(const char* key, const char* unit, Get get, Column column = {}) {
+    return {key, unit, [get](const Finished& f) { return count(get(f)); }, std::move(column)};
+}
+
+template <class Get>
+Measure real(const char* key, Get get, Column column = {}) {
+    return {key, "", [get](const Finished& f) -> MeasuredValue { return get(f); },
+            std::move(column)};
+}
+
+/// Leaves and inner nodes of a tree; none of a grid.
+std::size_t tree_nodes(const Footprint& f) { return f.leaves > 0 ? f.elements : 0; }
+std::size_t cells(const Footprint& f) { return f.leaves > 0 ? f.leaves : f.elements; }
+
+std::vector<Measure> size_rows() {
+    return {
+        counted("sources_inserted", "",
+                [](const Finished& f) { return f.creation.sources_inserted; }),
+        counted("tree_nodes", "", [](const Finished& f) { return tree_nodes(f.footprint); }),
+        counted("cells", "", [](const Finished& f) { return cells(f.footprint); }, {"cells", "{}"}),
+        counted("control_nodes", "", [](const Finished& f) { return f.footprint.control_nodes; }),
+        counted("depth", "", [](const Finished& f) { return std::max(0, f.footprint.depth - 1); }),
+        counted("bytes_total", "byte", [](const Finished& f) { return f.footprint.bytes_total(); },
+                {"MB", "{:.2f}", 1e-6}),
+        counted("bytes_payload", "byte",
+                [](const Finished& f) { return f.footprint.bytes_payload; }),
+        counted("bytes_topology", "byte",
+                [](const Finished& f) { return f.footprint.bytes_topology; }),
+        counted("bytes_auxiliary", "byte",
+                [](const Finished& f) { return f.footprint.bytes_auxiliary; }),
+        {"bytes_published_accounting", "byte",
+         [](const Finished& f) {
+             const auto& bytes = f.footprint.bytes_published;
+             return bytes ? count(*bytes) : MeasuredValue{};
+         }},
+    };
+}
+
+std::vector<Measure> time_rows() {
+    std::vector<Measure> rows;
+    const auto add = [&](const char* key, const char* unit, auto samples, const Column& column) {
+        const auto more = sampled_measure(key, unit, samples, column);
+        rows.insert(rows.end(), more.begin(), more.end());
+    };
+    add("t_insert_s", "s", [](const Finished& f) { return f.creation.insert_s; }, {});
+    add("t_gradation_s", "s", [](const Finished& f) { return f.creation.gradation_s; }, {});
+    add("t_creation_s", "s",
+        [](const Finished& f) {
+            Samples sums = f.creation.insert_s;
+            for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += f.creation.gradation_s[i];
+            return sums;
+        },
+        {"creation s", "{:.3f}"});
+    add("t_access_ns_random", "ns", [](const Finished& f) { return f.access_random.samples_ns; },
+        {"random ns", "{:.1f}", 1, "fastest access at random places"});
+    add("t_access_ns_grid", "ns", [](const Finished& f) { return f.access_grid.samples_ns; },
+        {"grid ns", "{:.1f}", 1, "fastest access in grid order"});
+    rows.push_back(counted("access_batch", "", [](const Finished& f) { return f.access_batch; }));
+    return rows;
+}
+
+std::vector<Measure> accuracy_rows() {
+    return {
+        real("delta_S_max", [](const Finished& f) { return f.source_accuracy; }),
+        real("delta_R_max", [](const Finished& f) { return f.accuracy.max; },
+             {"δ_R max", "{:.4f}"}),
+        real("delta_R_mean", [](const Finished& f) { return f.accuracy.mean; },
+             {"δ_R mean", "{:.4f}"}),
+        real("delta_R_p95", [](const Finished& f) { return f.accuracy.p95; }),
+        real("delta_R_p99", [](const Finished& f) { return f.accuracy.p99; },
+             {"δ_R p99", "{:.4f}"}),
+        real("delta_R_fine_max", [](const Finished& f) { return f.accuracy_fine.max; },
+             {"fine max", "{:.4f}"}),
+        real("delta_R_fine_mean", [](const Finished& f) { return f.accuracy_fine.mean; }),
+        real("delta_R_fine_p95", [](const Finished& f) { return f.accuracy_fine.p95; }),
+        real("delta_R_fine_p99", [](const Finished& f) { return f.accuracy_fine.p99; }),
+        real("delta_metric_R_max", [](const Finished& f) { return f.accuracy.riemannian_max; }),
+        real("coarser_max", [](const Finished& f) { return f.accuracy.coarser_max; }),
+        real("coarser_share", [](const Finished& f) { return f.accuracy.coarser_share; }),
+        real("coarser_fine_max", [](const Finished& f) { return f.accuracy_fine.coarser_max; },
+             {"worst", "{:.3f}"}),
+        real("coarser_fine_share", [](const Finished& f) { return f.accuracy_fine.coarser_share; },
+             {"fine coarser", "{:.2f} %", 100}),
+        real("gradation_max_left",
+             [](const Finished& f) { return f.creation.gradation.largest_ratio_left; },
+             {"G left", "{:.4f}"}),
+        counted("gradation_operations", "",
+                [](const Finished& f) { return f.creation.gradation.operations; }),
+        // As text: JSON readers keep 53 bits of a number.
+        {"checksum", "",
+         [](const Finished& f) { return fmt::format("{:016x}", f.access_random.checksum); }},
+        {"remark",
+         "",
+         [](const Finished& f) {
+             const std::string& made = f.creation.remark;
+             return made.empty() ? f.footprint.remark : made;
+         },
+         {"remark", "{}"}},
+    };
+}
+
+}  // namespace
+
+std::span<const Measure> measures() {
+    static const std::vector<Measure> all = [] {
+        std::vector<Measure> rows = size_rows();
+        for (const auto& more : {time_rows(), accuracy_rows()}) {
+            rows.insert(rows.end(), more.begin(), more.end());
+        }
+        return rows;
+    }();
+    return all;
+}
+
+std::vector<Measure> sampled_measure(const std::string& key, const std::string& unit,
+                                     std::function<Samples(const Finished&)> samples,
+                                     const Column& column) {
+    const auto at = [&](int number) {
+        return [samples, number](const Finished& f) -> MeasuredValue {
+            return quartile(samples(f), number);
+        };
+    };
+    return {{key, unit, at(2), column},
+            {key + "_q1", unit, at(1)},
+            {key + "_q3", unit, at(3)},
+            {key + "_samples", unit,
+             [samples](const Finished& f) -> MeasuredValue { return samples(f); }}};
+}
+
+double Row::number(const std::string& key) const {
+    const auto found = values.find(key);
+    if (found == values.end()) return std::numeric_limits<double>::quiet_NaN();
+    if (const auto* whole = std::get_if<std::int64_t>(&found->second)) {
+        return static_cast<double>(*whole);
+    }
+    const auto* real = std::get_if<double>(&found->second);
+    return real != nullptr ? *real : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace controlspace

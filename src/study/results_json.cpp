@@ -1,0 +1,206 @@
+#include "study/results_json.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "controlspace/error.h"
+#include "controlspace/study/results.h"
+
+namespace controlspace {
+namespace {
+
+Json to_json(ValueType type, const Value& value) {
+    if (type == ValueType::whole_number) return static_cast<std::int64_t>(value.number());
+    return std::visit([](const auto& v) { return Json(v); }, value);
+}
+
+Json to_json(const MeasuredValue& value) {
+    return std::visit(
+        [](const auto& v) -> Json {
+            if constexpr (std::same_as<std::decay_t<decltype(v)>, std::monostate>) {
+                return nullptr;
+            } else {
+                return v;
+            }
+        },
+        value);
+}
+
+MeasuredValue measured_from(const Json& json) {
+    if (json.is_null()) return {};
+    if (json.is_number_integer()) return json.get<std::int64_t>();
+    if (json.is_number()) return json.get<double>();
+    if (json.is_array()) return json.get<std::vector<double>>();
+    return json.get<std::string>();
+}
+
+Json list_of(ValueType type, const Values& values) {
+    Json list = Json::array();
+    for (const Value& value : values) list.push_back(to_json(type, value));
+    return list;
+}
+
+Values values_from(const Json& json) {
+    Values values;
+    const auto add = [&](const Json& item) {
+        if (item.is_string()) {
+            values.emplace_back(item.get<std::string>());
+        } else {
+            values.emplace_back(item.get<double>());
+        }
+    };
+    if (json.is_array()) {
+        for (const Json& item : json) add(item);
+    } else {
+        add(json);
+    }
+    return values;
+}
+
+const std::string& result_key(const CaseParameter& parameter) {
+    return parameter.result_key.empty() ? parameter.key : parameter.result_key;
+}
+
+/// The members of FieldFiles that name files, by their keys.
+constexpr std::pair<const char*, std::string FieldFiles::*> field_files[] = {
+    {"slice", &FieldFiles::slice},
+    {"probes", &FieldFiles::probes},
+    {"outlines", &FieldFiles::outlines},
+    {"exact_slice", &FieldFiles::exact_slice},
+    {"exact_probes", &FieldFiles::exact_probes}};
+
+Json to_json(const std::optional<FieldFiles>& fields) {
+    if (!fields) return nullptr;
+    const Point &a = fields->domain.low, &b = fields->domain.high;
+    Json json;
+    json["domain"] = {a.x(), b.x(), a.y(), b.y(), a.z(), b.z()};
+    json["z"] = fields->z;
+    for (const auto& [key, file] : field_files) {
+        const std::string& name = *fields.*file;
+        json[key] = name.empty() ? Json(nullptr) : Json(name);
+    }
+    return json;
+}
+
+std::optional<FieldFiles> fields_from(const Json& json) {
+    if (json.is_null()) return std::nullopt;
+    FieldFiles fields;
+    const auto x = json.at("domain").get<std::array<double, 6>>();
+    fields.domain = {{x[0], x[2], x[4]}, {x[1], x[3], x[5]}};
+    fields.z = json.at("z");
+    for (const auto& [key, file] : field_files) {
+        if (!json.at(key).is_null()) fields.*file = json.at(key);
+    }
+    return fields;
+}
+
+/// The texts of a Provenance, by their keys.
+constexpr std::pair<const char*, std::string Provenance::*> provenance_texts[] = {
+    {"version", &Provenance::version},
+    {"commit", &Provenance::commit},
+    {"compiler", &Provenance::compiler},
+    {"flags", &Provenance::flags},
+    {"cpu", &Provenance::cpu},
+    {"date", &Provenance::date},
+    {"command_line", &Provenance::command_line}};
+
+}  // namespace
+
+Json to_json(const Row& row, const StudyRows& rows) {
+    Json json;
+    json["structure"] = row.setting.structure;
+    for (const CaseParameter& p : rows.parameters) {
+        const std::string& key = result_key(p);
+        const Values values = values_of(p, row.setting);
+        const bool is_written = json.contains(key) && !json[key].is_null();
+        if (!p.same_as.empty() || is_written) continue;
+        json[key] = values.empty() ? Json(nullptr) : to_json(p.access.type, values.front());
+    }
+    json["sources"] = row.sources;
+    for (const Measure& measure : rows.measures) {
+        const auto found = row.values.find(measure.key);
+        json[measure.key] = found == row.values.end() ? Json(nullptr) : to_json(found->second);
+    }
+    json["error"] = row.error;
+    json["fields"] = to_json(row.fields);
+    return json;
+}
+
+Row row_from_json(const Json& json, const StudyRows& rows, const SourcesChoice& sources) {
+    Row row;
+    row.setting.sources = sources;
+    row.setting.structure = json.at("structure");
+    for (const CaseParameter& p : rows.parameters) {
+        if (!p.same_as.empty() || json.at(result_key(p)).is_null()) continue;
+        try {
+            set_checked(p.access, row.setting, values_from(json.at(result_key(p))));
+        } catch (const InputError& error) {
+            throw InputError(fmt::format("{}: {}", result_key(p), error.what()));
+        }
+    }
+    row.sources = json.at("sources");
+    row.error = json.at("error");
+    for (const Measure& measure : rows.measures) {
+        const Json& value = json.at(measure.key);
+        if (row.is_measured()) row.values[measure.key] = measured_from(value);
+    }
+    row.fields = fields_from(json.at("fields"));
+    return row;
+}
+
+Json head_json(const Provenance& provenance, const Study& study,
+               std::span<const CaseParameter> parameters) {
+    Json json;
+    json["schema_version"] = results_schema_version;
+    json["program"] = "controlspace";
+    for (const auto& [key, text] : provenance_texts) json[key] = provenance.*text;
+    json["dirty"] = provenance.dirty;
+    json["cores"] = provenance.cores;
+    json["threads"] = provenance.threads;
+    json["seed"] = study.seed;
+    Json& settings = json["settings"];
+    for (const Parameter<Study>& p : study_parameters()) {
+        const Json list = list_of(p.access.type, p.access.get(study));
+        settings[p.key] = p.access.at_most != 1 ? list : list.empty() ? Json(nullptr) : list[0];
+    }
+    settings["runs"] = Json::array();
+    for (const Run& run : study.runs) {
+        Json& lists = settings["runs"].emplace_back();
+        lists[structures_key] = list_of(ValueType::text, run.structures());
+        for (const CaseParameter& p : parameters) {
+            if (p.same_as.empty()) lists[p.key] = list_of(p.access.type, run.values(p));
+        }
+    }
+    return json;
+}
+
+Provenance provenance_from_json(const Json& head) {
+    Provenance p;
+    for (const auto& [key, text] : provenance_texts) p.*text = head.at(key);
+    p.dirty = head.at("dirty");
+    p.cores = head.at("cores");
+    p.threads = head.at("threads");
+    return p;
+}
+
+Study study_from_json(const Json& head) {
+    const Json& settings = head.at("settings");
+    Study study;
+    for (const Parameter<Study>& p : study_parameters()) {
+        const auto found = settings.find(p.key);
+        if (found == settings.end() || found->is_null() || found->empty()) continue;
+        try {
+            set_checked(p.access, study, values_from(*found));
+        } catch (const std::exception& error) {
+            throw InputError(fmt::format("settings, {}: {}", p.key, error.what()));
+        }
+    }
+    return study;
+}
+
+std::string dump(const Json& json, int indent) {
+    return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace controlspace

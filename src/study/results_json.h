@@ -1,0 +1,35 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "controlspace/study/measure.h"
+#include "controlspace/study/provenance.h"
+#include "controlspace/study/study.h"
+
+namespace controlspace {
+
+using Json = nlohmann::ordered_json;
+
+/// A row of results.json: structure, parameters, number of sources, measures, error and files of
+/// fields. What does not apply is null, and so are infinite errors; of a row with an error all
+/// measures are.
+Json to_json(const Row& row, const StudyRows& rows);
+
+/// The way back, for rows of a study of `sources`: what the parameters do not say of the sources is
+/// as there. Throws InputError or Json::exception for what is no such row.
+Row row_from_json(const Json& json, const StudyRows& rows, const SourcesChoice& sources);
+
+/// Everything in results.json before its rows: provenance and settings.
+Json head_json(const Provenance& provenance, const Study& study,
+               std::span<const CaseParameter> parameters);
+
+/// The provenance, and the study without its runs. Throws as row_from_json does.
+Provenance provenance_from_json(const Json& head);
+Study study_from_json(const Json& head);
+
+/// Text of `json`, which need not be UTF-8 (file names, command lines): JSON must be.
+std::string dump(const Json& json, int indent = -1);
+
+}  // namespace controlspace

@@ -1,0 +1,127 @@
+#include "study/sampled_fields.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+#include "controlspace/space/sample_parallel.h"
+#include "io/text/output_file.h"
+
+namespace controlspace {
+namespace {
+
+/// More outlines would cover what they are drawn on.
+constexpr std::size_t most_cells = 20000;
+
+using Numbers = std::vector<double>;
+
+std::vector<Point> slice_places(const Box& domain, double z) {
+    const Vector cell = domain.edges() / slice_cells;
+    std::vector<Point> places;
+    for (int j = 0; j < slice_cells; ++j) {
+        for (int i = 0; i < slice_cells; ++i) {
+            places.emplace_back(domain.low.x() + (i + 0.5) * cell.x(),
+                                domain.low.y() + (j + 0.5) * cell.y(), z);
+        }
+    }
+    return places;
+}
+
+Numbers numbers_of(std::span<const Metric> metrics) {
+    Numbers numbers;
+    numbers.reserve(6 * metrics.size());
+    for (const Metric& m : metrics) {
+        numbers.insert(numbers.end(), {m.xx, m.yy, m.zz, m.xy, m.xz, m.yz});
+    }
+    return numbers;
+}
+
+Numbers sampled(const ControlSpace& space, std::span<const Point> places) {
+    std::vector<Metric> metrics(places.size());
+    space.sample(places, metrics);
+    return numbers_of(metrics);
+}
+
+}  // namespace
+
+void write_npy(const std::filesystem::path& path, std::span<const std::size_t> shape,
+               std::span<const double> numbers) {
+    static_assert(std::endian::native == std::endian::little);
+    std::string header = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}",
+                                     fmt::join(shape, ", "));
+    constexpr std::size_t fixed = 10;  // magic, version, length of the header
+    header.resize((header.size() + fixed + 1 + 63) / 64 * 64 - fixed - 1, ' ');
+    header += '\n';
+    std::string text("\x93NUMPY\x01\x00", 8);
+    text += static_cast<char>(header.size() & 0xff);
+    text += static_cast<char>(header.size() >> 8);
+    text += header;
+    text.append(reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes());
+    OutputFile file(path);
+    file.write(text);
+    file.commit();
+}
+
+std::optional<std::vector<Box>> cells_on_slice(const ControlSpace& space, double z,
+                                               std::size_t most) {
+    const Box domain = space.domain();
+    const Vector inside = 1e-9 * domain.edges();
+    std::vector<Box> cells;
+    // Rows of cells from below: none ends between one row's height and the next, so that each cell
+    // is met at its lower side.
+    for (double y = domain.low.y(); y < domain.high.y() - inside.y();) {
+        double next_y = domain.high.y();
+        for (double x = domain.low.x(); x < domain.high.x() - inside.x();) {
+            const auto cell = space.cell_at({x + inside.x(), y + inside.y(), z});
+            if (!cell) return std::nullopt;
+            if (cell->low.y() >= y - inside.y()) cells.push_back(*cell);
+            if (cells.size() > most) return std::nullopt;
+            next_y = std::min(next_y, cell->high.y());
+            x = std::max(cell->high.x(), x + inside.x());
+        }
+        y = std::max(next_y, y + inside.y());
+    }
+    return cells;
+}
+
+FieldFiles write_sampled_fields(const std::filesystem::path& folder, const Finished& finished,
+                                bool has_exact) {
+    const Box& domain = finished.workload.domain;
+    const auto n = static_cast<std::size_t>(finished.study.probe_grid);
+    constexpr std::size_t m = slice_cells;
+    FieldFiles files{domain, domain.centre().z(), "", "", "", "", ""};
+    std::filesystem::create_directories(folder / "fields");
+    const auto write = [&](std::string& name, const std::string& stem, const char* what,
+                           std::initializer_list<std::size_t> shape, const Numbers& numbers) {
+        name = fmt::format("fields/{}-{}.npy", stem, what);
+        write_npy(folder / name, shape, numbers);
+    };
+    const std::vector<Point> slice = slice_places(domain, files.z);
+    const std::vector<Point>& probes = finished.probes.coarse.points;
+    const std::string stem = fmt::format("{:03}", finished.index);
+    write(files.slice, stem, "slice", {m, m, 6}, sampled(finished.space, slice));
+    write(files.probes, stem, "probes", {n, n, n, 6}, sampled(finished.space, probes));
+    if (const auto cells = cells_on_slice(finished.space, files.z, most_cells)) {
+        Numbers outlines;
+        for (const Box& c : *cells) {
+            outlines.insert(outlines.end(), {c.low.x(), c.low.y(), c.high.x(), c.high.y()});
+        }
+        write(files.outlines, stem, "outlines", {cells->size(), 4}, outlines);
+    }
+    files.exact_slice = "fields/exact-slice.npy";
+    files.exact_probes = "fields/exact-probes.npy";
+    if (!has_exact) {
+        const auto reference = make_reference(finished.study, finished.setting, finished.workload);
+        std::vector<Metric> metrics(slice.size());
+        sample_parallel(*reference, slice, metrics);
+        write(files.exact_slice, "exact", "slice", {m, m, 6}, numbers_of(metrics));
+        write(files.exact_probes, "exact", "probes", {n, n, n, 6},
+              numbers_of(finished.probes.coarse.reference));
+    }
+    return files;
+}
+
+}  // namespace controlspace

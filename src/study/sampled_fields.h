@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "controlspace/study/measure.h"
+
+namespace controlspace {
+
+/// Cells along each side of a slice.
+constexpr int slice_cells = 200;
+
+/// Writes numbers as a NumPy file (version 1.0, '<f8', C order). The product of `shape` is their
+/// count. Throws InputError, naming the file.
+void write_npy(const std::filesystem::path& path, std::span<const std::size_t> shape,
+               std::span<const double> numbers);
+
+/// The cells of `space` that the plane at height `z` cuts, by rising y; none if they are more than
+/// `most`, or the space has no cells.
+std::optional<std::vector<Box>> cells_on_slice(const ControlSpace& space, double z,
+                                               std::size_t most);
+
+/// Samples a structure on the slice through the middle of its domain (slice_cells^2 metrics, x
+/// fastest) and at the coarse probes, and its reference unless `has_exact`; writes them and the
+/// outlines of cells into FOLDER/fields, and names the files. Throws InputError.
+FieldFiles write_sampled_fields(const std::filesystem::path& folder, const Finished& finished,
+                                bool has_exact);
+
+}  // namespace controlspace

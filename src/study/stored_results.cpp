@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "controlspace/error.h"
+#include "controlspace/study/results.h"
+#include "io/text/text_file.h"
+#include "study/results_json.h"
+
+namespace controlspace {
+namespace {
+
+StoredResults results_from(const Json& json, const StudyRows& rows) {
+    if (!json.is_object() || !json.contains("program") || json["program"] != "controlspace") {
+        throw InputError("not written by this program: give a folder of results");
+    }
+    if (json.at("schema_version") != results_schema_version) {
+        throw InputError(fmt::format("schema version {} is not {}: run the study again",
+                                     json.at("schema_version").dump(), results_schema_version));
+    }
+    StoredResults results{
+        provenance_from_json(json), study_from_json(json), {}, json.at("complete").get<bool>()};
+    if (!json.at("rows").is_array()) throw InputError("rows is no list of rows");
+    for (const Json& row : json.at("rows")) {
+        try {
+            results.rows.push_back(row_from_json(row, rows, results.study.sources));
+        } catch (const std::exception& error) {
+            throw InputError(fmt::format("row {}: {}", results.rows.size() + 1, error.what()));
+        }
+    }
+    return results;
+}
+
+/// Whether `row` is the outcome of `c`, whose voxels may have been chosen by the study itself.
+bool is_outcome_of(const Row& row, Case c) {
+    if (c.equal_delta || c.equal_memory) {
+        c.voxel = row.setting.voxel;
+        c.voxel_factor = row.setting.voxel_factor;
+        c.prune_delta = row.setting.prune_delta;
+    }
+    return row.setting == c;
+}
+
+void require_same_program(const Provenance& earlier, const Provenance& now) {
+    const auto same = [](std::string_view what, std::string_view a, std::string_view b) {
+        if (a == b) return;
+        throw InputError(
+            fmt::format("{} was \"{}\" and is \"{}\" now: run the study anew, since times of the "
+                        "two cannot be compared",
+                        what, a, b));
+    };
+    same("the program", version_text(earlier), version_text(now));
+    same("the compiler", earlier.compiler + ", " + earlier.flags, now.compiler + ", " + now.flags);
+    same("the processor", earlier.cpu, now.cpu);
+}
+
+void require_same_settings(const Study& earlier, const Study& now) {
+    for (const Parameter<Study>& p : study_parameters()) {
+        const bool changes_no_row = p.use == Use::results || p.key == "threads";
+        if (changes_no_row || p.access.get(earlier) == p.access.get(now)) continue;
+        throw InputError(fmt::format(
+            "{} differs from what it was: give the same settings, or run the study anew", p.key));
+    }
+}
+
+}  // namespace
+
+StoredResults read_results(const std::filesystem::path& folder, const StudyRows& rows) {
+    const auto file = folder / "results.json";
+    const std::string text = read_text_file(file);
+    try {
+        return results_from(Json::parse(text), rows);
+    } catch (const std::exception& error) {
+        throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+    }
+}
+
+std::vector<Row> rows_to_go_on_from(const StoredResults& earlier, const Study& study,
+                                    std::span<const Case> cases, const Provenance& now) {
+    if (earlier.complete) throw InputError("these results are complete: nothing is left to run");
+    require_same_program(earlier.provenance, now);
+    require_same_settings(earlier.study, study);
+    for (std::size_t i = 0; i < earlier.rows.size(); ++i) {
+        if (i < cases.size() && is_outcome_of(earlier.rows[i], cases[i])) continue;
+        throw InputError(fmt::format(
+            "row {} is {}, which is no case {} of this study: give the study that was interrupted",
+            i + 1, structure_label(earlier.rows[i].setting), i + 1));
+    }
+    return earlier.rows;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,298 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "controlspace/io/read_sources.h"
+#include "controlspace/study/study.h"
+
+namespace controlspace {
+namespace {
+
+// Members of members of a study.
+template <class M>
+auto of_sources(M SourcesChoice::*member) {
+    return [member](auto& s) -> auto& { return s.sources.*member; };
+}
+template <class M>
+auto of_field(M FieldChoice::*member) {
+    return [member](auto& s) -> auto& { return s.sources.field.*member; };
+}
+template <class M>
+auto of_lengths(M SurfaceLengths::*member) {
+    return [member](auto& s) -> auto& { return s.sources.field.lengths.*member; };
+}
+template <class M>
+auto of_vdb(M VdbSurface::*member) {
+    return [member](auto& s) -> auto& { return s.sources.surface.*member; };
+}
+template <class M>
+auto of_curvature(M CurvatureSizes::*member) {
+    return [member](auto& s) -> auto& { return s.sources.in_file.curvature.*member; };
+}
+
+template <class Place>
+Access<Study> number_of(Place place, Check check = any_number) {
+    return number<Study>(place, std::move(check));
+}
+/// A length of which 0 means that it is not given.
+template <class Place>
+Access<Study> length_if_given(Place place) {
+    Access<Study> access = number<Study>(place, positive, Zero::is_none);
+    access.set = number<Study>(place, positive).set;
+    return access;
+}
+template <class Place>
+Access<Study> text_of(Place place) {
+    return text<Study>(place);
+}
+template <class Place>
+Access<Study> point_of(Place place) {
+    return point<Study>(place);
+}
+
+Access<Study> name() {
+    Access<Study> access = text<Study>(&Study::name);
+    access.set = [](Study& s, const Values& v) {
+        const std::string& name = v.front().text();
+        const auto unfit = [](char c) { return c == '/' || (c >= 0 && c < ' ') || c == 127; };
+        if (name.empty() || std::any_of(name.begin(), name.end(), unfit)) {
+            throw InputError(fmt::format(
+                "'{}' cannot name a folder: leave out '/' and control characters", name));
+        }
+        s.name = name;
+    };
+    return access;
+}
+
+Access<Study> sources() {
+    Access<Study> access;
+    access.type = ValueType::text;
+    access.set = [](Study& s, const Values& v) {
+        const std::string& what = v.front().text();
+        if (what.empty()) {
+            throw InputError("no name: give sphere, planes, none or the name of a file");
+        }
+        s.sources.kind = what == "sphere"   ? SourcesKind::sphere
+                         : what == "planes" ? SourcesKind::planes
+                         : what == "none"   ? SourcesKind::none
+                                            : SourcesKind::file;
+        s.sources.file = s.sources.kind == SourcesKind::file ? what : "";
+    };
+    access.get = [](const Study& s) { return Values{sources_name(s.sources)}; };
+    return access;
+}
+
+Access<Study> domain() {
+    Access<Study> access;
+    access.at_most = 6;
+    access.set = [](Study& s, const Values& v) {
+        if (v.size() != 6) throw InputError("give six numbers: x0 x1 y0 y1 z0 z1");
+        const auto x = [&](std::size_t i) { return v[i].number(); };
+        s.domain = require_volume({{x(0), x(2), x(4)}, {x(1), x(3), x(5)}});
+    };
+    access.get = [](const Study& s) -> Values {
+        if (!s.domain) return {};
+        const Point &a = s.domain->low, &b = s.domain->high;
+        return {a.x(), b.x(), a.y(), b.y(), a.z(), b.z()};
+    };
+    return access;
+}
+
+Access<Study> field_lengths() {
+    Access<Study> access;
+    access.at_most = 2;
+    access.set = [](Study& s, const Values& v) {
+        if (v.size() != 2) throw InputError("give two numbers: across along");
+        s.sources.field.lengths.across = positive(v[0].number());
+        s.sources.field.lengths.along = positive(v[1].number());
+    };
+    access.get = [](const Study& s) -> Values {
+        return {s.sources.field.lengths.across, s.sources.field.lengths.along};
+    };
+    return access;
+}
+
+Access<Study> field_largest() {
+    Access<Study> access = number_of(of_lengths(&SurfaceLengths::largest), positive);
+    access.get = [get = access.get](const Study& s) {
+        return s.sources.field.lengths.largest == SurfaceLengths{}.largest ? Values{} : get(s);
+    };
+    return access;
+}
+
+Access<Study> density_sizes() {
+    Access<Study> access;
+    access.at_most = 2;
+    access.set = [](Study& s, const Values& v) {
+        s.sources.field.vdb.density = {positive(v.front().number()), positive(v.back().number())};
+    };
+    access.get = [](const Study& s) -> Values {
+        const auto& sizes = s.sources.field.vdb.density;
+        return sizes ? Values{sizes->finest, sizes->coarsest} : Values{};
+    };
+    return access;
+}
+
+std::function<bool(const Study&)> of_kind(SourcesKind kind) {
+    return [=](const Study& s) { return s.sources.kind == kind; };
+}
+/// Whether the sources are in a file of one of the formats.
+std::function<bool(const Study&)> in_file(std::vector<std::string> endings) {
+    return [=](const Study& s) {
+        return s.sources.kind == SourcesKind::file &&
+               std::ranges::count(endings, lower_case_extension(s.sources.file)) > 0;
+    };
+}
+/// Whether some run has one of the fields.
+std::function<bool(const Study&)> field_is(std::vector<std::string> kinds) {
+    return [=](const Study& s) {
+        return std::ranges::any_of(s.runs, [&](const Run& run) {
+            const Values* fields = run.find("field");
+            return fields != nullptr && std::ranges::any_of(*fields, [&](const Value& field) {
+                       return std::ranges::count(kinds, field.text()) > 0;
+                   });
+        });
+    };
+}
+
+constexpr double exact_integers = 9007199254740992.0;  // 2^53: whole numbers pass through doubles
+constexpr Use making = Use::making, reading = Use::reading;
+constexpr const char* length = "length";
+
+std::vector<Parameter<Study>> table() {
+    const AppliesTo<Study> sphere{"the sphere", of_kind(SourcesKind::sphere)};
+    const AppliesTo<Study> planes{"the planes", of_kind(SourcesKind::planes)};
+    const AppliesTo<Study> sampled{"sampled surfaces",
+                                   [](const Study& s) { return is_sampled(s.sources); }};
+    const AppliesTo<Study> arrays{".vtu, .vtp, .msh and .pos",
+                                  in_file({".vtu", ".vtp", ".msh", ".pos"})};
+    const AppliesTo<Study> surface{"surfaces: .stl, .obj, .ply and .off",
+                                   in_file({".stl", ".obj", ".ply", ".off"})};
+    const AppliesTo<Study> vdb{"sources in a .vdb", in_file({".vdb"})};
+    const AppliesTo<Study> field_sphere{"field = \"sphere\"", field_is({"sphere"})};
+    const AppliesTo<Study> field_planes{"field = \"planes\"", field_is({"planes"})};
+    const AppliesTo<Study> field_surface{"field = \"sphere\" or \"planes\"",
+                                         field_is({"sphere", "planes"})};
+    const AppliesTo<Study> field_file{"field = \"file\"", field_is({"file"})};
+    using Sources = SourcesChoice;
+    return {
+        {"name", "", "Name of the study, and of its folder of results", name(), Use::results},
+        {"sources", "",
+         "sphere, planes, or none, for a field alone; or a file of sources: .csv, a pipe of such, "
+         ".mesh or .meshb beside .sol or .solb, .pos, .msh, .vtu or .vtp; or a surface: .stl, "
+         ".obj, .ply, .off or in a .vdb",
+         sources()},
+        {"centre", length, "x y z: centre of the sphere", point_of(of_sources(&Sources::centre)),
+         making, sphere},
+        {"radius", length, "Radius of the sphere",
+         number_of(of_sources(&Sources::radius), positive), making, sphere},
+        {"slope", "", "Slope a of the second plane (u, -0.2 + a u, v)",
+         number_of(of_sources(&Sources::slope)), making, planes},
+        {"h", length, "Length that the sampling of a surface starts from",
+         number_of(of_sources(&Sources::h), positive), making, sampled},
+        {"domain", length,
+         "x0 x1 y0 y1 z0 z1; left out: where the field is defined; -1 1 along each axis for other "
+         "fields and sampled surfaces; otherwise the box of the sources and a margin",
+         domain()},
+        {"margin", "longest extent of the sources", "Margin around sources from a file",
+         number_of(&Study::margin, within(0, 1000))},
+        {"max_memory", "GiB",
+         "Most memory that a structure may take, gradation included; a grid is made coarser, a "
+         "tree that outgrows it fails",
+         number_of(&Study::max_memory_gib,
+                   [](double x) { return within(0, 1 << 20)(positive(x)); })},
+        {"seed", "", "Seed of the random places, and of sources that are not regular",
+         number_of(&Study::seed, within(0, exact_integers))},
+        {"threads", "",
+         "Threads for creation, probes and accuracy; access is timed on one; 0: all processors",
+         number_of(&Study::threads, within(0, 4096))},
+        {"access_points", "", "Number of random places at which access is timed",
+         number_of(&Study::access_points, within(1, 1e8)), Use::timing},
+        {"access_repeats", "", "Number of samples of the access time; results give the median",
+         number_of(&Study::access_repeats, within(1, 1000)), Use::timing},
+        {"creation_repeats", "",
+         "Number of times that each structure is made; results give the median times",
+         number_of(&Study::creation_repeats, within(1, 1000)), Use::timing},
+        {"probe_grid", "",
+         "n: accuracy is sampled at the centres of an n x n x n grid, and access timed in their "
+         "order",
+         number_of(&Study::probe_grid, within(1, 300)), Use::accuracy},
+        {"fine_probe_grid", "", "The same for the finer probes of delta_R_fine and coarser_fine",
+         number_of(&Study::fine_probe_grid, within(1, 300)), Use::timing},
+        {"reference_tolerance", "",
+         "Exact reference: skip anisotropic sources that would shorten a length by less than this "
+         "fraction t; errs by a delta of about 2 t^2, and takes less time",
+         number_of(&Study::reference_tolerance, within(0, 0.1))},
+        {"output", "", "New folder for the results; left out: results/NAME-DATE-TIME",
+         text_of(&Study::output), Use::results},
+        {"field_centre", length, "x y z: centre of the field sphere",
+         point_of(of_field(&FieldChoice::centre)), making, field_sphere},
+        {"field_radius", length, "Radius of the field sphere",
+         number_of(of_field(&FieldChoice::radius), positive), making, field_sphere},
+        {"field_slope", "", "Slope a of the second plane (u, -0.2 + a u, v) of the field planes",
+         number_of(of_field(&FieldChoice::slope)), making, field_planes},
+        {"field_lengths", length,
+         "Lengths across and along the surface of the field sphere or planes, there",
+         field_lengths(), making, field_surface},
+        {"field_growth", "length / length",
+         "Growth of those lengths with the distance from the surface",
+         number_of(of_lengths(&SurfaceLengths::growth), at_least(0)), making, field_surface},
+        {"field_largest", length,
+         "Length up to which they grow; left out: half of the domain's diagonal, as anywhere",
+         field_largest(), making, field_surface},
+        {"field_file", "", "The .vdb of the field file", text_of(of_field(&FieldChoice::file)),
+         making, field_file},
+        {"field_grid", "",
+         "Its grid of lengths, or of densities; left out: metric_diag and metric_off",
+         text_of([](auto& s) -> auto& { return s.sources.field.vdb.grid; }), making, field_file},
+        {"field_density_sizes", length,
+         "Lengths at densities 1 and 0 of that grid; left out: the grid holds lengths",
+         density_sizes(), making, field_file},
+        {"source_array", "",
+         "Sources of a .vtu, .vtp, .msh or .pos: the array or view of sizes (1 component) or "
+         "Riemannian metrics (6 or 9); left out: the array named :metric, the only view",
+         text_of([](auto& s) -> auto& { return s.sources.in_file.array; }), reading, arrays},
+        {"surface_angle", "degrees",
+         "Sources of a surface (.stl, .obj, .ply, .off): part of the circle of curvature that an "
+         "edge spans",
+         number_of(of_curvature(&CurvatureSizes::angle),
+                   [](double x) { return within(0, 180)(positive(x)); }),
+         reading, surface},
+        {"surface_h_min", length,
+         "Sources of a surface: smallest length; left out: a thousandth of the diagonal of its box",
+         length_if_given(of_curvature(&CurvatureSizes::h_min)), reading, surface},
+        {"surface_h_max", length,
+         "Sources of a surface: largest length; left out: a tenth of that diagonal",
+         length_if_given(of_curvature(&CurvatureSizes::h_max)), reading, surface},
+        {"vdb_size", length, "Sources of a .vdb: length at its surface",
+         length_if_given(of_vdb(&VdbSurface::h)), reading, vdb},
+        {"vdb_size_per_radius", "smaller radius of curvature",
+         "Sources of a .vdb: length at its surface",
+         length_if_given(of_vdb(&VdbSurface::per_radius)), reading, vdb},
+        {"vdb_grid", "",
+         "Sources of a .vdb: the level set or fog; left out: the only grid of the file",
+         text_of(of_vdb(&VdbSurface::grid)), reading, vdb},
+        {"vdb_isovalue", "",
+         "Sources of a .vdb: where its surface is; left out: at 0 of a level set, 0.5 of a fog",
+         number_of(of_vdb(&VdbSurface::isovalue)), reading, vdb},
+    };
+}
+
+}  // namespace
+
+std::span<const Parameter<Study>> study_parameters() {
+    static const std::vector<Parameter<Study>> all = table();
+    return all;
+}
+
+void require_applicable(const Study& study) {
+    static const Study defaults;
+    for (const Parameter<Study>& parameter : study_parameters()) {
+        if (parameter.applies(study)) continue;
+        if (parameter.access.get(study) == parameter.access.get(defaults)) continue;
+        throw InputError(
+            fmt::format("{} is for {}: leave it out", parameter.key, parameter.applies_to.what));
+    }
+}
+
+}  // namespace controlspace
