@@ -3,37 +3,35 @@ import math
 from collections import namedtuple
 
 from .figures import Spec, grouped, height_of, legend_outside, lines_axis, log_axis
-from .results import quartiles
 from .table import table_of
 
-# What is compared: the name, what less and more of it are called, the measure, its samples if there
-# are any, and how it is drawn.
-Measure = namedtuple("Measure", "name less more measure samples mark colour full")
+# What is compared: the name, what less and more of it are called, the measure, and how it is drawn.
+Measure = namedtuple("Measure", "name less more key mark colour full", defaults=[True])
 MEASURES = [
-    Measure("access, random", "faster", "slower", "t_access_ns_random",
-            "t_access_ns_random_samples", "o", "#0072B2", True),
-    Measure("access, grid", "faster", "slower", "t_access_ns_grid", "t_access_ns_grid_samples", "s",
-            "#E69F00", True),
-    Measure("creation", "faster", "slower", "creation_s", "t_creation_s_samples", "^", "#009E73",
-            True),
-    Measure("memory", "smaller", "larger", "memory_MB", None, "D", "#000000", True),
-    Measure("largest δ_R, fine", "more accurate", "less accurate", "delta_R_fine_max", None, "o",
+    Measure("access, random", "faster", "slower", "t_access_ns_random", "o", "#0072B2"),
+    Measure("access, grid", "faster", "slower", "t_access_ns_grid", "s", "#E69F00"),
+    Measure("creation", "faster", "slower", "t_creation_s", "^", "#009E73"),
+    Measure("memory", "smaller", "larger", "memory_MB", "D", "#000000"),
+    Measure("largest δ_R, fine", "more accurate", "less accurate", "delta_R_fine_max", "o",
             "#D55E00", False),
-    Measure("mean δ_R, fine", "more accurate", "less accurate", "delta_R_fine_mean", None, "s",
-            "#CC79A7", False)]
-# Settings of a study that do not decide whether two rows are of the same case.
+    Measure("mean δ_R, fine", "more accurate", "less accurate", "delta_R_fine_mean", "s", "#CC79A7",
+            False)]
+# Settings of a study that are not compared, and those that say how is measured; the others are of
+# the sources.
 NOT_COMPARED = {"name", "output", "runs"}
+MEASURING = {"domain", "margin", "max_memory", "seed", "threads", "access_points", "access_repeats",
+             "creation_repeats", "probe_grid", "fine_probe_grid", "reference_tolerance"}
 
 # After over before, and what the scatter of the samples makes of it: from the lower quartile of the
 # later samples over the upper one of the earlier to the reverse.
-Ratio = namedtuple("Ratio", "value low high sampled")
+Ratio = namedtuple("Ratio", "value low high")
 
 
 def row_pairs(before, after):
     """Rows of the same case and number of sources; each is in one pair at most."""
     left = list(after.measured)
     pairs = []
-    if any(before.settings.get(k) != after.settings.get(k) for k in ("h", "radius", "sources")):
+    if differing_keys(before, after) - MEASURING:
         return pairs
     for row in before.measured:
         other = next((r for r in left if r.key == row.key and r.sources == row.sources), None)
@@ -43,11 +41,15 @@ def row_pairs(before, after):
     return pairs
 
 
+def differing_keys(before, after):
+    a, b = before.settings, after.settings
+    return {key for key in {**a, **b} if shown(a.get(key)) != shown(b.get(key))} - NOT_COMPARED
+
+
 def differing_settings(before, after):
-    keys = [k for k in {**before.settings, **after.settings} if k not in NOT_COMPARED]
     return "; ".join(
         f"{key} {shown(before.settings.get(key))}, then {shown(after.settings.get(key))}"
-        for key in keys if before.settings.get(key) != after.settings.get(key))
+        for key in sorted(differing_keys(before, after)))
 
 
 def shown(value):
@@ -56,22 +58,15 @@ def shown(value):
     return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
 
 
-def sample_ratio(before, after):
-    b, a = quartiles(before), quartiles(after)
-    return Ratio(a[1] / b[1], a[0] / b[2], a[2] / b[0], True)
-
-
 def ratio_of(measure, pair):
     """None where one of two numbers is 0, and the other is not."""
-    before, after = pair
-    if all(len(row.measures.get(measure.samples) or ()) > 1 for row in pair):
-        return sample_ratio(before[measure.samples], after[measure.samples])
-    a, b = before[measure.measure], after[measure.measure]
-    if a == b:
-        return Ratio(1, 1, 1, False)
-    if a <= 0 or b <= 0 or not math.isfinite(a) or not math.isfinite(b):
+    a, b = ([row.measures.get(f"{measure.key}{quartile}", row[measure.key])
+             for quartile in ("_q1", "", "_q3")] for row in pair)
+    if a == b and a[0] == a[2]:
+        return Ratio(1, 1, 1)
+    if a[0] <= 0 or b[0] <= 0 or not math.isfinite(a[2]) or not math.isfinite(b[2]):
         return None
-    return Ratio(b / a, b / a, b / a, False)
+    return Ratio(b[1] / a[1], b[0] / a[2], b[2] / a[0])
 
 
 def counts_table(pairs):
@@ -88,18 +83,18 @@ def counts_table(pairs):
 def ratio_text(ratio):
     if ratio is None:
         return "–"
-    if not ratio.sampled:
+    if ratio.low == ratio.high:
         return f"{ratio.value:.3f}"
     apart = "" if ratio.low <= 1 <= ratio.high else " *"
     return f"{ratio.value:.3f} ({ratio.low:.3f} to {ratio.high:.3f}){apart}"
 
 
 def by_group(pairs):
-    return grouped(pairs, lambda pair: pair[0].group())
+    return grouped(pairs, lambda pair: pair[0].group)
 
 
 def change_tables(pairs):
-    return [table_of("change", [[pair[0].label(), *(ratio_text(ratio_of(m, pair)) for m in MEASURES)]
+    return [table_of("change", [[pair[0].label, *(ratio_text(ratio_of(m, pair)) for m in MEASURES)]
                                 for pair in members], [m.name for m in MEASURES], group=group)
             for group, members in by_group(pairs).items()]
 
@@ -118,7 +113,7 @@ def change_figures(pairs):
                     ax.errorbar(values, places, xerr=[below, above], linestyle="", markersize=4,
                                 label=measure.name, marker=measure.mark, color=measure.colour,
                                 markerfacecolor=measure.colour if measure.full else "none")
-            lines_axis(ax, [before.label() for before, _ in members])
+            lines_axis(ax, [before.label for before, _ in members])
             log_axis(ax.xaxis, "after / before")
             legend_outside(ax)
         yield Spec("change", {"group": group}, plot, height=height_of(len(members), 34))

@@ -51,7 +51,7 @@ def sampled_fields(results):
                           None if outlines is None else loaded(results.folder, outlines, None, 4))
 
         exact = sample("exact", None, about["exact_slice"], about["exact_probes"])
-        structures = [sample(row.label(), row, row["fields"]["slice"], row["fields"]["probes"],
+        structures = [sample(row.label, row, row["fields"]["slice"], row["fields"]["probes"],
                              row["fields"]["outlines"]) for row in rows]
         if any(s.slice.shape != exact.slice.shape or s.probes.shape != exact.probes.shape
                for s in structures):
@@ -114,7 +114,7 @@ def delta_figure(sampled):
         ax.set_ylim(0.8, n + 1)
         log_axis(ax.xaxis, "δ to the exact field", low, high)
         legend_above(ax)
-    yield Spec("delta", {"group": structures[0].row.group(), "classes": classes}, plot,
+    yield Spec("delta", {"group": structures[0].row.group, "classes": classes}, plot,
                height=height_of(len(structures), 40))
 
 
@@ -153,7 +153,7 @@ def cross_validation(sampled):
             ax.grid(False)
         colour_bar(image, figure.axes)
     side, names = min(max(40 * n, 240), 6000), 7 * max(map(len, labels))
-    yield Spec("cross-validation", {"group": structures[0].row.group()}, plot,
+    yield Spec("cross-validation", {"group": structures[0].row.group}, plot,
                2 * side + names + 120, side + names + 80)
 
 
@@ -191,7 +191,7 @@ def slice_figures(sampled):
             delta = np.maximum(nonconformity(sample.slice, exact.slice), SMALLEST_ERROR)
             panel(axes[0][2], delta, "error: δ", delta_norm, "inferno_r")
         yield Spec("slice", {
-            "z": about["z"], "label": sample.label, "group": sample.row.group(),
+            "z": about["z"], "label": sample.label, "group": sample.row.group,
             "shown": "Mean length" + (" (anisotropy below it)" if len(measures) > 1 else ""),
             "cells": "with its cells" if sample.outlines is not None
             else "whose cells are too many to be drawn"},

@@ -2,6 +2,7 @@
 import base64
 import io
 import math
+import re
 from collections import namedtuple
 from dataclasses import dataclass
 from itertools import product
@@ -12,7 +13,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-from .results import Row, plain
+from .results import plain
 from .table import TEXTS
 
 matplotlib.rcParams.update({
@@ -134,6 +135,10 @@ def structure_of(row):
     return row.setting["structure"]
 
 
+def group_of(row):
+    return row.group
+
+
 def grouped(rows, key):
     groups = {}
     for row in rows:
@@ -152,7 +157,7 @@ FRONT_ERRORS = [("Largest", "largest δ_R at the finer probes", "delta_R_fine_ma
 def fronts(rows):
     """Rows of the same work, each with at least two rows."""
     rows = [row for row in rows if math.isfinite(row["delta_R_fine_max"])]
-    return {work: found for work, found in grouped(rows, Row.work).items()
+    return {work: found for work, found in grouped(rows, lambda r: r.work).items()
             if len(found) > 1}
 
 
@@ -177,7 +182,7 @@ def pareto_figures(rows, styles):
                 ax.margins(x=0.2, y=0.1)
                 log_axis(ax.xaxis, cost_label)
                 log_axis(ax.yaxis, error_label)
-                label_apart(ax, [(r[cost], drawn(r[error]), r.front_label()) for r in front])
+                label_apart(ax, [(r[cost], drawn(r[error]), r.method) for r in front])
                 legend_outside(ax)
             yield Spec("pareto", {"which": which, "against": against, "work": work}, plot)
 
@@ -219,7 +224,7 @@ ACCESS = [("at random places", "t_access_ns_random_samples", 0.2, "#0072B2"),
 
 
 def access_figures(rows):
-    for group, members in grouped(rows, Row.group).items():
+    for group, members in grouped(rows, group_of).items():
         def plot(figure):
             ax = figure.subplots()
             for title, key, above, colour in ACCESS:
@@ -233,24 +238,24 @@ def access_figures(rows):
                 parts["boxes"][0].set_label(title)
                 for y, list_ in zip(places, samples):
                     ax.plot(list_, [y] * len(list_), "k.", markersize=1.5)
-            lines_axis(ax, [row.label() for row in members])
+            lines_axis(ax, [row.label for row in members])
             log_axis(ax.xaxis, "access time [ns/query]")
             legend_above(ax)
         yield Spec("access", {"group": group}, plot, height=height_of(len(members), 26))
 
 
 def creation_figures(rows, styles):
-    for group, members in grouped(rows, lambda r: r.group(with_density=False)).items():
+    for group, members in grouped(rows, lambda r: re.sub(r"\brho [^,]+, ", "", r.group)).items():
         if len({row.sources for row in members}) < 2:
             continue
 
         def plot(figure):
             ax = figure.subplots()
             named = set()
-            for same in grouped(sorted(members, key=lambda r: r.sources), Row.label).values():
+            for same in grouped(sorted(members, key=lambda r: r.sources), lambda r: r.label).values():
                 structure = structure_of(same[0])
                 ax.plot([r.sources for r in same], [r["creation_s"] for r in same],
-                        DASHES.get(same[0].split, "-"), **styles(structure),
+                        DASHES.get(same[0].setting.get("split"), "-"), **styles(structure),
                         label=None if structure in named else structure)
                 named.add(structure)
             log_axis(ax.xaxis, "sources")

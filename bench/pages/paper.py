@@ -69,10 +69,16 @@ def paper_row(setting):
                                  setting["rho"], setting["tau"]))
 
 
-def is_as_published(setting):
-    """Whether a case was run as the paper's, with no setting beyond: nothing frozen, and so on."""
-    return setting.keys() <= {*AS_PUBLISHED, "structure", "split", "rho", "tau", "max_depth"} and \
-        all(setting.get(k) == v for k, v in AS_PUBLISHED.items())
+def is_paper_sphere(settings):
+    return all(settings.get(key) == value for key, value in SPHERE.items())
+
+
+def is_as_published(row):
+    """Whether a case was run as the paper's, with nothing else that is not the default."""
+    ours = {**AS_PUBLISHED, **{key: None for key in ("structure", "split", "rho", "tau",
+                                                     "max_depth")}}
+    return all(row.setting.get(k) == v for k, v in AS_PUBLISHED.items()) and all(
+        key in ours for key, _ in row.key)
 
 
 def rounded(x):
@@ -82,12 +88,6 @@ def rounded(x):
 
 def within(x, low, high):
     return rounded(low) <= rounded(x) <= rounded(high)
-
-
-def key_of(setting, **changes):
-    """The key of a case that differs in `changes`; None removes a setting."""
-    merged = {**setting, **changes}
-    return frozenset((k, v) for k, v in merged.items() if v is not None)
 
 
 class Cell(namedtuple("Cell", "row paper")):
@@ -114,8 +114,8 @@ class Evidence:
         for results in all_results:
             settings = results.settings
             box = tuple(settings.get("domain") or PAPER_BOX)
-            sphere = all(settings.get(k) == v for k, v in SPHERE.items())
-            if not sphere or any(abs(a - b) > ROUNDING for a, b in zip(box, PAPER_BOX)):
+            if not is_paper_sphere(settings) or any(
+                    abs(a - b) > ROUNDING for a, b in zip(box, PAPER_BOX)):
                 continue
             for row in results.rows:
                 if (box, row.key) not in known:
@@ -124,46 +124,43 @@ class Evidence:
         self.by_key = {row.key: row for row, box in self.entries
                        if box == PAPER_BOX and row.measures is not None}
         cells = [Cell(row, paper_row(row.setting)) for row, box in self.entries
-                 if box == PAPER_BOX and is_as_published(row.setting) and paper_row(row.setting)]
+                 if box == PAPER_BOX and is_as_published(row) and paper_row(row.setting)]
         self.cells = sorted(cells, key=lambda cell: PAPER_ROWS.index(cell.paper))
 
     @property
     def measured_cells(self):
         return [cell for cell in self.cells if cell.row.measures is not None]
 
-    def find(self, setting, **changes):
+    def find(self, row, **changes):
         """The measured row of a case that differs in `changes`, or None."""
-        return self.by_key.get(key_of(setting, **changes))
+        return self.by_key.get(row.key_with(**changes))
 
-    def near_ties(self, setting, **changes):
+    def near_ties(self, row, **changes):
         """The same but for what decides between edges that are almost equally long: l_min or the
         box differ by 1e-8 of their size at most, and s_G's sections may be exact."""
-        wanted = {**setting, **changes}
-        key = key_of(wanted)
+        key, tau = row.key_with(**changes), row.setting["tau"]
         found = []
-        for row, box in self.entries:
-            s = row.setting
-            if row.measures is None or (box == PAPER_BOX and row.key == key):
+        for other, box in self.entries:
+            if other.measures is None or (box == PAPER_BOX and other.key == key):
                 continue
-            split = "s_G" if s.get("split") == "s_Gx" else s.get("split")
-            close = abs(s["tau"] - wanted["tau"]) <= ROUNDING * wanted["tau"]
-            if close and key_of(s, tau=wanted["tau"], split=split) == key:
-                found.append(row)
+            split = other.setting.get("split")
+            same = other.key_with(tau=tau, split="s_G" if split == "s_Gx" else split) == key
+            if same and abs(other.setting["tau"] - tau) <= ROUNDING * tau:
+                found.append(other)
         return found
 
-    def near_densities(self, setting):
+    def near_densities(self, row):
         """The same with sources up to 5 % closer together or farther apart."""
-        rho = setting["rho"]
-        return [row for row in self.by_key.values()
-                if row.setting.get("rho", rho) != rho and abs(row.setting["rho"] - rho) <= 0.05 * rho
-                and key_of(row.setting, rho=rho) == key_of(setting)]
+        rho = row.setting["rho"]
+        return [other for other in self.by_key.values() if other.key_with(rho=rho) == row.key
+                and 0 < abs(other.setting["rho"] - rho) <= 0.05 * rho]
 
-    def other_depths(self, setting):
+    def other_depths(self, row):
         """The same with other depth limits, the deepest last."""
-        depth = setting["max_depth"]
-        found = [row for row in self.by_key.values() if row.setting.get("max_depth") != depth
-                 and key_of(row.setting, max_depth=depth) == key_of(setting)]
-        return sorted(found, key=lambda row: row.setting["max_depth"])
+        depth = row.setting["max_depth"]
+        found = [other for other in self.by_key.values()
+                 if other.key != row.key and other.key_with(max_depth=depth) == row.key]
+        return sorted(found, key=lambda other: other.setting["max_depth"])
 
 
 # ---- Verdicts on cells
@@ -183,7 +180,7 @@ def value_range(measure, rows):
 
 def balance(evidence, table, cell):
     row, paper = cell
-    plain_row = evidence.find(row.setting, structure="K_oL")
+    plain_row = evidence.find(row, structure="K_oL")
     plain_paper = paper_row({**row.setting, "structure": "K_oL"})
     if paper.structure != "K_oLB" or not plain_row or not plain_paper:
         return None
@@ -199,7 +196,7 @@ def balance(evidence, table, cell):
 def ties(evidence, table, cell):
     if cell.paper.split in ("", "s_L"):
         return None
-    variants = evidence.near_ties(cell.row.setting)
+    variants = evidence.near_ties(cell.row)
     if not variants:
         return False, "ties: not tried here"
     low, high = value_range(table.measure, [cell.row, *variants])
@@ -222,7 +219,7 @@ def shared_vertices(evidence, table, cell):
 def links(evidence, table, cell):
     if cell.paper.structure != "K_oL" or table is not DELTA_R:
         return None
-    queue = evidence.find(cell.row.setting, schedule="queue")
+    queue = evidence.find(cell.row, schedule="queue")
     if not queue:
         return False, "links: not tried here"
     ours, with_queue = cell.ours(table), queue["delta_R_max"]
@@ -232,10 +229,10 @@ def links(evidence, table, cell):
 
 
 def interpolation(evidence, table, cell):
-    published = evidence.find(cell.row.setting, interpolation="published")
+    published = evidence.find(cell.row, interpolation="published")
     if cell.paper.structure != "K_Li" or not published:
         return None
-    variants = evidence.near_ties(cell.row.setting, interpolation="published")
+    variants = evidence.near_ties(cell.row, interpolation="published")
     low, high = value_range(table.measure, [published, *variants])
     value = published[table.measure]
     return (abs(value - cell.theirs(table)) <= high - low or within(cell.theirs(table), low, high),
@@ -245,7 +242,7 @@ def interpolation(evidence, table, cell):
 
 
 def scatter(evidence, table, cell):
-    variants = evidence.near_densities(cell.row.setting) if table is DELTA_R else []
+    variants = evidence.near_densities(cell.row) if table is DELTA_R else []
     if not variants:
         return None
     low, high = value_range(table.measure, [cell.row, *variants])
@@ -364,7 +361,7 @@ def cells_by_setting(evidence):
 
 def entry_of(evidence, row):
     entry = {measure: (row[measure], *row.spread(measure)) for measure in UNITS}
-    deep = evidence.other_depths(row.setting)
+    deep = evidence.other_depths(row)
     return entry | ({"deep": deep[-1]["delta_R_max"]} if deep else {})
 
 

@@ -5,8 +5,6 @@ from . import paper as p
 from .results import InputError, described, plain
 from .table import Table, fixed
 
-# How `controlspace mesh` names the paper's settings.
-MESH_SETTING = "rho {}, s_a 2, s_n 1, tau {}, epsilon 0.2, g_r 1.25; "
 CASE = ["<structure", "<split", "ρ", "τ"]
 
 
@@ -29,15 +27,14 @@ def value_text(value, digits, who):
 
 
 def experiment_lines(experiment, evidence, cell):
-    setting = cell.row.setting
     changes = experiment.get("other", {})
-    other = evidence.find(setting, **changes)
-    rows = getattr(evidence, experiment["rows"])(setting) if "rows" in experiment else ()
+    other = evidence.find(cell.row, **changes)
+    rows = getattr(evidence, experiment["rows"])(cell.row) if "rows" in experiment else ()
     needed = [other] * ("other" in experiment) + [rows] * ("rows" in experiment)
     if cell.paper.structure not in experiment.get("only", [cell.paper.structure]) or \
             not all(needed):
         return []
-    paper_other = p.paper_row({**setting, **changes})
+    paper_other = p.paper_row({**cell.row.setting, **changes})
     who = {"other": other, "rows": {"count": len(rows)}, "all": [cell.row, *rows],
            "paper": cell.paper._asdict() | {"nodes": cell.published_nodes()},
            "paper_other": paper_other and paper_other._asdict()}
@@ -201,17 +198,17 @@ def table_5(file):
     try:
         data = json.loads(file.read_text(encoding="utf-8"))
         lines, columns = {}, []
-        for row in data["rows"]:
-            paper = next((r for r in p.PAPER_ROWS if row["split"] == r.split and row["field"] ==
-                          r.structure and row["setting"].startswith(MESH_SETTING.format(
-                              plain(r.rho), plain(r.tau)))), None)
+        for row in data["rows"] if p.is_paper_sphere(data["study"]) else ():
+            case = {key: value for key, value in row.get("case", {}).items() if value is not None}
+            paper = p.paper_row(case) if case and row["field"] != "exact" else None
             if paper is None:
                 continue
-            run = row["setting"].split("; ")[1].replace(" law", "").split(", published")[0]
-            columns += [name for name in [p.setting_name(paper)] if name not in columns]
-            line = lines.setdefault((row["field"], row["split"], f"{row['mesher']}, {run}"), {})
+            name = p.setting_name(paper)
+            columns += [name] if name not in columns else []
+            run = f"{row['mesher']}, {case['law']}, {case['schedule']}"
             ours = "failed" if row["error"] else fixed(row["L_R"], 4)
-            line[p.setting_name(paper)] = f"{ours} / {paper.L_R:.2f}"
+            lines.setdefault((paper.structure, paper.split, run), {})[name] = \
+                f"{ours} / {paper.L_R:.2f}"
         if not lines:
             raise ValueError("no row was meshed as the paper's Table 5")
         return f"# The paper, Table 5\n\n{data['origin']}: `{data['command_line']}`\n\n" + Table(

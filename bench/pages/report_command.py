@@ -9,7 +9,7 @@ from . import compare_runs, fields, figures, paper_page
 from .command import OK
 from .paper import Evidence
 from .paper_command import evidence_in
-from .results import Row, read_results, write_file
+from .results import KNOWN, read_results, write_file
 from .table import fixed, table_of
 
 Section = namedtuple("Section", "title parts")  # parts: (kind, item) as report.html.j2 shows them
@@ -39,7 +39,7 @@ def front_tables(rows):
     for work, members in figures.fronts(rows).items():
         fronts = [(name, figures.front_of(members, cost, "delta_R_fine_max"))
                   for name, (_, _, cost) in zip(("memory", "access"), figures.COSTS)]
-        lines = [[row.front_label(), fixed(row["memory_MB"]), fixed(row["t_access_ns_random"], 1),
+        lines = [[row.method, fixed(row["memory_MB"]), fixed(row["t_access_ns_random"], 1),
                   fixed(row["delta_R_fine_max"], 4),
                   ", ".join(name for name, front in fronts if row in front)]
                  for row in sorted(members, key=lambda r: r["delta_R_fine_max"])
@@ -62,9 +62,18 @@ def measure_cells(row):
 
 
 def measure_tables(rows):
-    return [table_of("measures", [[row.setting["structure"] + row.variant(), row.split,
-                                   *measure_cells(row)] for row in members], group=group)
-            for group, members in figures.grouped(rows, Row.group).items()]
+    """All measures; those that texts.toml does not know have columns of their own."""
+    more = list(dict.fromkeys(key for row in rows if row.measures
+                              for key, value in row.measures.items() if key not in KNOWN
+                              and isinstance(value, (int, float))))
+
+    def own(row):
+        values = (row.measures.get(key) if row.measures else None for key in more)
+        return ["–" if value is None else f"{value:.4g}" for value in values]
+
+    return [table_of("measures", [[row.label, *measure_cells(row), *own(row)] for row in members], more,
+                     group=group)
+            for group, members in figures.grouped(rows, figures.group_of).items()]
 
 
 def results_section(results, styles, drawn):

@@ -1,8 +1,7 @@
-# A folder of results as `controlspace compare` writes it: results.json, schema versions 1 and 2.
+# A folder of results as `controlspace compare` writes it: results.json, schema version 2.
 import json
 import math
 import os
-import statistics
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,31 +11,19 @@ class InputError(Exception):
 
 
 # Measures that every measured row has; JSON has no infinity: null where an error is infinite.
+TIMES = ["t_creation_s", "t_access_ns_random", "t_access_ns_grid"]
 NUMBERS = """sources_inserted tree_nodes cells control_nodes depth bytes_total bytes_payload
-    bytes_topology bytes_auxiliary t_insert_s t_gradation_s t_access_ns_random t_access_ns_grid
-    gradation_max_left gradation_operations""".split()
+    bytes_topology bytes_auxiliary gradation_max_left gradation_operations""".split() + [
+        time + quartile for time in TIMES for quartile in ("", "_q1", "_q3")]
 ERRORS = """delta_S_max delta_R_max delta_R_mean delta_R_p95 delta_R_p99 delta_R_fine_max
     delta_R_fine_mean delta_R_fine_p95 delta_R_fine_p99 delta_metric_R_max""".split()
-SAMPLES = ["t_access_ns_random_samples", "t_access_ns_grid_samples"]
-# The samples that a time is the median of, and their unit in that of the time.
-SAMPLED = {"access_us": ("t_access_ns_random_samples", 1e-3),
-           "creation_s": ("t_creation_s_samples", 1)}
-RENAMED = {"elements": "tree_nodes", "leaves": "cells"}  # schema 1 to 2
+KNOWN = {*NUMBERS, *ERRORS, "access_batch", "bytes_published_accounting", *(
+    f"coarser_{key}" for key in ("max", "share", "fine_max", "fine_share")), *(
+    f"{time}{quartile}" for time in ("t_insert_s", "t_gradation_s") for quartile in (
+        "", "_q1", "_q3")), "size_MB", "memory_MB", "metrics_MB", "creation_s", "access_us"}
+# Times under the names of the paper's: the median, and its unit in that of the paper.
+PAPER_TIMES = {"access_us": ("t_access_ns_random", 1e-3), "creation_s": ("t_creation_s", 1)}
 PROVENANCE = "version commit dirty compiler flags cpu cores threads date command_line".split()
-
-# Settings that a case has only where they differ from these, so that rows of older programs, which
-# do not know them, compare equal.
-DEFAULTS = {"sampling": "regular", "field": "none", "node_values": "graded", "frozen": "no",
-            "neighbourhood": "faces", "voxel_factor": 1.0}
-# What a case's labels name: key and text. The rest of the settings is in the label of its table.
-VARIANTS = [("voxel", ", voxel {:.4g}"), ("voxel_factor", ", c {:.4g}"),
-            ("prune_delta", ", pruned at {:.4g}"), ("target_delta", ", δ <= {:.4g}"),
-            ("equal_delta", ", for delta {:.4g}"), ("equal_memory", ", for {:.4g} MB"),
-            ("neighbourhood", ", {} neighbours"), ("node_values", ", {} at nodes"),
-            ("frozen", ", frozen with {}")]
-LABELLED = {"structure", "split", "rho", "s_a", "s_n", "tau", "epsilon", "g_r", "law", "schedule",
-            "reference", "max_depth", *DEFAULTS, *(key for key, _ in VARIANTS)}
-
 
 def plain(x):
     """A number as short as it can be written: 1, 0.2, 1e-09."""
@@ -44,65 +31,35 @@ def plain(x):
 
 
 class Row:
-    """One case: its settings, and its measures where it did not fail."""
+    """One case: its settings, labels, and its measures where it did not fail."""
 
-    def __init__(self, json_row):
+    def __init__(self, json_row, defaults):
         items = list(json_row.items())
         split = list(json_row).index("sources")
-        self.setting = {key: value for key, value in items[:split]
-                        if value is not None and DEFAULTS.get(key) != value}
-        self.key = frozenset(self.setting.items())
-        self.split = self.setting.get("split", "")
+        self.setting = {key: value for key, value in items[:split] if value is not None}
+        self.defaults = defaults
+        self.key = self.key_with()
         self.sources = json_row["sources"]
         self.error = json_row["error"]
+        # Of the structure; what rows of one table share; what is required; the structure and what
+        # is not the default of the rest.
+        self.label, self.group, self.work, self.method = (
+            json_row["labels"][key] for key in ("structure", "setting", "work", "method"))
         self.measures = None if self.error else checked(dict(items[split + 1:]))
+
+    def key_with(self, **changes):
+        """What tells the case, changed so, from others; a setting that a program does not know yet
+        is the default."""
+        return frozenset((key, value) for key, value in {**self.setting, **changes}.items()
+                         if value is not None and value != self.defaults.get(key))
 
     def __getitem__(self, key):
         return self.measures[key]
 
     def spread(self, key):
-        """Lower and upper quartile of a time; any other measure is one number."""
-        samples, unit = SAMPLED.get(key, (None, 1))
-        if len(self.measures.get(samples) or ()) < 2:
-            return self[key], self[key]
-        low, _, high = quartiles(self[samples])
-        return low * unit, high * unit
-
-    def variant(self):
-        """What the case adds to its structure: ", voxel 0.05"."""
-        s = self.setting
-        text = "".join(form.format(s[key]) for key, form in VARIANTS if key in s)
-        return text + "".join(f", {key} {s[key]}" for key in s if key not in LABELLED)
-
-    def label(self):
-        """"K_L s_L, all neighbours"; an adapted tree is cut by no rule."""
-        by_rule = self.split and "target_delta" not in self.setting
-        return self.setting["structure"] + (f" {self.split}" if by_rule else "") + self.variant()
-
-    def front_label(self):
-        tau = self.setting["tau"]
-        return self.label() + (f", tau {plain(tau)}" if tau != 1 and "target_delta" not in
-                               self.setting else "")
-
-    def work(self):
-        """The sources, and what was required of the field."""
-        return (f"{self._sources()}g_r {self.setting['g_r']:.6g}; {self.setting['law']} law, "
-                f"{self.setting['reference']} reference")
-
-    def group(self, with_density=True):
-        """What the rows of one table have in common."""
-        s = self.setting
-        sources = self._sources() if with_density else ""
-        return (f"{sources}tau {plain(s['tau'])}, epsilon {plain(s['epsilon'])}, g_r "
-                f"{s['g_r']:.6g}; {s['law']} law, {s['schedule']}, {s['reference']} reference")
-
-    def _sources(self):
-        s = self.setting
-        text = f"field {s['field']}, " if "field" in s else ""
-        if "rho" in s:
-            text += f"{s['sampling']} sources, " if "sampling" in s else ""
-            text += "".join(f"{key} {plain(s[key])}, " for key in ("rho", "s_a", "s_n"))
-        return text
+        """Lower and upper quartile of a time of the paper's; any other measure is one number."""
+        time, unit = PAPER_TIMES.get(key, (None, 1))
+        return (self[f"{time}_q1"] * unit, self[f"{time}_q3"] * unit) if time else (self[key],) * 2
 
 
 @dataclass
@@ -135,20 +92,12 @@ def checked(m):
     for key in NUMBERS + ERRORS:
         if isinstance(m[key], bool) or not isinstance(m[key], (int, float)):
             raise ValueError(f"{key} is no number")
-    for key in SAMPLES:
+    for key in (f"{time}_samples" for time in TIMES):
         if not m[key] or not all(isinstance(x, (int, float)) for x in m[key]):
             raise ValueError(f"{key} is no list of numbers")
     return m | {"size_MB": (m["bytes_published_accounting"] or 0) / 1e6,
                 "memory_MB": m["bytes_total"] / 1e6, "metrics_MB": m["bytes_payload"] / 1e6,
-                "creation_s": m.get("t_creation_s") or m["t_insert_s"] + m["t_gradation_s"],
-                "access_us": m["t_access_ns_random"] / 1e3}
-
-
-def from_schema_1(row):
-    row = {RENAMED.get(key, key): value for key, value in row.items()}
-    if row.get("depth"):
-        row["depth"] -= 1  # the root has level 0
-    return row
+                **{key: m[time] * unit for key, (time, unit) in PAPER_TIMES.items()}}
 
 
 def read_results(folder):
@@ -159,13 +108,14 @@ def read_results(folder):
         if not isinstance(data, dict) or data.get("program") != "controlspace":
             raise ValueError("not written by controlspace: give a folder of results")
         version = data["schema_version"]
-        if version not in (1, 2):
-            raise ValueError(f"schema version {version} is unknown: run the study again")
+        if version != 2:
+            raise ValueError(f"schema version {version} is not 2: bench/convert_results makes it of 1")
         head = {key: data[key] for key in PROVENANCE}
+        defaults = dict(data["defaults"])
         rows = []
         for number, row in enumerate(data["rows"], 1):
             try:
-                rows.append(Row(from_schema_1(row) if version == 1 else row))
+                rows.append(Row(row, defaults))
             except (KeyError, TypeError, ValueError, AttributeError) as error:
                 raise ValueError(f"row {number}: {described(error)}") from error
         return Results(Path(folder), head, dict(data["settings"]), rows, bool(data["complete"]))
@@ -177,13 +127,6 @@ def read_results(folder):
 
 def described(error):
     return f"'{error.args[0]}' is missing" if isinstance(error, KeyError) else str(error)
-
-
-def quartiles(samples):
-    """Lower quartile, median and upper quartile, interpolated between the samples."""
-    if len(samples) == 1:
-        return samples * 3
-    return statistics.quantiles(samples, n=4, method="inclusive")
 
 
 def write_file(path, content):

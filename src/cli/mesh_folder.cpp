@@ -21,7 +21,7 @@ constexpr const char* results_file = "meshes.json";
 
 MeshFolder::MeshFolder(const Study& study, MeshSettings settings, const std::string& command_line,
                        bool quiet)
-    : name_(study.name),
+    : study_(study),
       settings_(std::move(settings)),
       quiet_(quiet),
       provenance_(current_provenance()) {
@@ -68,12 +68,12 @@ void MeshFolder::add(MeshRow row, const Box& domain, const ControlSpace& referen
 void MeshFolder::end() {
     record(true);
     const std::string head =
-        fmt::format("# {}\n\n{}\n\n", name_, origin_text(provenance_, /*complete=*/true));
+        fmt::format("# {}\n\n{}\n\n", study_.name, origin_text(provenance_, /*complete=*/true));
     replace_file(path_ / "summary.md", head + mesh_tables(rows_, TableStyle::markdown));
 }
 
 void MeshFolder::record(bool complete) const {
-    replace_file(path_ / results_file, mesh_json(provenance_, settings_, rows_, complete));
+    replace_file(path_ / results_file, mesh_json(provenance_, study_, settings_, rows_, complete));
 }
 
 }  // namespace controlspace

@@ -40,7 +40,7 @@ public:
 private:
     void record(bool complete) const;
 
-    std::string name_;
+    Study study_;
     MeshSettings settings_;
     bool quiet_;
     Provenance provenance_;

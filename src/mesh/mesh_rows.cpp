@@ -10,6 +10,7 @@
 
 #include "controlspace/study/measure.h"
 #include "mesh/rank_correlation.h"
+#include "study/results_json.h"
 #include "study/tables.h"
 
 namespace controlspace {
@@ -182,6 +183,7 @@ nlohmann::ordered_json to_json(const MeshRow& row) {
     json["field"] = row.exact ? "exact" : c.structure;
     json["split"] = row.exact || !c.split ? "" : std::string(name_of(*c.split));
     json["setting"] = mesh_setting(row);
+    if (row.saved.empty()) json["case"] = to_json(c, case_parameters());
     json["mesher"] = name_of(row.mesher);
     json["error"] = row.error;
     if (!row.error.empty()) return json;
@@ -222,13 +224,14 @@ std::string mesh_tables(std::span<const MeshRow> rows, TableStyle style) {
     return text;
 }
 
-std::string mesh_json(const Provenance& provenance, const MeshSettings& settings,
-                      std::span<const MeshRow> rows, bool complete) {
+std::string mesh_json(const Provenance& provenance, const Study& study,
+                      const MeshSettings& settings, std::span<const MeshRow> rows, bool complete) {
     nlohmann::ordered_json json;
     json["origin"] = fmt::format("controlspace {}, {}, {}, {} ({} cores), {}",
                                  version_text(provenance), provenance.compiler, provenance.flags,
                                  provenance.cpu, provenance.cores, provenance.date);
     json["command_line"] = provenance.command_line;
+    json["study"] = to_json(study);
     for (const Parameter<MeshSettings>& p : mesh_parameters()) {
         json["settings"][p.key] = to_string(p.access.get(settings));
     }

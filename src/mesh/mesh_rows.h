@@ -8,6 +8,7 @@
 #include "controlspace/mesh/conformity.h"
 #include "controlspace/study/case.h"
 #include "controlspace/study/provenance.h"
+#include "controlspace/study/study.h"
 #include "mesh/mesh_settings.h"
 #include "study/text_table.h"
 
@@ -34,9 +35,9 @@ struct MeshRow {
 /// All tables: the measures and the histogram for each setting, with how L_R goes with δ_R.
 std::string mesh_tables(std::span<const MeshRow> rows, TableStyle style);
 
-/// meshes.json: provenance, settings of the meshing, and rows.
-std::string mesh_json(const Provenance& provenance, const MeshSettings& settings,
-                      std::span<const MeshRow> rows, bool complete);
+/// meshes.json: provenance, settings of the study (but its runs) and of the meshing, and rows.
+std::string mesh_json(const Provenance& provenance, const Study& study,
+                      const MeshSettings& settings, std::span<const MeshRow> rows, bool complete);
 
 /// "K_L s_L", or "exact".
 std::string mesh_label(const MeshRow& row);

@@ -33,10 +33,11 @@ std::string csv_field(const Json& value) {
     return quoted + '"';
 }
 
-/// A line of what `field` makes of each key and value of a row but its files.
+/// A line of what `field` makes of each key and value of a row but its files and labels.
 template <class Field>
 std::string csv_line(Json json, const Field& field) {
     json.erase("fields");
+    json.erase("labels");
     std::string text;
     for (const auto& [key, value] : json.items()) text += field(key, value) + ',';
     text.back() = '\n';

@@ -107,16 +107,21 @@ constexpr std::pair<const char*, std::string Provenance::*> provenance_texts[] =
 
 }  // namespace
 
-Json to_json(const Row& row, const StudyRows& rows) {
+Json to_json(const Case& setting, std::span<const CaseParameter> parameters) {
     Json json;
-    json["structure"] = row.setting.structure;
-    for (const CaseParameter& p : rows.parameters) {
+    json["structure"] = setting.structure;
+    for (const CaseParameter& p : parameters) {
         const std::string& key = result_key(p);
-        const Values values = values_of(p, row.setting);
+        const Values values = values_of(p, setting);
         const bool is_written = json.contains(key) && !json[key].is_null();
         if (!p.same_as.empty() || is_written) continue;
         json[key] = values.empty() ? Json(nullptr) : to_json(p.access.type, values.front());
     }
+    return json;
+}
+
+Json to_json(const Row& row, const StudyRows& rows) {
+    Json json = to_json(row.setting, rows.parameters);
     json["sources"] = row.sources;
     for (const Measure& measure : rows.measures) {
         const auto found = row.values.find(measure.key);
@@ -124,6 +129,10 @@ Json to_json(const Row& row, const StudyRows& rows) {
     }
     json["error"] = row.error;
     json["fields"] = to_json(row.fields);
+    json["labels"] = {{"structure", structure_label(row.setting, rows.parameters)},
+                      {"setting", setting_label(row.setting, rows.parameters)},
+                      {"work", work_label(row.setting, rows.parameters)},
+                      {"method", method_label(row.setting, rows.parameters)}};
     return json;
 }
 
@@ -149,6 +158,15 @@ Row row_from_json(const Json& json, const StudyRows& rows, const SourcesChoice& 
     return row;
 }
 
+Json to_json(const Study& study) {
+    Json json;
+    for (const Parameter<Study>& p : study_parameters()) {
+        const Json list = list_of(p.access.type, p.access.get(study));
+        json[p.key] = p.access.at_most != 1 ? list : list.empty() ? Json(nullptr) : list[0];
+    }
+    return json;
+}
+
 Json head_json(const Provenance& provenance, const Study& study,
                std::span<const CaseParameter> parameters) {
     Json json;
@@ -159,11 +177,7 @@ Json head_json(const Provenance& provenance, const Study& study,
     json["cores"] = provenance.cores;
     json["threads"] = provenance.threads;
     json["seed"] = study.seed;
-    Json& settings = json["settings"];
-    for (const Parameter<Study>& p : study_parameters()) {
-        const Json list = list_of(p.access.type, p.access.get(study));
-        settings[p.key] = p.access.at_most != 1 ? list : list.empty() ? Json(nullptr) : list[0];
-    }
+    Json& settings = json["settings"] = to_json(study);
     settings["runs"] = Json::array();
     for (const Run& run : study.runs) {
         Json& lists = settings["runs"].emplace_back();
@@ -171,6 +185,10 @@ Json head_json(const Provenance& provenance, const Study& study,
         for (const CaseParameter& p : parameters) {
             if (p.same_as.empty()) lists[p.key] = list_of(p.access.type, run.values(p));
         }
+    }
+    for (const CaseParameter& p : parameters) {
+        if (!p.same_as.empty() || p.defaults.empty()) continue;
+        json["defaults"].emplace(result_key(p), to_json(p.access.type, p.defaults.front()));
     }
     return json;
 }

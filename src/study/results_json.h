@@ -12,16 +12,22 @@ namespace controlspace {
 
 using Json = nlohmann::ordered_json;
 
-/// A row of results.json: structure, parameters, number of sources, measures, error and files of
-/// fields. What does not apply is null, and so are infinite errors; of a row with an error all
-/// measures are.
+/// The structure and parameters of a case; those that do not apply are null.
+Json to_json(const Case& setting, std::span<const CaseParameter> parameters);
+
+/// The settings of a study but its runs.
+Json to_json(const Study& study);
+
+/// A row of results.json: structure, parameters, number of sources, measures, error, files of
+/// fields, and labels. What does not apply is null, and so are infinite errors; of a row with an
+/// error all measures are.
 Json to_json(const Row& row, const StudyRows& rows);
 
 /// The way back, for rows of a study of `sources`: what the parameters do not say of the sources is
 /// as there. Throws InputError or Json::exception for what is no such row.
 Row row_from_json(const Json& json, const StudyRows& rows, const SourcesChoice& sources);
 
-/// Everything in results.json before its rows: provenance and settings.
+/// Everything in results.json before its rows: provenance, settings, and defaults of parameters.
 Json head_json(const Provenance& provenance, const Study& study,
                std::span<const CaseParameter> parameters);
 

@@ -58,7 +58,7 @@ TEST_CASE("a mesh that failed is a row with its reason") {
     const std::string text = mesh_tables(rows, TableStyle::markdown);
     CHECK_THAT(text, Contains("failed: MMG failed"));
     CHECK_THAT(text, !Contains("-0.0068"));
-    const auto json = nlohmann::json::parse(mesh_json({}, {}, rows, true));
+    const auto json = nlohmann::json::parse(mesh_json({}, {}, {}, rows, true));
     CHECK(json["rows"][1]["error"] == "MMG failed");
     CHECK_FALSE(json["rows"][1].contains("L_R"));
 }
@@ -66,7 +66,7 @@ TEST_CASE("a mesh that failed is a row with its reason") {
 TEST_CASE("meshes.json keeps rows and settings") {
     MeshSettings settings;
     settings.factor = 0.8;
-    const auto json = nlohmann::json::parse(mesh_json({}, settings, sample_rows(), false));
+    const auto json = nlohmann::json::parse(mesh_json({}, {}, settings, sample_rows(), false));
     CHECK(json["complete"] == false);
     CHECK(json["settings"]["factor"] == "0.8");
     CHECK(json["settings"]["mesher"] == "auto");

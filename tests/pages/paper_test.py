@@ -6,8 +6,8 @@ import tomllib
 import unittest
 from pathlib import Path
 
-from samples import (PAPER_ROWS, ROOT, evidence_of, failed_row, json_row, paper_json_rows,
-                     results_of, run, write_results)
+from samples import (PAPER_ROWS, ROOT, SETTINGS, evidence_of, failed_row, json_row, paper_json_rows,
+                     results_of, run, times, write_results)
 
 from pages import paper, paper_page
 from pages.paper import DELTA_R, SIZE, Evidence
@@ -150,7 +150,7 @@ class Cells(unittest.TestCase):
         self.assertEqual(verdict_on(ours, DELTA_R, "K_L", stretched(0.1, 1.60)).verdict,
                          paper.UNEXPLAINED)
         evidence = Evidence(results_of(ours), stretched(1e-9, 1.67), stretched(2e-9, 1.5))
-        self.assertEqual(len(evidence.near_ties(evidence.cells[0].row.setting)), 2)
+        self.assertEqual(len(evidence.near_ties(evidence.cells[0].row)), 2)
         # s_L has no ties; exact golden sections are another order of them.
         middle = [measured("K_L", "s_L", 17.08, 1.78)]
         self.assertEqual(verdict_on(middle, SIZE, "K_L", stretched(1e-9, 1.9, "s_L")).verdict,
@@ -264,8 +264,7 @@ class Claims(unittest.TestCase):
             self.check(sentence, holds, ("K_oL", 1, 1, octree, 1), ("K_oV", 1, 1, other, 1))
 
         def judged(*samples):
-            rows = [json_row(structure, tau=tau, t_access_ns_random=s[1],
-                             t_access_ns_random_samples=s)
+            rows = [json_row(structure, tau=tau, **times("t_access_ns_random", *s))
                     for tau, pair in zip((1, 0.5), samples)
                     for structure, s in zip(("K_oL", "K_oV"), pair)]
             return self.judged(rows, sentence)
@@ -391,7 +390,7 @@ class Page(unittest.TestCase):
     def test_ours_beside_the_papers(self):
         rows = paper_json_rows()
         for i, row in enumerate(rows, 1):
-            row |= {"t_insert_s": i}
+            row |= times("t_creation_s", i)
         tables = paper_page.side_by_side(evidence_of(rows))
         for table in tables:
             self.assertEqual((len(table.rows), len(table.columns)), (12, 8))
@@ -408,7 +407,7 @@ class Page(unittest.TestCase):
         self.assertEqual(cell(failed[3], "K_oL", "", "ρ 1 τ 1"), "failed / 1.83")
 
     def test_times_have_ranks_in_their_column(self):
-        rows = [json_row("K_L", split, t_insert_s=s, t_gradation_s=0)
+        rows = [json_row("K_L", split, **times("t_creation_s", s))
                 for split, s in (("s_L", 5), ("s_G", 7), ("s_M", 6))]
         # The paper's Table 2, K_L: 6.38, 2.39, 1.41.
         self.assertEqual([row[2] for row in paper_page.side_by_side(evidence_of(rows))[1].rows],
@@ -486,19 +485,20 @@ class Command(unittest.TestCase):
             self.assertEqual(len(kept["runs"]), len(study["runs"]))
 
     def test_table_5_of_meshes(self):
-        setting = ("rho 1, s_a 2, s_n 1, tau 1, epsilon 0.2, g_r 1.25; mean-length law, passes, "
-                   "published-sphere reference")
-        rows = [{"field": f, "split": "", "setting": setting, "mesher": "hxt", "error": e,
-                 "L_R": l_r} for f, e, l_r in (("exact", "", 0.8), ("K_oL", "", 0.7512),
-                                               ("K_oLB", "MMG failed", None),
-                                               ("K_oLA", "", 0.8))]
+        rows = [{"field": field, "mesher": "hxt", "error": error, "L_R": l_r,
+                 "case": results_of([json_row(structure, tau=tau)]).rows[0].setting}
+                for field, structure, tau, error, l_r in (
+                    ("exact", "K_oL", 1, "", 0.8), ("K_oL", "K_oL", 1, "", 0.7512),
+                    ("K_oLB", "K_oLB", 1, "MMG failed", None), ("K_oLA", "K_oLA", 1, "", 0.8),
+                    ("K_oL", "K_oL", 0.3, "", 0.9123))]
         self.folder.joinpath("meshes.json").write_text(json.dumps(
-            {"origin": "controlspace", "command_line": "mesh", "rows": rows}))
+            {"origin": "controlspace", "command_line": "mesh", "study": SETTINGS, "rows": rows}))
         outcome = run("paper", self.folder)
         self.assertEqual(outcome.returncode, 0, outcome.stderr)
         self.assertIn("0.7512 / 0.68", outcome.stdout)
         self.assertIn("failed / 0.45", outcome.stdout)
         self.assertNotIn("K_oLA", outcome.stdout)
+        self.assertNotIn("0.9123", outcome.stdout)
         self.assertEqual((self.folder / "paper.md").read_text(), outcome.stdout)
         self.folder.joinpath("meshes.json").write_text("[]")
         self.refused("meshes.json", self.folder)

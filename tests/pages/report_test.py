@@ -8,7 +8,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
-from samples import ROOT, failed_row, json_row, results_of, run, with_fields, write_results
+from samples import ROOT, failed_row, json_row, results_of, run, times, with_fields, write_results
 
 from pages import compare_runs, fields, figures
 from pages import report_command as report
@@ -22,8 +22,8 @@ CONE = {"law": "cone", "schedule": "queue", "reference": "exact"}
 def three_rows():
     """Three structures, of which the second is beaten by the first."""
     return [json_row("K_oL", **CONE),
-            json_row("K_oV", bytes_total=2_460_000, t_access_ns_random=200.5,
-                     t_access_ns_random_samples=[100.25, 300, 200.5], **CONE),
+            json_row("K_oV", bytes_total=2_460_000, **times("t_access_ns_random", 100.25, 300, 200.5),
+                     **CONE),
             json_row("direct", bytes_total=3_690_000, delta_R_fine_max=0, **CONE)]
 
 
@@ -69,27 +69,22 @@ class Results(WithFolder):
                 except InputError as error:
                     self.assertIn("results.json", str(error))
 
-    def test_schema_1_is_read_too(self):
-        row = json_row("K_oL", depth=10)
-        old = {{"tree_nodes": "elements", "cells": "leaves"}.get(k, k): v for k, v in row.items()
-               if k not in ("fields", "frozen")}
-        write_results(self.folder, [old])
+    def test_schema_1_is_to_be_converted(self):
+        write_results(self.folder, [json_row("K_oL")])
         text = (self.folder / "results.json").read_text()
         (self.folder / "results.json").write_text(text.replace('version": 2', 'version": 1'))
-        read, = read_results(self.folder).rows
-        self.assertEqual((read["tree_nodes"], read["cells"], read["depth"]), (205, 103, 9))
-        self.assertEqual(read.key, results_of([row]).rows[0].key)
-        # As kept in the repository.
+        with self.assertRaisesRegex(InputError, "version 1 is not 2: bench/convert_results"):
+            read_results(self.folder)
+
+    def test_kept_results_are_read(self):
         for kept in ("fields", "adaptation"):
             self.assertTrue(read_results(ROOT / "bench/results" / kept).measured)
 
-    def test_labels_name_what_differs(self):
-        def label(**changes):
-            return results_of([json_row("K_L", "s_L", **changes)]).rows[0].label()
-        self.assertEqual(label(), "K_L s_L")
-        self.assertEqual(label(neighbourhood="all"), "K_L s_L, all neighbours")
-        self.assertEqual(label(target_delta=0.1), "K_L, δ <= 0.1")
-        self.assertEqual(label(a_new_setting=7), "K_L s_L, a_new_setting 7")
+    def test_a_setting_that_a_program_does_not_know_yet_is_the_default(self):
+        old, new, other = results_of([json_row("K_Li"), json_row("K_Li", interpolation="quadratic"),
+                                      json_row("K_Li", interpolation="published")]).rows
+        self.assertEqual(old.key, new.key)
+        self.assertNotEqual(old.key, other.key)
 
 
 class Figures(unittest.TestCase):
@@ -218,14 +213,16 @@ class TwoRuns(unittest.TestCase):
             self.assertEqual((row[1][0], row[2], row[3][0], row[4]), ("0", "3", "0", "0"))
 
     def test_a_ratios_band_comes_from_opposite_quartiles(self):
-        before, after = [100, 110, 120, 130, 140], [50, 55, 60, 65, 70]
-        ratio = compare_runs.sample_ratio(before, after)
+        slow, fast, near = (
+            results_of([json_row("K_oL", **times("t_access_ns_random", *samples))]).rows[0]
+            for samples in ([100, 110, 120, 130, 140], [50, 55, 60, 65, 70], [105, 115, 125]))
+        ratio = compare_runs.ratio_of(compare_runs.MEASURES[0], (slow, fast))
         self.assertAlmostEqual(ratio.value, 0.5)
         self.assertAlmostEqual(ratio.low, 55 / 130)
         self.assertAlmostEqual(ratio.high, 65 / 110)
-        back = compare_runs.sample_ratio(after, before)
+        back = compare_runs.ratio_of(compare_runs.MEASURES[0], (fast, slow))
         self.assertAlmostEqual(back.low, 1 / ratio.high)
-        same = compare_runs.sample_ratio(before, [105, 115, 125])
+        same = compare_runs.ratio_of(compare_runs.MEASURES[0], (slow, near))
         self.assertTrue(same.low <= 1 <= same.high)
 
     def test_studies_that_measure_otherwise_are_told_apart(self):
@@ -237,7 +234,7 @@ class TwoRuns(unittest.TestCase):
                          "domain not set, then 0, 1, 0, 1, 0, 1; fine_probe_grid 101, then 20")
 
     def test_what_changed_is_counted_and_stands_in_the_tables(self):
-        after = [json_row("K_oL", t_access_ns_random_samples=[26, 25, 25.5], bytes_total=2_460_000,
+        after = [json_row("K_oL", **times("t_access_ns_random", 26, 25, 25.5), bytes_total=2_460_000,
                           delta_R_fine_mean=0.18), json_row("K_oV", delta_R_fine_max=0),
                  json_row("K_oL", tau=0.5)]
         before = [json_row("K_oL"), json_row("K_oV"), json_row("K_oL", tau=0.5)]
@@ -281,9 +278,15 @@ class Page(unittest.TestCase):
              failed_row("no memory", structure="direct")]).rows)
         self.assertEqual(len(tables), 2)
         self.assertEqual(tables[0].rows[0], [
-            "K_oL", "", "103", "1.23", "1.750", "51.0", "11.0", "1.7800", "0.1000", "0.4000",
+            "K_oL", "103", "1.23", "1.750", "51.0", "11.0", "1.7800", "0.1000", "0.4000",
             "2.7800", "7.00 %", "1.400", "1.2499", ""])
         self.assertEqual(tables[0].rows[1][-1], "failed: no memory")
+        # A measure of somebody's own.
+        row = json_row("K_oL")
+        row["node_share"] = 0.25
+        table, = report.measure_tables(results_of([row, json_row("K_V", "s_L")]).rows)
+        self.assertEqual((table.columns[-1], table.rows[0][-1], table.rows[1][-1]),
+                         ("node_share", "0.25", "–"))
 
 
 class Command(WithFolder):

@@ -17,7 +17,17 @@ HEAD = {"schema_version": 2, "program": "controlspace", "version": "0.1.0", "com
 SETTINGS = {"name": "a study", "sources": "sphere", "centre": [0.0, 0.0, 0.0], "radius": 0.8,
             "h": 0.015, "domain": [], "seed": 1, "probe_grid": 4, "fine_probe_grid": 101,
             "output": "out", "runs": []}
+DEFAULTS = {"split": "s_L", "rho": 1.0, "tau": 1.0, "epsilon": 0.2, "g_r": 1.25, "s_a": 2.0,
+            "s_n": 1.0, "sampling": "regular", "field": "none", "node_values": "graded",
+            "frozen": "no", "law": "cone", "schedule": "queue", "neighbourhood": "faces",
+            "reference": "exact", "interpolation": "quadratic"}
 PUBLISHED = {"law": "mean-length", "schedule": "passes", "reference": "published-sphere"}
+
+
+def times(key, *samples):
+    """A time that was sampled: median, quartiles and samples."""
+    low, median, high = np.quantile(samples, [0.25, 0.5, 0.75])
+    return {key: median, f"{key}_q1": low, f"{key}_q3": high, f"{key}_samples": list(samples)}
 
 
 def json_row(structure="K_L", split=None, **changes):
@@ -28,29 +38,37 @@ def json_row(structure="K_L", split=None, **changes):
            "frozen": "no", **PUBLISHED, "neighbourhood": "faces", "sources": 36186,
            "sources_inserted": 35852, "tree_nodes": 205, "cells": 103, "control_nodes": 103,
            "depth": 9, "bytes_total": 1230000, "bytes_payload": 1000000, "bytes_topology": 200000,
-           "bytes_auxiliary": 30000, "bytes_published_accounting": 17070000, "t_insert_s": 1.5,
-           "t_gradation_s": 0.25, "t_access_ns_random": 51.0,
-           "t_access_ns_random_samples": [50.0, 51.0, 52.0], "t_access_ns_grid": 11.0,
-           "t_access_ns_grid_samples": [12.0, 10.0, 11.0], "delta_S_max": 0.1,
+           "bytes_auxiliary": 30000, "bytes_published_accounting": 17070000, **times("t_insert_s", 1.5),
+           **times("t_gradation_s", 0.25), **times("t_creation_s", 1.75),
+           **times("t_access_ns_random", 50.0, 51.0, 52.0),
+           **times("t_access_ns_grid", 12.0, 10.0, 11.0), "access_batch": 0, "delta_S_max": 0.1,
            "delta_R_max": 1.78, "delta_R_mean": 0.1, "delta_R_p95": 0.3, "delta_R_p99": 0.4,
            "delta_R_fine_max": 2.78, "delta_R_fine_mean": 0.17, "delta_R_fine_p95": 0.3,
            "delta_R_fine_p99": 0.4, "delta_metric_R_max": 5.0, "coarser_max": 1.3,
            "coarser_share": 0.06, "coarser_fine_max": 1.4, "coarser_fine_share": 0.07,
            "gradation_max_left": 1.2499, "gradation_operations": 12345,
-           "checksum": "0123456789abcdef", "remark": "", "error": "", "fields": None}
-    unknown = set(changes) - set(row)
+           "checksum": "0123456789abcdef", "remark": "", "error": "", "fields": None, "labels": None}
     # Settings that the rows above do not have stand before the sources.
-    head = list(row)[:list(row).index("sources")]
-    return {**{key: row[key] for key in head}, **{key: changes[key] for key in unknown},
-            **{key: row[key] for key in row if key not in head},
-            **{key: value for key, value in changes.items() if key in row}}
+    own = {key: value for key, value in changes.items() if key not in row}
+    row = {"structure": structure, **own, **row, **changes}
+    row["labels"] = labels(row)
+    return row
+
+
+def labels(row):
+    """As the program makes them, more or less."""
+    structure = f"{row['structure']} {row['split'] or ''}".strip()
+    work = f"rho {row['rho']:g}, s_a 2, s_n 1, g_r 1.25, {row['reference']} reference"
+    tau = f", tau {row['tau']:g}"
+    return {"structure": structure, "work": work, "method": structure + tau * (row["tau"] != 1),
+            "setting": f"{work}, {row['law']} law, {row['schedule']}, epsilon 0.2{tau}"}
 
 
 def failed_row(error, **changes):
     row = json_row(**changes)
     last = list(row).index("sources")
     return {key: value if i <= last else None for i, (key, value) in
-            enumerate(row.items())} | {"error": error}
+            enumerate(row.items())} | {"error": error, "labels": row["labels"]}
 
 
 def paper_json_rows(change=lambda row: None):
@@ -60,17 +78,15 @@ def paper_json_rows(change=lambda row: None):
         size = round(p.size_MB * 1e6)
         rows.append(json_row(p.structure, p.split or None, rho=p.rho, tau=p.tau, bytes_total=size,
                              bytes_payload=size, bytes_published_accounting=size,
-                             t_insert_s=p.creation_s, t_gradation_s=0,
-                             t_access_ns_random=p.access_us * 1e3,
-                             t_access_ns_random_samples=[p.access_us * 1e3],
+                             **times("t_creation_s", p.creation_s),
+                             **times("t_access_ns_random", p.access_us * 1e3),
                              delta_R_max=p.delta_R_max))
         change(rows[-1])
     return rows
 
 
 def results_of(json_rows, folder=".", **settings):
-    return Results(Path(folder), HEAD, {**SETTINGS, **settings}, [Row(dict(r)) for r in json_rows],
-                   True)
+    return Results(Path(folder), HEAD, {**SETTINGS, **settings}, [Row(dict(r), DEFAULTS) for r in json_rows], True)
 
 
 def evidence_of(json_rows, **settings):
@@ -81,7 +97,7 @@ def write_results(folder, json_rows, complete=True, **settings):
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "results.json").write_text(json.dumps(
-        {**HEAD, "settings": {**SETTINGS, **settings}, "rows": json_rows, "complete": complete}))
+        {**HEAD, "settings": {**SETTINGS, **settings}, "defaults": DEFAULTS, "rows": json_rows, "complete": complete}))
     return folder
 
 

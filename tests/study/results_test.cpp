@@ -125,7 +125,7 @@ std::vector<std::string> take_record(std::string_view& csv) {
 
 TEST_CASE("a row has exactly the documented fields, measured or not") {
     std::vector<std::string> expected = row_fields;
-    expected.push_back("fields");
+    expected.insert(expected.end(), {"fields", "labels"});
     CHECK(keys(to_json(sample_row(published_case()), rows_of_trees)) == expected);
     CHECK(keys(to_json(failed_row(), rows_of_trees)) == expected);
     CHECK(keys(to_json(Row{}, rows_of_trees)) == expected);
@@ -217,9 +217,9 @@ TEST_CASE("results.json says who made it and what was asked for") {
     folder.add(sample_row(published_case()));
     folder.finish(true);
     const Json json = Json::parse(file_text(root / "a" / "results.json"));
-    for (const char* field :
-         {"schema_version", "program", "version", "commit", "dirty", "compiler", "flags", "cpu",
-          "cores", "threads", "seed", "date", "command_line", "settings", "complete", "rows"}) {
+    for (const char* field : {"schema_version", "program", "version", "commit", "dirty", "compiler",
+                              "flags", "cpu", "cores", "threads", "seed", "date", "command_line",
+                              "settings", "defaults", "complete", "rows"}) {
         CHECK(json.contains(field));
     }
     CHECK(json["schema_version"] == 2);
