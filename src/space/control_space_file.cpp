@@ -68,6 +68,7 @@ void exchange(Self& options, State& state) {
     state("options.voxel_factor", options.voxel_factor);
     state("options.prune_delta", options.prune_delta);
     state("options.ratio", options.ratio);
+    state("options.quadratic_form", options.quadratic_form, QuadraticForm::published);
     state("options.takes_later_sources", options.takes_later_sources);
     state("options.max_bytes", options.max_bytes);
 }

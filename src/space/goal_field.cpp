@@ -36,6 +36,7 @@ double negligible(double target) { return 0.1 * std::sqrt(target); }
 
 GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
     : target_(require_valid(goal, domain).target),
+      ratio_(goal.ratio),
       sources_(goal.sources),
       continuous_(goal.continuous),
       largest_(largest_metric(domain)),

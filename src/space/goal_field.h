@@ -48,11 +48,13 @@ public:
     const ConeField& cones() const { return cones_; }
     const Metric& largest() const { return largest_; }
     double target() const { return target_; }
+    double ratio() const { return ratio_; }
 
 private:
     void add_continuous(std::span<const Point> x, std::span<Metric> out) const;
 
     double target_;
+    double ratio_;
     std::span<const PointSource> sources_;
     std::shared_ptr<const ControlSpace> continuous_;
     Metric largest_;

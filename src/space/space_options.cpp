@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "controlspace/error.h"
+#include "controlspace/gradation/grade.h"
 
 namespace controlspace {
 
@@ -28,10 +29,22 @@ void require_depth(const char* name, int depth, int deepest) {
     }
 }
 
+// Enumerations from outside, cast from numbers.
+template <class Enumeration>
+void require_known(const char* name, Enumeration value, Enumeration last) {
+    if (value < Enumeration{} || value > last) {
+        throw InputError(
+            fmt::format("{} is {}: give one of its named values", name, static_cast<int>(value)));
+    }
+}
+
 }  // namespace
 
 void require_valid(const SpaceOptions& options) {
     require_volume(options.domain);
+    require_known("split", options.split, SplitRule::exact_golden);
+    require_known("quadratic_form", options.quadratic_form, QuadraticForm::published);
+    require_valid(GradationOptions{.ratio = options.ratio});
     require_positive("l_min (tau)", options.l_min);
     require_positive("the insertion tolerance (epsilon)", options.tolerance);
     require_not_negative("voxel", options.voxel);

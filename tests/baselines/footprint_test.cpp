@@ -28,11 +28,11 @@ TEST_CASE("a grid's footprint is what it has allocated") {
     const std::size_t allocated = live_bytes() - before;
     const Footprint footprint = space->footprint();
     CHECK(footprint.bytes_payload >= footprint.control_nodes * sizeof(Metric));
-    // The object itself is allocated but not counted. OpenVDB's own count leaves out some bytes of
+    // Builder and recipe are allocated but not counted. OpenVDB's own count leaves out some bytes of
     // each inner node and the root's table.
     CAPTURE(allocated, footprint.bytes_total());
     CHECK(footprint.bytes_total() <= allocated);
-    CHECK(footprint.bytes_total() + 1024 >= allocated);
+    CHECK(footprint.bytes_total() + 2048 >= allocated);
 }
 
 TEST_CASE("a grid and its gradation stay below the memory cap") {
@@ -48,7 +48,7 @@ TEST_CASE("a grid and its gradation stay below the memory cap") {
     space->grade(GradationOptions{});
     const Footprint footprint = space->footprint();
     CAPTURE(peak_bytes() - before, footprint.remark);
-    CHECK(peak_bytes() - before <= options.max_bytes + 1024);  // the object itself
+    CHECK(peak_bytes() - before <= options.max_bytes + 2048);  // the builder itself
     CHECK(footprint.bytes_total() + footprint.control_nodes * 53 <= options.max_bytes);
     // No more is given up than has to be: OpenVDB grows by whole leaves.
     CHECK(peak_bytes() - before >= options.max_bytes / 2);

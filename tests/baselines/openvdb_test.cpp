@@ -96,7 +96,7 @@ TEST_CASE("the footprint of two Vec3S trees is what they have allocated") {
     const auto space = structure_with_id("openvdb-vec3s-trilinear").make(small_grid())->build();
     const std::size_t allocated = live_bytes() - before;
     CHECK(space->footprint().bytes_total() <= allocated);
-    CHECK(space->footprint().bytes_total() + 2048 >= allocated);
+    CHECK(space->footprint().bytes_total() + 3072 >= allocated);
 }
 
 TEST_CASE("the arithmetic of OpenVDB's values is entry by entry") {

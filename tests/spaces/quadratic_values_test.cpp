@@ -8,6 +8,8 @@
 #include "controlspace/space/catalogue.h"
 #include "editable_space.h"
 #include "controlspace/measure/access_time.h"
+#include "trees/topology/adjacency.h"
+#include "trees/values/triquadratic.h"
 
 using namespace controlspace;
 
@@ -101,4 +103,45 @@ TEST_CASE("a source at a leaf's face is met by K_Li, before gradation and after"
         space->grade({.ratio = 1.25});
         CHECK(sample_at(*space, p).xx <= 0.01 * (1 + 0.25 * std::sqrt(0.75)));
     }
+}
+
+TEST_CASE(
+    "quadratic leaves keep to the ratio that they are graded with, not that of their options") {
+    const Box domain{Point::Constant(-1), Point::Constant(1)};
+    const CatalogueEntry& entry = *find_entry(tree_catalogue(), GENERATE("K_Li", "K_oLi"));
+    const auto space = editable(entry.make({.domain = domain, .ratio = 2}));
+    space->insert(PointSource{Point(0.3, 0.2, 0.1), Metric::isotropic(0.1)});
+    space->insert(PointSource{Point(-0.4, 0.2, -0.1), Metric::isotropic(0.03)});
+    constexpr double g = 1.05;
+    space->grade({.ratio = g});
+    for (const Point& x : cell_centres(domain, 21)) {
+        const Point centre = space->cell_at(x)->centre();
+        const double own = sample_at(*space, centre).xx;
+        REQUIRE(sample_at(*space, x).xx <= own + (g - 1) * (x - centre).norm() + 1e-12);
+    }
+}
+
+TEST_CASE("the published interpolation adds the corners' trilinear part at a wrong place") {
+    // A field that is linear across faces: own 2, low faces 1, high faces 3 along x.
+    const auto value = [](const Vector& k) {
+        const auto weights = published_triquadratic_weights(k);
+        const std::array<double, 7> metrics{1, 3, 2, 2, 2, 2, 2};
+        double sum = 0;
+        double of_weights = 0;
+        for (std::size_t i = 0; i < 7; ++i) {
+            sum += weights[i] * metrics[i];
+            of_weights += weights[i];
+        }
+        CHECK(of_weights == Approx(1).epsilon(1e-14));
+        return sum;
+    };
+    // Corners are 2 -+ 1/6 there; Tri(t) - Tri(k) = (t - k) / 6 with t = (k + 1) / 2.
+    const auto right = [](const Vector& k) {
+        const auto weights = triquadratic_weights(k);
+        return weights[0] + 3 * weights[1] + 2 * (1 - weights[0] - weights[1]);
+    };
+    for (const Vector& k : {Vector(0, 0, 0), Vector(-1, -1, -1), Vector(0.3, -0.7, 0.2)}) {
+        CHECK(value(k) - right(k) == Approx((0.5 * (k.x() + 1) - k.x()) / 6).margin(1e-14));
+    }
+    CHECK(value(Vector(1, 1, 1)) == Approx(right(Vector(1, 1, 1))));
 }

@@ -5,6 +5,7 @@
 #include "case_of_each.h"
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"
+#include "trees/control_nodes.h"
 #include "trees/topology/face_pairs.h"
 #include "trees/values/quadratic_values.h"
 #include "trees/values/vertex_values.h"
@@ -70,7 +71,7 @@ TEMPLATE_TEST_CASE("a split alone changes nothing in a leaf storage", "", LeafVa
         for (std::size_t k = 0; k < x.size(); ++k) {
             CHECK(LeafValues(storage).value(tree, x[k]) == before[k]);
         }
-        storage.lower(tree.locate(source.position), source);
+        lower_nodes(storage, tree.find(source.position), source.metric);
     }
 }
 
@@ -92,7 +93,7 @@ TEST_CASE("a split alone changes nothing in a vertex storage, but for hanging ve
     };
     split(Point::Zero());
     for (const Point& corner_of : {Point(-0.5, -0.5, -0.5), Point(0.5, 0.5, 0.5)}) {
-        storage.lower(tree.locate(corner_of), {corner_of, Metric::isotropic(0.3)});
+        lower_nodes(storage, tree.find(corner_of), Metric::isotropic(0.3));
     }
     SECTION("where no neighbour is finer, the field stays") {
         const std::vector<double> before = field();
@@ -104,7 +105,7 @@ TEST_CASE("a split alone changes nothing in a vertex storage, but for hanging ve
     SECTION("a finer neighbour's vertices begin to count: never larger") {
         split(Point(-0.5, -0.5, -0.5));
         const Point inner(-0.1, -0.1, -0.1);
-        storage.lower(tree.locate(inner), {inner, Metric::isotropic(0.1)});
+        lower_nodes(storage, tree.find(inner), Metric::isotropic(0.1));
         const std::vector<double> before = field();
         split(Point(0.5, -0.5, -0.5));
         const std::vector<double> after = field();
@@ -173,7 +174,7 @@ TEMPLATE_TEST_CASE("with all neighbours, any two vertices of a leaf are neighbou
             }
         }
     });
-    const ControlNodes nodes = storage.control_nodes(tree, Neighbourhood::all);
+    const ControlNodes nodes = nodes_of_tree(tree, storage, Neighbourhood::all);
     const auto& graph = std::get<NodeGraph>(nodes.graph);
     for (NodeIndex i = 0; i < graph.size(); ++i) {
         graph.for_each_neighbour(i, [&](NodeIndex j) {
@@ -278,6 +279,14 @@ TEST_CASE("options out of range are refused by name") {
     refuses({.domain = domain, .kd_depth = 201}, "kd-trees");
     refuses({.domain = domain, .octree_depth = 1000}, "octrees");
     refuses({.domain = domain, .octree_depth = -1}, "octrees");
+    refuses({.domain = domain, .split = SplitRule(77)}, "split is 77");
+    refuses({.domain = domain, .quadratic_form = QuadraticForm(2)}, "quadratic_form is 2");
+    for (const CatalogueEntry& entry : anchored_catalogue()) {
+        for (const double ratio : {-3.0, 0.99, double(NAN), double(INFINITY)}) {
+            CHECK_THROWS_WITH(entry.make({.domain = domain, .ratio = ratio}),
+                              Catch::Contains("gradation ratio"));
+        }
+    }
 }
 
 CASE_OF_EACH(entry, tree_catalogue(),

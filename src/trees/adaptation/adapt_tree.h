@@ -1,8 +1,5 @@
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,21 +12,13 @@
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/sample_parallel.h"
 #include "space/goal_field.h"
+#include "trees/adaptation/in_parallel.h"
 #include "trees/adaptation/leaf_judge.h"
 #include "trees/adaptation/nearby_field.h"
+#include "trees/control_nodes.h"
 #include "trees/topology/topology.h"
 
 namespace controlspace {
-
-/// Calls visit(i) for i from 0 to n - 1, on all of TBB's threads; each works with copies of
-/// `visit`.
-template <class Visit>
-void in_parallel(std::size_t n, const Visit& visit) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 16), [&](const auto& part) {
-        Visit own = visit;
-        for (std::size_t i = part.begin(); i < part.end(); ++i) own(i);
-    });
-}
 
 /// Splits leaves of a tree, which should consist of its root, until each is within the target of
 /// the field wherever it is looked at.
@@ -90,7 +79,7 @@ private:
         if (proved && covers()) {
             cover(young);
         } else {
-            storage_.fit(tree_, leaves_to_look_at(LeafState::fresh), field_, proved);
+            fit(leaves_to_look_at(LeafState::fresh), proved);
             look(young, proved);
         }
         for (const AdaptedLeaf& l : young) states_[l.leaf] = LeafState::settled;
@@ -101,10 +90,12 @@ private:
             if (states_[l.leaf] != LeafState::settled) continue;
             Departure& departure = departures_[l.leaf];
             if (!(departure.worst > field_.target())) continue;
-            if (departure.is_elsewhere && storage_.learn(l.leaf, departure.where, field_)) {
-                states_[l.leaf] = LeafState::changed;
-                changes = true;
-                continue;
+            if constexpr (requires { storage_.learn(l.leaf, departure.where, field_); }) {
+                if (departure.is_elsewhere && storage_.learn(l.leaf, departure.where, field_)) {
+                    states_[l.leaf] = LeafState::changed;
+                    changes = true;
+                    continue;
+                }
             }
             cut.clear();
             const bool is_cut = split(l.box, departure.along, cut);
@@ -115,6 +106,25 @@ private:
             for (const LeafIndex leaf : cut) states_[leaf] = LeafState::fresh;
         }
         return changes;
+    }
+
+    void fit(const std::vector<AdaptedLeaf>& leaves, bool proved) {
+        if constexpr (requires { storage_.fit(tree_, leaves, field_, proved); }) {
+            storage_.fit(tree_, leaves, field_, proved);
+        } else {
+            // Constant leaves are set by the bounds of the field in them, where these are known.
+            if (Storage::cut_by == CutBy::corners && field_.has_ranges()) return;
+            if constexpr (requires { storage_.set_ratio(field_.ratio()); }) {
+                storage_.set_ratio(field_.ratio());
+            }
+            fit_nodes(storage_, leaves, field_);
+        }
+    }
+
+    // Whether what the storage answers at the leaf's own places is known to follow the field.
+    bool is_fitted(LeafIndex leaf) const {
+        if constexpr (requires { storage_.is_fitted(leaf); }) return storage_.is_fitted(leaf);
+        return false;
     }
 
     // Whether the storage can be brought to keep the target everywhere in a leaf.
@@ -182,7 +192,7 @@ private:
             Departure& departure = departures_[l.leaf];
             const auto is_bad = [&] { return departure.worst > field_.target(); };
             const bool needs_axis = Node::arity == 2;
-            if (states_[l.leaf] == LeafState::fresh && !storage_.is_fitted(l.leaf) &&
+            if (states_[l.leaf] == LeafState::fresh && !is_fitted(l.leaf) &&
                 (needs_axis || !is_bad())) {
                 const Departure own = judge.at_places_of(l, nearby);
                 departure.take(own.worst, own.where);
@@ -203,7 +213,7 @@ private:
             nearby.enter(l.box, false);
             const auto [least, most] = nearby.range();
             const Metric middle = Metric::isotropic(std::sqrt(least * most));
-            storage_.set(l.leaf, middle);
+            storage_.metrics().set(l.leaf, middle);
             Departure& departure = departures_[l.leaf];
             departure.take(nonconformity(middle, Metric::isotropic(most)), l.box.centre());
             if (Node::arity == 2 && departure.worst > field_.target()) {

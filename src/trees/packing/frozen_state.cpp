@@ -30,10 +30,11 @@ std::unique_ptr<ControlSpace> load_frozen(FrozenKind kind, const Box& domain, Pr
     }
     state.require(metrics.size() == tree.leaves(), "frozen.metrics", "are not of these leaves");
     if (kind == FrozenKind::leaves) return freeze_leaves(tree, metrics, precision);
-    double slope = 0;
-    state("frozen.slope", slope);
-    state.require(std::isfinite(slope) && slope >= 0, "frozen.slope", "is no slope");
-    return freeze_quadratic(tree, metrics, slope, precision);
+    QuadraticRule rule;
+    state("frozen.slope", rule.slope);
+    state("frozen.form", rule.form, QuadraticForm::published);
+    state.require(std::isfinite(rule.slope) && rule.slope >= 0, "frozen.slope", "is no slope");
+    return freeze_quadratic(tree, metrics, rule, precision);
 }
 
 }  // namespace

@@ -117,7 +117,7 @@ std::unique_ptr<ControlSpace> freeze_leaves(const Topology<Node>& tree,
 
 template <class Node>
 std::unique_ptr<ControlSpace> freeze_quadratic(const Topology<Node>& tree,
-                                               std::span<const Metric> metrics, double slope,
+                                               std::span<const Metric> metrics, const QuadraticRule& rule,
                                                Precision precision) {
     std::vector<LeafIndex> order;
     Topology<Node> ordered = tree.depth_first(order);
@@ -125,7 +125,7 @@ std::unique_ptr<ControlSpace> freeze_quadratic(const Topology<Node>& tree,
     return with_number(precision, [&]<class Number>(NumberType<Number>) {
         return with_plane(planes, [&]<class Plane>(NumberType<Plane>) {
             FrozenQuadratic<Number, Plane> values(ordered, std::move(planes),
-                                                  stored<Number>(metrics, order), slope);
+                                                  stored<Number>(metrics, order), rule);
             return frozen(std::move(ordered), std::move(values));
         });
     });
@@ -171,7 +171,7 @@ std::unique_ptr<ControlSpace> freeze_vertices(const Topology<Node>& tree,
     template std::unique_ptr<ControlSpace> freeze_leaves(const Topology<Node>&,               \
                                                          std::span<const Metric>, Precision); \
     template std::unique_ptr<ControlSpace> freeze_quadratic(                                  \
-        const Topology<Node>&, std::span<const Metric>, double, Precision);                   \
+        const Topology<Node>&, std::span<const Metric>, const QuadraticRule&, Precision); \
     template std::unique_ptr<ControlSpace> freeze_vertices(                                   \
         const Topology<Node>&, std::span<const Corners>, std::span<const Metric>, Precision);
 CONTROLSPACE_FREEZE(KdNode)

@@ -5,6 +5,7 @@
 
 #include "controlspace/metric/stored_metric.h"
 #include "controlspace/space/control_nodes.h"
+#include "controlspace/space/space_options.h"
 #include "trees/topology/corners.h"
 #include "trees/topology/topology.h"
 
@@ -19,10 +20,16 @@ template <class Node>
 std::unique_ptr<ControlSpace> freeze_leaves(const Topology<Node>& tree,
                                             std::span<const Metric> metrics, Precision precision);
 
-/// One metric a leaf, interpolated as QuadraticValues does; `slope` is g_r - 1.
+/// How QuadraticValues interpolates.
+struct QuadraticRule {
+    double slope = 0;  ///< g_r - 1
+    QuadraticForm form = QuadraticForm::corrected;
+};
+
+/// One metric a leaf, interpolated as QuadraticValues does.
 template <class Node>
 std::unique_ptr<ControlSpace> freeze_quadratic(const Topology<Node>& tree,
-                                               std::span<const Metric> metrics, double slope,
+                                               std::span<const Metric> metrics, const QuadraticRule& rule,
                                                Precision precision);
 
 /// A metric a vertex; `corners` are the numbers of the leaves' vertices.

@@ -8,6 +8,7 @@
 #include "controlspace/metric/stored_metric.h"
 #include "controlspace/space/control_nodes.h"
 #include "trees/packing/frozen_state.h"
+#include "trees/packing/frozen_tree.h"
 #include "trees/topology/corners.h"
 #include "trees/topology/leaf_faces.h"
 #include "trees/topology/leaf_graph.h"
@@ -62,8 +63,8 @@ public:
 
     template <class Node>
     FrozenQuadratic(const Topology<Node>& tree, CutPlanes planes,
-                    std::vector<StoredMetric<Number>> metrics, double slope)
-        : FrozenLeaves<Number>(std::move(metrics)), planes_(std::move(planes)), slope_(slope) {
+                    std::vector<StoredMetric<Number>> metrics, const QuadraticRule& rule)
+        : FrozenLeaves<Number>(std::move(metrics)), planes_(std::move(planes)), rule_(rule) {
         leaves_.reserve(tree.leaves());
         for_each_faces<Plane>(tree, planes_, [&](LeafIndex, const Faces<Plane>& faces) {
             leaves_.push_back({faces, {}});
@@ -90,7 +91,8 @@ public:
     void prefetch_metric(LeafIndex leaf) const { __builtin_prefetch(&this->metrics_[leaf]); }
     double length(LeafIndex leaf) const { return this->metrics_[leaf].xx; }
     bool all_isotropic() const { return isotropic_; }
-    double slope() const { return slope_; }
+    double slope() const { return rule_.slope; }
+    QuadraticForm form() const { return rule_.form; }
 
     void describe(Footprint& footprint) const {
         FrozenLeaves<Number>::describe(footprint);
@@ -98,7 +100,8 @@ public:
     }
     void save(StateWriter& state) const {
         FrozenLeaves<Number>::save(state);
-        state("frozen.slope", slope_);
+        state("frozen.slope", rule_.slope);
+        state("frozen.form", rule_.form, QuadraticForm::published);
     }
 
 private:
@@ -109,7 +112,7 @@ private:
 
     CutPlanes planes_;
     std::vector<Leaf> leaves_;
-    double slope_;
+    QuadraticRule rule_;
     bool isotropic_;
 };
 

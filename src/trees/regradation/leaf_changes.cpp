@@ -2,7 +2,7 @@
 
 namespace controlspace {
 
-void LeafChanges::begin(std::size_t leaves) {
+void LeafChanges::begin(std::size_t leaves, std::size_t) {
     cut_.begin(leaves);
     cuts_.clear();
     lowered_.clear();
@@ -14,10 +14,6 @@ void LeafChanges::cut(const Box& box, LeafIndex leaf, double held) {
     if (!cut_.is_old(leaf)) return;
     cut_.enter(leaf);
     cuts_.push_back({box, held});
-}
-
-void LeafChanges::lower(const LeafPlace& place) {
-    if (cut_.is_old(place.leaf)) lowered_.push_back({place.leaf, place.box});
 }
 
 void LeafChanges::save(StateWriter& state) const {
@@ -40,7 +36,7 @@ void LeafChanges::save(StateWriter& state) const {
     state("changes.lowered_boxes", boxes);
 }
 
-void LeafChanges::load(const StateReader& state, std::size_t leaves) {
+void LeafChanges::load(const StateReader& state, std::size_t leaves, std::size_t) {
     CutLeaves::exchange(cut_, state);
     std::vector<Box> boxes;
     std::vector<double> held;

@@ -16,21 +16,28 @@ namespace controlspace {
 /// the gradation of that alone.
 class LeafChanges {
 public:
-    void begin(std::size_t leaves);
-    /// The leaf `box`, whose field is `held`, is going to be cut.
-    void cut(const Box& box, LeafIndex leaf, double held);
-    /// The leaf has been lowered.
-    void lower(const LeafPlace& place);
+    void begin(std::size_t leaves, std::size_t nodes);
+    /// The leaf is going to be cut; has been cut; has been lowered.
+    template <class Storage>
+    void before_split(const Storage& storage, const Subdivision& subdivision, LeafIndex leaf) {
+        cut(subdivision.box, leaf, storage.metrics()[leaf].xx);
+    }
+    template <class Storage>
+    static void after_split(const Storage&, const Subdivision&, LeafIndex, LeafIndex) {}
+    template <class Storage>
+    void lower(const Storage&, const LeafPlace& place) {
+        if (cut_.is_old(place.leaf)) lowered_.push_back({place.leaf, place.box});
+    }
     /// How many of so many leaves are concerned.
     std::size_t count(std::size_t leaves) const { return lowered_.size() + cut_.made(leaves); }
 
     void save(StateWriter& state) const;
     /// What was saved of a tree of so many leaves.
-    void load(const StateReader& state, std::size_t leaves);
+    void load(const StateReader& state, std::size_t leaves, std::size_t nodes);
 
     /// See Regradation; `past` is the gradation before.
-    template <class Node>
-    GradationReport regrade(const Topology<Node>& tree, NodeMetrics& metrics,
+    template <class Node, class Storage>
+    GradationReport regrade(const Topology<Node>& tree, Storage& storage,
                             const PastGradation& past) const;
 
 private:
@@ -44,6 +51,9 @@ private:
     };
     template <class Node>
     class Nodes;
+
+    // The leaf `box`, whose field is `held`, is going to be cut.
+    void cut(const Box& box, LeafIndex leaf, double held);
 
     CutLeaves cut_;
     std::vector<Cut> cuts_;  // the same, with what they were
@@ -84,10 +94,10 @@ private:
     Neighbourhood neighbourhood_;
 };
 
-template <class Node>
-GradationReport LeafChanges::regrade(const Topology<Node>& tree, NodeMetrics& metrics,
+template <class Node, class Storage>
+GradationReport LeafChanges::regrade(const Topology<Node>& tree, Storage& storage,
                                      const PastGradation& past) const {
-    Nodes<Node> nodes(tree, metrics, neighbourhood_of(past.options));
+    Nodes<Node> nodes(tree, storage.metrics(), neighbourhood_of(past.options));
     Regradation regradation(nodes, past.options.ratio);
     std::vector<Leaf> doubtful;
     for (const Cut& cut : cuts_) {

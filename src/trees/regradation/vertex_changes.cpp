@@ -19,7 +19,7 @@ void VertexChanges::cut(LeafIndex leaf, const Corners& corners) {
     cut_corners_.push_back(corners);
 }
 
-std::size_t VertexChanges::count() {
+std::size_t VertexChanges::count(std::size_t) {
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     return touched_.size();

@@ -19,13 +19,45 @@ namespace controlspace {
 class VertexChanges {
 public:
     void begin(std::size_t leaves, std::size_t vertices);
-    /// The leaf with these corners is going to be cut.
-    void cut(LeafIndex leaf, const Corners& corners);
-    /// The vertex has been lowered, or been given new neighbours.
-    void touch(NodeIndex vertex) { touched_.push_back(vertex); }
+    /// The leaf is going to be cut; has been cut; has been lowered.
+    template <class Storage>
+    void before_split(const Storage& storage, const Subdivision&, LeafIndex leaf) {
+        cut(leaf, storage.nodes_of(leaf));
+    }
+    template <class Storage>
+    void after_split(const Storage& storage, const Subdivision& subdivision, LeafIndex leaf,
+                     LeafIndex first_new) {
+        touch(storage.nodes_of(leaf));
+        for (int c = 1; c < subdivision.children(); ++c) touch(storage.nodes_of(first_new++));
+    }
+    template <class Storage>
+    void lower(const Storage& storage, const LeafPlace& place) {
+        touch(storage.nodes_of(place.leaf));
+    }
     /// How many vertices are concerned.
-    std::size_t count();
+    std::size_t count(std::size_t leaves);
 
+    void save(StateWriter& state) const { exchange(*this, state); }
+    void load(const StateReader& state, std::size_t, std::size_t vertices) {
+        exchange(*this, state);
+        require_below(state, "changes.cut_corners", cut_corners_, vertices);
+        require_below(state, "changes.touched", touched_, vertices);
+    }
+
+    /// See Regradation; `past` is the gradation before. To be called after `count`.
+    template <class Node, class Storage>
+    GradationReport regrade(const Topology<Node>& tree, Storage& storage,
+                            const PastGradation& past);
+
+private:
+    template <class Node>
+    class Nodes;
+
+    void cut(LeafIndex leaf, const Corners& corners);
+    // They have been lowered, or been given new neighbours.
+    void touch(const Corners& vertices) {
+        touched_.insert(touched_.end(), vertices.begin(), vertices.end());
+    }
     template <class Self, class State>
     static void exchange(Self& self, State& state) {
         CutLeaves::exchange(self.cut_, state);
@@ -33,21 +65,6 @@ public:
         state("changes.cut_corners", self.cut_corners_);
         state("changes.touched", self.touched_);
     }
-    /// Whether what was loaded names vertices below this number only.
-    void require_sound(const StateReader& state, std::size_t vertices) const {
-        require_below(state, "changes.cut_corners", cut_corners_, vertices);
-        require_below(state, "changes.touched", touched_, vertices);
-    }
-
-    /// See Regradation; `past` is the gradation before. To be called after `count`.
-    template <class Node>
-    GradationReport regrade(const Topology<Node>& tree, std::span<const Corners> corners,
-                            std::span<const Point> positions, NodeMetrics& metrics,
-                            const PastGradation& past);
-
-private:
-    template <class Node>
-    class Nodes;
 
     CutLeaves cut_;
     std::size_t vertices_ = 0;
@@ -97,12 +114,12 @@ private:
     Neighbourhood neighbourhood_;
 };
 
-template <class Node>
-GradationReport VertexChanges::regrade(const Topology<Node>& tree, std::span<const Corners> corners,
-                                       std::span<const Point> positions, NodeMetrics& metrics,
+template <class Node, class Storage>
+GradationReport VertexChanges::regrade(const Topology<Node>& tree, Storage& storage,
                                        const PastGradation& past) {
     const Neighbourhood neighbourhood = neighbourhood_of(past.options);
-    Nodes<Node> nodes(tree, corners, positions, metrics, neighbourhood);
+    Nodes<Node> nodes(tree, storage.corners(), storage.positions(), storage.metrics(),
+                      neighbourhood);
     Regradation regradation(nodes, past.options.ratio);
     std::vector<NodeIndex> doubtful;
     const auto doubt = [&](NodeIndex held, NodeIndex by) {

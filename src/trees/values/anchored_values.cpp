@@ -6,6 +6,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
+#include "trees/adaptation/in_parallel.h"
 
 namespace controlspace {
 
@@ -63,8 +64,8 @@ void AnchoredValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafI
     anchors_.repeat(leaf, static_cast<std::size_t>(subdivision.children() - 1));
 }
 
-void AnchoredValues::lower(const LeafPlace& place, const PointSource& source) {
-    anchors_.add(place.leaf, sources_.add(source));
+void AnchoredValues::add(LeafIndex leaf, const PointSource& source) {
+    anchors_.add(leaf, sources_.add(source));
 }
 
 void AnchoredValues::take_over(const AdaptationGoal& goal) {
@@ -74,8 +75,49 @@ void AnchoredValues::take_over(const AdaptationGoal& goal) {
     for (const PointSource& source : goal.sources) sources_.add(source);
 }
 
+namespace {
+
+Point nearest_in(const Box& box, const Point& x) { return x.cwiseMax(box.low).cwiseMin(box.high); }
+
+}  // namespace
+
+bool AnchoredValues::is_covered(SourceIndex source, std::span<const SourceIndex> others,
+                                const Box& box, int halvings) const {
+    const Metric& own = sources_.metric(source);
+    const Point& q = sources_.position(source);
+    const auto most = [&](SourceIndex s) {
+        double factor = 1;
+        for (int i = 0; i < 8; ++i) {
+            factor = std::max(factor, sources_.factor(s, ratio_, corner(box, i)));
+        }
+        return factor;
+    };
+    double least = 0;  // of the factor, in the box
+    if (is_isotropic(own)) {
+        least = sources_.factor(source, ratio_, nearest_in(box, q));
+    } else {
+        double reach = 0;
+        for (int i = 0; i < 8; ++i) {
+            reach = std::max(reach, metric_length(own, corner(box, i) - box.centre()));
+        }
+        const double away = metric_length(own, box.centre() - q) - reach;
+        least = 1 + (ratio_ - 1) * std::max(0.0, away);
+    }
+    const Metric shortest = least * own;
+    if (is_within(largest_, 1, shortest)) return true;
+    for (const SourceIndex s : others) {
+        if (is_within(most(s) * sources_.metric(s), 1, shortest)) return true;
+    }
+    if (halvings == 0) return false;
+    const Subdivision parts = octants(box);
+    for (int c = 0; c < parts.children(); ++c) {
+        if (!is_covered(source, others, parts.child(c), halvings - 1)) return false;
+    }
+    return true;
+}
+
 void AnchoredValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& field,
-                         std::size_t places) {
+                         std::size_t places, bool beside_old) {
     const double well_within = 0.25 * field.target();
     const double negligible = negligible_shortening(field.target());
     const double factor = factor_of(well_within);
@@ -104,8 +146,25 @@ void AnchoredValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& f
             }
         }
     });
+    std::vector<std::vector<SourceIndex>> kept(beside_old ? leaves.size() : 0);
+    in_parallel(kept.size(), [&](std::size_t i) {
+        const auto fitted = std::span<const SourceIndex>(chosen).subspan(i * most, count[i]);
+        constexpr int halvings = 2;
+        for (const SourceIndex s : anchors_.of(leaves[i].leaf)) {
+            if (std::ranges::find(fitted, s) == fitted.end() &&
+                !is_covered(s, fitted, leaves[i].box, halvings)) {
+                kept[i].push_back(s);
+            }
+        }
+    });
     for (std::size_t i = 0; i < leaves.size(); ++i) {
-        anchors_.set(leaves[i].leaf, std::span(chosen).subspan(i * most, count[i]));
+        const auto fitted = std::span<const SourceIndex>(chosen).subspan(i * most, count[i]);
+        if (kept.empty() || kept[i].empty()) {
+            anchors_.set(leaves[i].leaf, fitted);
+        } else {
+            kept[i].insert(kept[i].end(), fitted.begin(), fitted.end());
+            anchors_.set(leaves[i].leaf, kept[i]);
+        }
     }
 }
 

@@ -6,12 +6,10 @@
 #include <vector>
 
 #include "controlspace/metric/intersection.h"
-#include "controlspace/space/control_nodes.h"
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/space_options.h"
 #include "space/state.h"
-#include "trees/adaptation/adapt_tree.h"
-#include "trees/topology/leaf_graph.h"
+#include "trees/adaptation/leaf_judge.h"
 #include "trees/topology/topology.h"
 #include "trees/values/anchors.h"
 #include "trees/values/source_table.h"
@@ -27,11 +25,9 @@ namespace controlspace {
 /// and evaluated with the cones.
 class AnchoredValues {
 public:
-    static constexpr bool exact_at_nodes = true;
     static constexpr int order = 0;
     static constexpr CutBy cut_by = CutBy::longest_edge;
     static constexpr bool follows_neighbours = false;
-    static constexpr bool grows_by_leaf = false;
 
     explicit AnchoredValues(const SpaceOptions& options);
 
@@ -46,36 +42,23 @@ public:
         return continuous_ ? intersection(m, sample_at(*continuous_, x)) : m;
     }
     void prefetch(LeafIndex leaf) const { anchors_.prefetch(leaf); }
-    template <class Node>
-    Metric asked(const Topology<Node>& tree, const Point& place) const {
-        return value(tree, place);
-    }
-
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex);
     /// The source becomes an anchor of its leaf.
-    void lower(const LeafPlace& place, const PointSource& source);
-
-    /// Leaf centres with the field there.
-    template <class Node>
-    ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
-        LeafGraph leaves = leaf_graph(tree, neighbourhood);
-        std::vector<Metric> metrics;
-        metrics.reserve(leaves.order.size());
-        for (const Point& x : leaves.graph.positions) metrics.push_back(value(tree, x));
-        return {std::move(leaves.graph), std::move(metrics)};
-    }
+    void add(LeafIndex leaf, const PointSource& source);
 
     const SourceTable& sources() const { return sources_; }
+    double ratio() const { return ratio_; }
     const std::shared_ptr<const ControlSpace>& continuous() const { return continuous_; }
     /// Anchors are from now on taken from the sources of `goal`, with its ratio.
     void take_over(const AdaptationGoal& goal);
-    /// Anchors for these leaves, out of the sources of `field`'s goal.
+    /// Anchors for these leaves, out of the sources of `field`'s goal; if it will not be proved,
+    /// beside those that may shorten the field somewhere in the leaf: so it never gets longer.
     template <class Node>
     void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field,
              bool proved) {
         // Of tensors hundreds may each cut a little: what governs the centre has to do.
         fits_tensors_loosely_ = !proved;
-        fit(leaves, field, sources_.all_isotropic() || proved ? LeafPlaces::all : 1);
+        fit(leaves, field, sources_.all_isotropic() || proved ? LeafPlaces::all : 1, !proved);
     }
     /// Anchors for these leaves that keep within the target everywhere in them, of an isotropic
     /// field; `is_kept` tells where so many are not enough.
@@ -105,7 +88,12 @@ private:
     static constexpr std::size_t most = ConeCover::room;
 
     // At so many places, the centre first.
-    void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field, std::size_t places);
+    void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field, std::size_t places,
+             bool beside_old);
+    // Whether the cone of a source is nowhere in the box shorter than those of the others, or than
+    // the largest metric, in any direction; as far as can be told from parts of the box.
+    bool is_covered(SourceIndex source, std::span<const SourceIndex> others, const Box& box,
+                    int halvings) const;
     void load(std::size_t leaves, const StateReader& state);
     Metric cones_at(const Point& x, std::span<const SourceIndex> anchors) const;
 

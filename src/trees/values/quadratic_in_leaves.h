@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "controlspace/metric/blend.h"
 #include "trees/topology/parts_across.h"
 #include "trees/values/triquadratic.h"
 
@@ -22,6 +23,7 @@ namespace controlspace {
 ///   length(leaf)           of an isotropic metric
 ///   prefetch_metric(leaf)
 ///   slope()                of the cones: g_r - 1
+///   form()                 QuadraticForm
 template <class Node, class Values>
 class QuadraticInLeaves {
 public:
@@ -116,6 +118,7 @@ private:
     Metric value(LeafIndex leaf, const Box& box, const Point& x, const PartsAcross& across) const {
         const Vector v = x - box.centre();
         const Vector t = 2 * v.cwiseQuotient(box.edges());
+        if (values_.form() == QuadraticForm::published) return published(leaf, t, across);
         if (values_.all_isotropic()) {
             std::array<double, 6> lengths;
             for (std::size_t i = 0; i < 6; ++i) lengths[i] = values_.length(across[i].index());
@@ -126,6 +129,12 @@ private:
         for (std::size_t i = 0; i < 6; ++i) metrics[i] = values_.metric(across[i].index());
         const Metric own = values_.metric(leaf);
         return triquadratic(own, metrics, t, 1 + values_.slope() * metric_length(own, v));
+    }
+
+    Metric published(LeafIndex leaf, const Vector& t, const PartsAcross& across) const {
+        return blend_lengths(published_triquadratic_weights(t), [&](std::size_t i) -> Metric {
+            return values_.metric(i < 6 ? across[i].index() : leaf);
+        });
     }
 
     const Topology<Node>& tree_;

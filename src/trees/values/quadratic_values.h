@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -15,17 +17,20 @@
 namespace controlspace {
 
 /// One metric a leaf, interpolated with those of the neighbours when asked (K_Li). Nowhere coarser
-/// than the cone of the leaf's own metric at its centre, with the ratio of the gradation to come:
-/// on the paper's sphere that leaves its Tables 1 and 4 as they are, and divides δ_S by up to 20.
+/// than the cone of the leaf's own metric at its centre, with the ratio of the last gradation, or
+/// of the one to come: on the paper's sphere that leaves its Tables 1 and 4 as they are, and
+/// divides δ_S by up to 20.
 class QuadraticValues : public LeafValues {
 public:
     static constexpr int order = 2;
     static constexpr CutBy cut_by = CutBy::faces;
     static constexpr bool follows_neighbours = true;
-    static constexpr bool grows_by_leaf = false;
 
     explicit QuadraticValues(const SpaceOptions& options)
-        : LeafValues(options), boxes_(1, options.domain), slope_(options.ratio - 1) {}
+        : LeafValues(options),
+          boxes_(1, options.domain),
+          slope_(options.ratio - 1),
+          form_(options.quadratic_form) {}
 
     template <class Node>
     Metric value(const Topology<Node>& tree, const Point& x) const {
@@ -47,10 +52,11 @@ public:
 
     template <class Node>
     std::unique_ptr<ControlSpace> freeze(const Topology<Node>& tree, Precision precision) const {
-        return freeze_quadratic(tree, metrics_.field(), slope_, precision);
+        return freeze_quadratic(tree, metrics_.field(), {slope_, form_}, precision);
     }
 
     double ceiling(LeafIndex leaf, const Point& x) const {
+        if (form_ == QuadraticForm::published) return std::numeric_limits<double>::infinity();
         return LeafValues::ceiling(leaf, x) + slope_ * boxes_[leaf].half_diagonal();
     }
 
@@ -62,36 +68,24 @@ public:
         if (!across_.empty()) across_ = {};
     }
 
-    void lower(const LeafPlace& place, const PointSource& source) {
-        LeafValues::lower(place, source);
-        isotropic_ = isotropic_ && is_isotropic(source.metric);
+    /// All metrics have been set, or some intersected with one.
+    void refresh() {
+        isotropic_ = std::ranges::all_of(metrics_.field(), is_isotropic) &&
+                     std::ranges::all_of(metrics_.asked(), is_isotropic);
     }
+    void refresh(const Metric& metric) { isotropic_ = isotropic_ && is_isotropic(metric); }
+    void set_ratio(double ratio) { slope_ = ratio - 1; }
 
-    template <class Node>
-    void assign(const Topology<Node>& tree, std::span<const Metric> metrics) {
-        LeafValues::assign(tree, metrics);
-        look_at_metrics();
+    void save(StateWriter& state) const {
+        LeafValues::save(state);
+        state("quadratic.slope", slope_);
     }
-
-    template <class Node>
-    GradationReport grade(const Topology<Node>& tree, const GradationOptions& options) {
-        const GradationReport report = LeafValues::grade(tree, options);
-        look_at_metrics();
-        remember_parts(tree);
-        return report;
-    }
-
-    template <class Node>
-    void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field,
-             bool) {
-        fit_to_centres(leaves, field);
-        look_at_metrics();
-    }
-
     template <class Node>
     void load(const Topology<Node>& tree, const StateReader& state) {
         LeafValues::load(tree, state);
-        look_at_metrics();
+        state("quadratic.slope", slope_);
+        state.require(std::isfinite(slope_) && slope_ >= 0, "quadratic.slope", "is no slope");
+        refresh();
         tbb::parallel_invoke([&] { boxes_.resize(tree.leaves()); },
                              [&] { across_.resize(tree.leaves()); });
         for_each_parts_across(tree, [&](LeafIndex leaf, const Box& box, const PartsAcross& parts) {
@@ -134,6 +128,7 @@ private:
         double length(LeafIndex leaf) const { return metrics[leaf].xx; }
         bool all_isotropic() const { return own.isotropic_; }
         double slope() const { return own.slope_; }
+        QuadraticForm form() const { return own.form_; }
         PartsAcross parts_across(LeafIndex leaf, const Point& x) const {
             return own.across_.empty() ? find_across(leaf, x) : own.across_[leaf];
         }
@@ -170,14 +165,11 @@ private:
         return m;
     }
 
-    void look_at_metrics() {
-        isotropic_ = std::ranges::all_of(metrics_.field(), is_isotropic) &&
-                     std::ranges::all_of(metrics_.asked(), is_isotropic);
-    }
     std::vector<Box> boxes_;           // of the leaves
     std::vector<PartsAcross> across_;  // of the leaves; empty where they are not known
     double slope_;                     // g_r - 1
-    bool isotropic_ = true;            // all metrics are; false where that is not known
+    QuadraticForm form_;
+    bool isotropic_ = true;  // all metrics are; false where that is not known
 };
 
 }  // namespace controlspace

@@ -63,6 +63,37 @@ Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, cons
     return moved(own, (largest_growth - 1) / largest_departure(own, left), left);
 }
 
+// With k in [-1, 1]: the right value, with one corner's own face in place of the opposite one, plus
+// Tri((k + 1) / 2) - Tri(k), Tri the trilinear interpolant of the corners.
+std::array<double, 7> published_triquadratic_weights(const Vector& k) {
+    std::array<double, 7> weights = triquadratic_weights(k);
+    const auto add_face = [&](std::size_t face, double weight) {
+        weights[face] += 0.5 * weight;
+        weights[6] += 0.5 * weight;
+    };
+    // The corner (x-, y+, z-) is the mean of the faces z-, x- and y-.
+    constexpr std::size_t wrong = 2, low_y = 2, high_y = 3;
+    const double lagrange =
+        0.125 * k.x() * (k.x() - 1) * k.y() * (k.y() + 1) * k.z() * (k.z() - 1);
+    add_face(low_y, lagrange / 3);
+    add_face(high_y, -lagrange / 3);
+    const Vector t = 0.5 * (k + Vector::Ones());
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+        double at_t = 1;
+        double at_k = 1;
+        for (Axis a = 0; a < 3; ++a) {
+            const double sign = (corner >> a & 1) != 0 ? 1 : -1;
+            at_t *= 0.5 * (1 + sign * t[a]);
+            at_k *= 0.5 * (1 + sign * k[a]);
+        }
+        for (std::size_t a = 0; a < 3; ++a) {
+            const std::size_t high = corner == wrong ? 0 : corner >> a & 1;
+            add_face(2 * a + high, (at_t - at_k) / 3);
+        }
+    }
+    return weights;
+}
+
 double limited_length(double own, double sum, const Vector& v, double slope) {
     const double departure = sum - own;
     const double share = admissible_share(own, departure);

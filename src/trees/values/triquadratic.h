@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "controlspace/metric/metric.h"
+#include "controlspace/space/space_options.h"
 
 namespace controlspace {
 
@@ -46,6 +47,9 @@ inline std::array<double, 7> triquadratic_weights(const Vector& t) {
     weights[6] = 1 - faces;
     return weights;
 }
+
+/// The same for QuadraticForm::published.
+std::array<double, 7> published_triquadratic_weights(const Vector& t);
 
 /// `sum` brought to within what is allowed.
 double limited_length(double own, double sum, const Vector& v, double slope);

@@ -28,8 +28,9 @@ NodeIndex VertexValues::vertex_at(const Point& x, const Box& box, const Corners&
     if (node == next) {
         make_room(positions_, 1);
         positions_.push_back(x);
-        metrics_.append(asked,
-                        keeps_asked() ? interpolate(corners, weights, metrics_.field()) : asked);
+        metrics_.append(asked, metrics_.keeps_asked()
+                                   ? interpolate(corners, weights, metrics_.field())
+                                   : asked);
     } else {
         metrics_.lower(node, asked);
     }
@@ -40,7 +41,6 @@ void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafInd
     // The children's corners stand on a lattice of up to 3 x 3 x 3 places: per axis the low face,
     // the cut and the high face. Those that are not corners of the leaf are looked up, once each.
     const Corners old = corners_[leaf];
-    if (keeps_asked()) changes_.cut(leaf, old);
     const Box& box = subdivision.box;
     constexpr NodeIndex unknown = ~NodeIndex{0}, wanted = unknown - 1;
     std::array<NodeIndex, 27> lattice;
@@ -100,39 +100,12 @@ void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafInd
             corners_[child][i] = lattice[corners_at[static_cast<std::size_t>(c)][i]];
         }
     }
-    if (!keeps_asked()) return;
-    for (const NodeIndex node : lattice) {
-        if (node != unknown) changes_.touch(node);
-    }
-}
-
-void VertexValues::lower(const LeafPlace& place, const PointSource& source) {
-    for (const NodeIndex node : corners_[place.leaf]) {
-        metrics_.lower(node, source.metric);
-        if (keeps_asked()) changes_.touch(node);
-    }
-}
-
-void VertexValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& field) {
-    std::vector<NodeIndex> nodes;
-    nodes.reserve(8 * leaves.size());
-    for (const AdaptedLeaf& l : leaves) {
-        nodes.insert(nodes.end(), corners_[l.leaf].begin(), corners_[l.leaf].end());
-    }
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    in_parallel(nodes.size(), [&, memory = ConeField::Memory()](std::size_t i) mutable {
-        Metric m;
-        field.evaluate_here({&positions_[nodes[i]], 1}, {&m, 1}, memory);
-        metrics_.set(nodes[i], m);
-    });
 }
 
 void VertexValues::complete(const StateReader& state, std::size_t leaves) {
     state.require(corners_.size() == leaves, "vertices.of_leaves", "has another number of leaves");
     require_below(state, "vertices.of_leaves", corners_, positions_.size());
     metrics_.require_sound(state, positions_.size());
-    changes_.require_sound(state, positions_.size());
     places_ = PlaceIndex();
 }
 

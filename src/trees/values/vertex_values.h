@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "controlspace/metric/blend.h"
-#include "controlspace/space/control_nodes.h"
+#include "controlspace/space/control_space.h"
 #include "controlspace/space/space_options.h"
 #include "space/state.h"
-#include "trees/adaptation/adapt_tree.h"
+#include "trees/adaptation/leaf_judge.h"
 #include "trees/packing/frozen_tree.h"
 #include "trees/regradation/vertex_changes.h"
-#include "trees/topology/adjacency.h"
+#include "trees/topology/corners.h"
 #include "trees/topology/place_index.h"
 #include "trees/topology/topology.h"
 #include "trees/values/node_metrics.h"
@@ -29,11 +29,10 @@ namespace controlspace {
 /// vertex count, and never makes it larger.
 class VertexValues {
 public:
-    static constexpr bool exact_at_nodes = true;
     static constexpr int order = 1;
     static constexpr CutBy cut_by = CutBy::edges;
     static constexpr bool follows_neighbours = false;
-    static constexpr bool grows_by_leaf = false;
+    using Changes = VertexChanges;
 
     explicit VertexValues(const SpaceOptions& options);
 
@@ -44,10 +43,9 @@ public:
     template <class Node>
     void values_in(const Topology<Node>&, std::span<const LeafIndex> leaves,
                    std::span<const Point> x, std::span<Metric> out) const {
-        trilinear_in_leaves(*this, leaves, x, out);
+        trilinear_in_leaves(Field{*this}, leaves, x, out);
     }
     void prefetch(LeafIndex leaf) const { __builtin_prefetch(&corners_[leaf]); }
-    const Corners& corners(LeafIndex leaf) const { return corners_[leaf]; }
     // Inlined, since GCC 12 leaves out calls of functions that do nothing but prefetch.
     [[gnu::always_inline]] void prefetch_box(LeafIndex leaf) const {
         __builtin_prefetch(&positions_[corners_[leaf].front()]);
@@ -56,7 +54,6 @@ public:
     Box box(LeafIndex leaf) const {
         return {positions_[corners_[leaf].front()], positions_[corners_[leaf].back()]};
     }
-    std::span<const Metric> metrics() const { return metrics_.field(); }
     template <class Node>
     Metric asked(const Topology<Node>& tree, const Point& place) const {
         return interpolate(tree.find(place), place, metrics_.asked());
@@ -68,59 +65,16 @@ public:
     }
 
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new);
-    void lower(const LeafPlace& place, const PointSource& source);
-
-    template <class Node>
-    ControlNodes control_nodes(const Topology<Node>&, Neighbourhood neighbourhood) const {
-        return {vertex_graph(corners_, positions_, neighbourhood),
-                {metrics_.field().begin(), metrics_.field().end()}};
-    }
-    template <class Node>
-    std::size_t control_nodes_of(const Topology<Node>&) const {
-        return metrics_.size();
-    }
-    template <class Node>
-    void assign(const Topology<Node>&, std::span<const Metric> metrics) {
-        metrics_.forget_asked();
-        for (std::size_t i = 0; i < metrics.size(); ++i) metrics_.set(i, metrics[i]);
-    }
+    NodeMetrics& metrics() { return metrics_; }
+    const NodeMetrics& metrics() const { return metrics_; }
+    const Corners& nodes_of(LeafIndex leaf) const { return corners_[leaf]; }
+    std::span<const Corners> corners() const { return corners_; }
+    const std::vector<Point>& positions() const { return positions_; }
 
     template <class Node>
     std::unique_ptr<ControlSpace> freeze(const Topology<Node>& tree, Precision precision) const {
         return freeze_vertices(tree, corners_, metrics_.field(), precision);
     }
-
-    template <class Node>
-    GradationReport grade(const Topology<Node>&, const GradationOptions& options) {
-        metrics_.forget_asked();
-        return controlspace::grade(vertex_graph(corners_, positions_, neighbourhood_of(options)),
-                                   metrics_.field(), options);
-    }
-
-    bool keeps_asked() const { return metrics_.keeps_asked(); }
-    std::vector<Metric> release_asked() { return metrics_.release_asked(); }
-    void keep_asked(std::vector<Metric> asked) {
-        metrics_.keep_asked(std::move(asked));
-        changes_.begin(corners_.size(), positions_.size());
-    }
-    bool is_regradable() {
-        return metrics_.asks_isotropic() && !are_many(changes_.count(), positions_.size());
-    }
-    template <class Node>
-    GradationReport regrade(const Topology<Node>& tree, const PastGradation& past) {
-        const GradationReport report = changes_.regrade(tree, corners_, positions_, metrics_, past);
-        changes_.begin(corners_.size(), positions_.size());
-        return report;
-    }
-
-    template <class Node>
-    void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field,
-             bool) {
-        fit(leaves, field);
-    }
-
-    static constexpr bool is_fitted(LeafIndex) { return false; }
-    static constexpr bool learn(LeafIndex, const Point&, const GoalField&) { return false; }
 
     void save(StateWriter& state) const { exchange(*this, state); }
     template <class Node>
@@ -133,6 +87,16 @@ public:
     void shrink_to_fit();
 
 private:
+    /// What trilinear_in_leaves reads.
+    struct Field {
+        const VertexValues& own;
+
+        [[gnu::always_inline]] void prefetch_box(LeafIndex leaf) const { own.prefetch_box(leaf); }
+        Box box(LeafIndex leaf) const { return own.box(leaf); }
+        const Corners& corners(LeafIndex leaf) const { return own.corners_[leaf]; }
+        std::span<const Metric> metrics() const { return own.metrics_.field(); }
+    };
+
     static Metric interpolate(const Corners& corners, const std::array<double, 8>& weights,
                               std::span<const Metric> metrics) {
         return blend_lengths(weights,
@@ -144,14 +108,12 @@ private:
         const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
         return interpolate(corners_[leaf], corner_weights(box, x), metrics);
     }
-    void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field);
     NodeIndex vertex_at(const Point& x, const Box& box, const Corners& corners);
     template <class Self, class State>
     static void exchange(Self& self, State& state) {
         NodeMetrics::exchange(self.metrics_, state);
         state("vertices.of_leaves", self.corners_);
         state("vertices.positions", self.positions_);
-        VertexChanges::exchange(self.changes_, state);
     }
     // Checks what was loaded. The index of places waits for the first cut, which needs it.
     void complete(const StateReader& state, std::size_t leaves);
@@ -160,7 +122,6 @@ private:
     NodeMetrics metrics_;
     std::vector<Point> positions_;
     PlaceIndex places_;
-    VertexChanges changes_;
 };
 
 }  // namespace controlspace

@@ -70,7 +70,7 @@ struct CatalogueEntry {
 /// The entry that is named `id`, or once was; null where there is none.
 const CatalogueEntry* find_entry(std::span<const CatalogueEntry> entries, std::string_view id);
 
-/// The six trees of the paper.
+/// Trees that hold metrics: the six of the paper, and the one that it leaves out.
 std::span<const CatalogueEntry> tree_catalogue();
 
 /// Trees whose leaves keep sources in place of metrics.

@@ -8,6 +8,14 @@
 
 namespace controlspace {
 
+/// How trees with quadratic leaves (K_Li, K_oLi) interpolate.
+enum class QuadraticForm {
+    corrected,  ///< paper §3.1.2 with its coordinates put right, kept within the leaf's cone
+    /// As the published program did, for comparison: the trilinear part is evaluated at t in [0,1]
+    /// in place of 2t - 1, one corner takes the wrong face, and nothing bounds the result.
+    published,
+};
+
 /// What a structure is made with.
 struct SpaceOptions {
     Box domain;
@@ -20,7 +28,10 @@ struct SpaceOptions {
     double voxel = 0;          ///< longest edge of a grid's finest voxels; 0: l_min * finest_length
     double voxel_factor = 1;   ///< grids in levels: longest edge of a voxel, in the metric it holds
     double prune_delta = 0;    ///< δ up to which voxels of a field that is set join; 0: none do
-    double ratio = 1.25;       ///< g_r of the gradation to come, for structures that keep sources
+    /// g_r of the gradation to come, for structures that keep sources, and for those with quadratic
+    /// leaves, whose interpolation it bounds until they are graded.
+    double ratio = 1.25;
+    QuadraticForm quadratic_form = QuadraticForm::corrected;
     /// Sources may come after gradation. What they ask for is then kept beside the graded field:
     /// insertion goes by it, and grading again gives the field of all sources at once, to the bit.
     /// Of isotropic sources, under the cone law and by the queue, that costs in proportion to what

@@ -1,0 +1,189 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "controlspace/error.h"
+#include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/space_options.h"
+#include "trees/adaptation/adapt_tree.h"
+#include "trees/insertion/source_cuts.h"
+#include "trees/storage.h"
+#include "trees/topology/adjacency.h"
+#include "trees/topology/sample_leaves.h"
+#include "trees/topology/topology.h"
+#include "trees/topology/topology_state.h"
+
+namespace controlspace {
+
+/// A tree over a box whose leaves are cut, for sources or to follow a field: what MetricTree and
+/// SourceTree share. `Node` is how a box is cut, `Storage` what leaves hold (storage.h).
+template <class Node, class Storage>
+class GrowingTree {
+public:
+    void sample(std::span<const Point> x, std::span<Metric> out) const {
+        sample_leaves(topology_, storage_, x, out);
+    }
+    const Box& domain() const { return topology_.domain(); }
+    Box cell_at(const Point& x) const { return topology_.locate(x).box; }
+    Footprint footprint() const {
+        Footprint footprint;
+        topology_.describe(footprint);
+        storage_.describe(footprint);
+        return footprint;
+    }
+
+    bool is_finished() const { return is_finished_; }
+
+protected:
+    /// With `balanced`, no leaf ever has a neighbour across a face that is more than one level
+    /// coarser (octrees).
+    explicit GrowingTree(const SpaceOptions& options, bool balanced)
+        : options_(options), balanced_(balanced), topology_(options.domain), storage_(options) {
+        check_storage<Node, Storage>();
+    }
+
+    SourceCuts<Node> cuts() const { return SourceCuts<Node>(options_); }
+
+    /// Empties the tree and cuts it until it follows the field; `begin` may prepare the storage.
+    template <class Begin>
+    AdaptationReport adapt(const AdaptationGoal& goal, Begin&& begin) {
+        const GoalField field(goal, domain());
+        topology_ = Topology<Node>(domain());
+        storage_ = Storage(options_);
+        begin();
+        AdaptationReport report;
+        bool too_deep = false;
+        bool too_short = false;
+        TreeAdaptation adaptation(topology_, storage_, field, goal);
+        report.reached = adaptation.run(true, [&](const Box& box, const auto& along, auto& cut) {
+            if (is_negligible(box)) {
+                too_short = true;
+                return false;
+            }
+            const bool done = split_across(box, along, cut);
+            too_deep = too_deep || !done;
+            return done;
+        });
+        report.met = report.reached <= goal.target;
+        if (too_deep) {
+            report.shortfall =
+                fmt::format("leaves of level {} are not cut: raise target_delta or the depth",
+                            cuts().max_depth());
+        } else if (too_short) {
+            report.shortfall =
+                "the field is steep: leaves far shorter than an element are not cut: raise "
+                "target_delta";
+        }
+        return report;
+    }
+
+    /// Cuts the leaf that holds the source as far as the source asks for it. Returns its place.
+    LeafPlace cut_for(const PointSource& source, auto&&... watched) {
+        LeafPlace place = topology_.locate(source.position);
+        while (const auto cut = cuts().cut(place, source)) {
+            split(place, *cut, nullptr, watched...);
+            place = topology_.locate_from(place, source.position);
+        }
+        return place;
+    }
+
+    /// Cuts the leaf with this box where something varies by `along` the axes, unless it is among
+    /// the smallest allowed.
+    bool split_across(const Box& box, const std::array<double, 3>& along,
+                      std::vector<LeafIndex>& cut) {
+        const LeafPlace place = topology_.locate(box.centre());
+        const Subdivision subdivision = Node::subdivision_across(place.box, along);
+        if (place.level >= cuts().max_depth() || !subdivision.is_proper()) return false;
+        split(place, subdivision, &cut);
+        return true;
+    }
+
+    /// Appends to `cut`, if given, the leaf and all neighbours that had to be split before it;
+    /// `watched` are told before and after (LeafChanges).
+    void split(const LeafPlace& place, const Subdivision& subdivision, std::vector<LeafIndex>* cut,
+               auto&&... watched) {
+        make_room_for(1);
+        if (balanced_) refine_coarser_neighbours(place, cut, watched...);
+        const auto first_new = static_cast<LeafIndex>(topology_.leaves());
+        topology_.split(place, subdivision);
+        topology_.fit_jumps_roughly();
+        (watched.before_split(storage_, subdivision, place.leaf), ...);
+        storage_.split(subdivision, place.leaf, first_new);
+        (watched.after_split(storage_, subdivision, place.leaf, first_new), ...);
+        if (cut != nullptr) cut->push_back(place.leaf);
+    }
+
+    /// Throws InputError where the tree is not to have so many inner nodes more.
+    void make_room_for(std::size_t cuts) {
+        if (topology_.is_full(cuts)) {
+            throw InputError("a tree holds 2^30 leaves at most: raise l_min or lower the depth");
+        }
+        const std::size_t leaves = topology_.leaves() + cuts * (Node::arity - 1);
+        if (leaves > next_look_) require_memory(leaves);
+    }
+
+    /// Stops a tree of so many leaves that outgrows the cap, long before the system stops the
+    /// program.
+    void require_memory(std::size_t leaves, Neighbourhood neighbourhood = Neighbourhood::faces) {
+        // Gradation copies the nodes and links them: over faces 145 bytes for a leaf, 290 for its
+        // vertices; with all neighbours up to 640.
+        const std::size_t gradation_bytes_per_leaf =
+            neighbourhood == Neighbourhood::all ? 700 : 300;
+        const std::size_t bytes = footprint().bytes_total() + leaves * gradation_bytes_per_leaf;
+        if (bytes > options_.max_bytes) {
+            constexpr double gib = 1024.0 * 1024 * 1024;
+            throw InputError(
+                fmt::format("the tree would take more than {:.3g} GiB, gradation included: raise "
+                            "tau (l_min) or target_delta, "
+                            "or max_memory",
+                            static_cast<double>(options_.max_bytes) / gib));
+        }
+        next_look_ = leaves + leaves / 16;
+    }
+
+    /// Gives back what only growing needs, and makes what only answers need.
+    void settle() {
+        topology_.shrink_to_fit();
+        topology_.fit_jumps();
+        storage_.shrink_to_fit();
+        if constexpr (requires { storage_.remember_parts(topology_); }) {
+            storage_.remember_parts(topology_);
+        }
+        is_finished_ = true;
+    }
+
+    SpaceOptions options_;
+    bool balanced_;
+    Topology<Node> topology_;
+    Storage storage_;
+    bool is_finished_ = false;  // nothing has grown since `settle`
+
+private:
+    // Whether no mesh could tell one end of the box from the other. Fields may be steep: what
+    // tensors make of each other depends on which is the smallest.
+    bool is_negligible(const Box& box) const {
+        constexpr double share_of_element = 1.0 / 16;
+        const Metric m = storage_.value(topology_, box.centre());
+        const auto lengths = metric_edge_lengths(m, box.edges());
+        return std::max({lengths[0], lengths[1], lengths[2]}) < share_of_element;
+    }
+
+    // Brings all face neighbours to the leaf's own level at least, so that it may be split.
+    void refine_coarser_neighbours(const LeafPlace& place, std::vector<LeafIndex>* cut,
+                                   auto&&... watched) {
+        for (int face = 0; face < 6; ++face) {
+            LeafPlace neighbour;
+            if (!locate_across(topology_, place.box, face, place.box.centre(), neighbour)) continue;
+            if (neighbour.level >= place.level) continue;
+            split(neighbour, Node::even_subdivision(neighbour.box), cut, watched...);
+        }
+    }
+
+    std::size_t next_look_ = 1024;  // number of leaves at which memory is looked at again
+};
+
+}  // namespace controlspace

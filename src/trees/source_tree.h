@@ -1,0 +1,121 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "controlspace/gradation/grade.h"
+#include "trees/growing_tree.h"
+#include "trees/insertion/published_bytes.h"
+#include "trees/topology/leaf_graph.h"
+#include "trees/values/anchored_values.h"
+
+namespace controlspace {
+
+/// A tree whose leaves keep sources (K_LA, K_oLA), as SharedBuilder wants it: a query evaluates the
+/// cones of the leaf's sources.
+template <class Node>
+class SourceTree : public GrowingTree<Node, AnchoredValues> {
+    using Base = GrowingTree<Node, AnchoredValues>;
+    using Base::options_, Base::storage_, Base::topology_, Base::is_finished_;
+
+public:
+    explicit SourceTree(const SpaceOptions& options) : Base(options, false) {}
+
+    InsertionReport insert(std::span<const PointSource> sources) {
+        is_finished_ = options_.takes_later_sources;
+        InsertionReport report;
+        for (const PointSource& source : sources) {
+            require_valid(source, report.sources++, Base::domain());
+            const Metric held = storage_.value(topology_, source.position);
+            if (!calls_for_change(source.metric, held, options_.tolerance)) continue;
+            storage_.add(Base::cut_for(source).leaf, source);
+            is_graded_ = false;
+            ++report.inserted;
+        }
+        if (!is_finished_ && sources.size() > topology_.leaves() / 16) finish();
+        return report;
+    }
+
+    /// Leaf centres with the field there.
+    ControlNodes control_nodes(Neighbourhood neighbourhood) const {
+        LeafGraph leaves = leaf_graph(topology_, neighbourhood);
+        std::vector<Metric> metrics;
+        metrics.reserve(leaves.order.size());
+        for (const Point& x : leaves.graph.positions) {
+            metrics.push_back(storage_.value(topology_, x));
+        }
+        return {std::move(leaves.graph), std::move(metrics)};
+    }
+
+    /// Looks up which sources govern the leaves; the law is the cone law whatever is asked, since
+    /// that is what a cone is. On the way leaves where three and more do are cut, down to l_min in
+    /// their own metric. The field gets nowhere longer, if all is isotropic: a ratio larger than
+    /// before changes nothing, and what may govern a place in a leaf stays its anchor. Without new
+    /// sources or a smaller ratio there is nothing to do.
+    GradationReport grade(const GradationOptions& options) {
+        require_valid(options);
+        constexpr double close = 0.02;  // non-conformity to the exact field
+        const std::vector<PointSource> sources = storage_.sources().all();
+        if (is_graded_ && options.ratio >= storage_.ratio())
+            return {.largest_ratio_left = ratio_left()};
+        const double ratio = std::min(options.ratio, storage_.ratio());
+        const AdaptationGoal goal{sources, storage_.continuous(), ratio, close};
+        const GoalField field(goal, Base::domain());
+        storage_.take_over(goal);
+        GradationReport report;
+        TreeAdaptation adaptation(topology_, storage_, field, goal);
+        adaptation.run(false, [&](const Box& box, const auto& along, auto& cut) {
+            ++report.operations;
+            return Base::cuts().is_too_long(storage_.value(topology_, box.centre()), box) &&
+                   Base::split_across(box, along, cut);
+        });
+        finish();
+        is_graded_ = true;
+        report.largest_ratio_left = ratio_left();
+        return report;
+    }
+
+    AdaptationReport adapt(const AdaptationGoal& goal) {
+        const AdaptationReport report = Base::adapt(goal, [&] { storage_.take_over(goal); });
+        finish();
+        is_graded_ = true;
+        return report;
+    }
+
+    void finish() {
+        storage_.drop_idle_sources();
+        Base::settle();
+    }
+
+    Footprint footprint() const {
+        Footprint footprint = Base::footprint();
+        footprint.bytes_published =
+            published_bytes({Node::arity == 8, false, topology_.leaves(), topology_.inner_nodes(),
+                             footprint.control_nodes});
+        return footprint;
+    }
+
+    void save(StateWriter& state) const {
+        controlspace::save(topology_, state);
+        storage_.save(state);
+        state("sources.is_graded", is_graded_);
+    }
+    void load(const StateReader& state) {
+        is_finished_ = true;
+        topology_ = load_topology<Node>(Base::domain(), state);
+        storage_.load(topology_, state);
+        state("sources.is_graded", is_graded_);
+    }
+
+private:
+    double ratio_left() const {
+        const ControlNodes nodes = control_nodes(Neighbourhood::faces);
+        return largest_gradation(nodes.graph, nodes.metrics, GradationLaw::cone);
+    }
+
+    bool is_graded_ = false;  // no source has come since
+};
+
+}  // namespace controlspace

@@ -1,0 +1,12 @@
+#include "trees/structures/rows.h"
+#include "trees/tree_row.h"
+#include "trees/values/quadratic_values.h"
+
+namespace controlspace {
+
+CatalogueEntry kd_quadratic() {
+    return tree_row<KdNode, QuadraticValues>(
+        "K_Li", "kd-tree, quadratic from a leaf and its face neighbours");
+}
+
+}  // namespace controlspace

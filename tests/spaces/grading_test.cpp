@@ -1,0 +1,111 @@
+// What gradation must not do: make the field longer, or forget a source.
+#include <catch2/catch.hpp>
+
+#include "controlspace/measure/accuracy.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/catalogue.h"
+#include "editable_space.h"
+
+using namespace controlspace;
+
+namespace {
+
+const Box domain{Point::Constant(-1), Point::Constant(1)};
+
+std::vector<CatalogueEntry> all_trees() {
+    std::vector<CatalogueEntry> all(tree_catalogue().begin(), tree_catalogue().end());
+    all.insert(all.end(), anchored_catalogue().begin(), anchored_catalogue().end());
+    return all;
+}
+
+std::vector<Metric> answers(const ControlSpace& space, const std::vector<Point>& x) {
+    std::vector<Metric> metrics(x.size());
+    space.sample(x, metrics);
+    return metrics;
+}
+
+void check_no_longer(const std::vector<Metric>& after, const std::vector<Metric>& before) {
+    REQUIRE(after.size() == before.size());
+    double longest = 0;
+    for (std::size_t i = 0; i < after.size(); ++i) {
+        longest = std::max(longest, growth(after[i], before[i]));
+    }
+    CHECK(longest <= 1 + 1e-9);
+}
+
+// Grades, with a ratio that is smaller or larger than that of the options.
+void check_grading(EditableSpace& space, const CatalogueEntry& entry, bool isotropic,
+                   double ratio) {
+    std::vector<Point> x = cell_centres(domain, 17);
+    const std::vector<Metric> before = answers(space, x);
+    const ControlNodes nodes = space.control_nodes(Neighbourhood::faces);
+    space.grade({.ratio = ratio});
+    if (entry.has<MetricNodes>()) {
+        check_no_longer(space.control_nodes(Neighbourhood::faces).metrics, nodes.metrics);
+    }
+    if (entry.order == 0 || (entry.order == 1 && isotropic)) {
+        check_no_longer(answers(space, x), before);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("gradation makes no control node longer, nor what leaves and isotropic vertices answer") {
+    const bool isotropic = GENERATE(true, false);
+    const auto sources = isotropic ? sample_sphere({.h = 0.05, .s_a = 2, .s_n = 1, .rho = 2})
+                                   : sample_sphere({.h = 0.1, .s_a = 4, .s_n = 0.25, .rho = 2});
+    for (const CatalogueEntry& entry : all_trees()) {
+        for (const double ratio : {1.25, 1.1, 1.6}) {
+            CAPTURE(entry.id, isotropic, ratio);
+            const auto space = editable(entry.make({.domain = domain}));
+            space->insert(sources);
+            check_grading(*space, entry, isotropic, ratio);
+            check_grading(*space, entry, isotropic, ratio);
+        }
+    }
+}
+
+TEST_CASE("gradation makes what was adapted no longer") {
+    const bool isotropic = GENERATE(true, false);
+    const auto sources = isotropic ? sample_sphere({.h = 0.1, .s_a = 2, .s_n = 1, .rho = 2})
+                                   : sample_sphere({.h = 0.2, .s_a = 4, .s_n = 0.25, .rho = 2});
+    for (const CatalogueEntry& entry : all_trees()) {
+        CAPTURE(entry.id, isotropic);
+        const auto space = editable(entry.make({.domain = domain}));
+        space->adapt({.sources = sources, .continuous = nullptr, .ratio = 1.25, .target = 0.2});
+        check_grading(*space, entry, isotropic, 1.25);
+    }
+}
+
+TEST_CASE("a lone source in a large leaf is kept by gradation") {
+    const PointSource source{Point(0.31, -0.22, 0.13), Metric::isotropic(0.309)};
+    for (const CatalogueEntry& entry : anchored_catalogue()) {
+        CAPTURE(entry.id);
+        const auto space = editable(entry.make({.domain = domain, .l_min = 2, .ratio = 10}));
+        space->insert(source);
+        space->grade({.ratio = 10});
+        CHECK(sample_at(*space, source.position).xx == Approx(0.309));
+        space->grade({.ratio = 10});
+        CHECK(sample_at(*space, source.position).xx == Approx(0.309));
+    }
+}
+
+TEST_CASE("a later source that was met is met after the next gradation") {
+    const auto sources = sample_sphere({.h = 0.1, .s_a = 4, .s_n = 0.25, .rho = 2});
+    for (const CatalogueEntry& entry : anchored_catalogue()) {
+        CAPTURE(entry.id);
+        const auto space = editable(entry.make({.domain = domain, .takes_later_sources = true}));
+        space->insert(sources);
+        space->grade({});
+        std::size_t met = 0;
+        for (const Point& x : cell_centres(domain, 4)) {
+            const Metric own = 1.02 * sample_at(*space, x);
+            if (space->insert(PointSource{x, own}) == Insertion::inserted) continue;
+            ++met;
+            space->grade({});
+            CHECK(growth(sample_at(*space, x), own) <= 1.02);
+        }
+        CHECK(met > 0);
+    }
+}
