@@ -69,6 +69,7 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     start = phase("gradation");
     creation.gradation = filled.builder->grade(
         {.law = c.law, .schedule = c.schedule, .ratio = c.g_r, .neighbourhood = c.neighbourhood});
+    filled.builder->build();  // where grids of other systems and the search of `direct` are made
     creation.gradation_s = {seconds_since(start)};
     if (c.node_values == NodeValues::exact) {
         follow_at_nodes(dynamic_cast<NodeBuilder&>(*filled.builder),
