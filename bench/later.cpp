@@ -17,9 +17,9 @@
 
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
+#include "controlspace/measure/access_time.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/sources/sampled_surfaces.h"
-#include "controlspace/measure/access_time.h"
 
 using namespace controlspace;
 

@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "controlspace/space/sample_parallel.h"
 #include "controlspace/measure/access_time.h"
+#include "controlspace/space/sample_parallel.h"
 #include "works.h"
 
 using namespace controlspace;

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "cones/cone_field.h"
+#include "controlspace/measure/access_time.h"
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/sources/sampled_surfaces.h"
-#include "controlspace/measure/access_time.h"
 
 using namespace controlspace;
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "controlspace/measure/access_time.h"
 #include "controlspace/measure/accuracy.h"
 #include "geometry/random_fractions.h"
-#include "controlspace/measure/access_time.h"
 
 namespace controlspace {
 

@@ -28,8 +28,8 @@ TEST_CASE("a grid's footprint is what it has allocated") {
     const std::size_t allocated = live_bytes() - before;
     const Footprint footprint = space->footprint();
     CHECK(footprint.bytes_payload >= footprint.control_nodes * sizeof(Metric));
-    // Builder and recipe are allocated but not counted. OpenVDB's own count leaves out some bytes of
-    // each inner node and the root's table.
+    // Builder and recipe are allocated but not counted. OpenVDB's own count leaves out some bytes
+    // of each inner node and the root's table.
     CAPTURE(allocated, footprint.bytes_total());
     CHECK(footprint.bytes_total() <= allocated);
     CHECK(footprint.bytes_total() + 2048 >= allocated);

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "controlspace/baselines/catalogue.h"
-#include "editable_space.h"
 #include "controlspace/measure/access_time.h"
+#include "editable_space.h"
 #include "scratch_directory.h"
 
 using namespace controlspace;

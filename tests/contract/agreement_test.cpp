@@ -4,10 +4,10 @@
 #include <catch2/catch.hpp>
 
 #include "contract/structure_case.h"
+#include "controlspace/measure/access_time.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"
-#include "controlspace/measure/access_time.h"
 
 using namespace controlspace;
 

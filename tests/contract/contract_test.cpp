@@ -7,10 +7,10 @@
 
 #include "contract/structure_case.h"
 #include "controlspace/error.h"
+#include "controlspace/measure/access_time.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"
-#include "controlspace/measure/access_time.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

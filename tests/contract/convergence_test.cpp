@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "contract/structure_case.h"
-#include "editable_space.h"
 #include "controlspace/measure/access_time.h"
+#include "editable_space.h"
 
 using namespace controlspace;
 

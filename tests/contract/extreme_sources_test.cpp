@@ -4,10 +4,10 @@
 #include <random>
 
 #include "contract/structure_case.h"
+#include "controlspace/measure/access_time.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"
-#include "controlspace/measure/access_time.h"
 #include "metric/draw.h"
 
 using namespace controlspace;

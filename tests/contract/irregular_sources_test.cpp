@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 
 #include "contract/structure_case.h"
+#include "controlspace/measure/access_time.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/sources/scattered_surfaces.h"
 #include "editable_space.h"
-#include "controlspace/measure/access_time.h"
 
 using namespace controlspace;
 

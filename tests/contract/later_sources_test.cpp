@@ -5,9 +5,9 @@
 #include <random>
 
 #include "contract/structure_case.h"
+#include "controlspace/measure/access_time.h"
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"
-#include "controlspace/measure/access_time.h"
 
 using namespace controlspace;
 

@@ -3,9 +3,9 @@
 
 #include "contract/structure_case.h"
 #include "controlspace/error.h"
+#include "controlspace/measure/access_time.h"
 #include "controlspace/space/control_space_file.h"
 #include "editable_space.h"
-#include "controlspace/measure/access_time.h"
 #include "sources/files.h"
 
 using namespace controlspace;

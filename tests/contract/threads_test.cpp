@@ -5,8 +5,8 @@
 #include <catch2/catch.hpp>
 
 #include "contract/structure_case.h"
-#include "editable_space.h"
 #include "controlspace/measure/access_time.h"
+#include "editable_space.h"
 
 using namespace controlspace;
 

@@ -9,11 +9,11 @@
 #include "case_of_each.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
+#include "controlspace/measure/access_time.h"
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "editable_space.h"
-#include "controlspace/measure/access_time.h"
 
 using namespace controlspace;
 

@@ -8,13 +8,13 @@
 
 #include "case_of_each.h"
 #include "controlspace/error.h"
+#include "controlspace/measure/access_time.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
 #include "counting_allocator.h"
 #include "editable_space.h"
 #include "geometry/random_fractions.h"
-#include "controlspace/measure/access_time.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;

@@ -3,11 +3,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "controlspace/measure/access_time.h"
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
 #include "editable_space.h"
-#include "controlspace/measure/access_time.h"
 #include "trees/topology/adjacency.h"
 #include "trees/values/triquadratic.h"
 

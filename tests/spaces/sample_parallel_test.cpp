@@ -7,9 +7,9 @@
 
 #include "case_of_each.h"
 #include "controlspace/baselines/catalogue.h"
+#include "controlspace/measure/access_time.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "editable_space.h"
-#include "controlspace/measure/access_time.h"
 
 using namespace controlspace;
 

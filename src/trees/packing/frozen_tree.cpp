@@ -117,8 +117,8 @@ std::unique_ptr<ControlSpace> freeze_leaves(const Topology<Node>& tree,
 
 template <class Node>
 std::unique_ptr<ControlSpace> freeze_quadratic(const Topology<Node>& tree,
-                                               std::span<const Metric> metrics, const QuadraticRule& rule,
-                                               Precision precision) {
+                                               std::span<const Metric> metrics,
+                                               const QuadraticRule& rule, Precision precision) {
     std::vector<LeafIndex> order;
     Topology<Node> ordered = tree.depth_first(order);
     CutPlanes planes(ordered);
@@ -171,7 +171,7 @@ std::unique_ptr<ControlSpace> freeze_vertices(const Topology<Node>& tree,
     template std::unique_ptr<ControlSpace> freeze_leaves(const Topology<Node>&,               \
                                                          std::span<const Metric>, Precision); \
     template std::unique_ptr<ControlSpace> freeze_quadratic(                                  \
-        const Topology<Node>&, std::span<const Metric>, const QuadraticRule&, Precision); \
+        const Topology<Node>&, std::span<const Metric>, const QuadraticRule&, Precision);     \
     template std::unique_ptr<ControlSpace> freeze_vertices(                                   \
         const Topology<Node>&, std::span<const Corners>, std::span<const Metric>, Precision);
 CONTROLSPACE_FREEZE(KdNode)

@@ -29,8 +29,8 @@ struct QuadraticRule {
 /// One metric a leaf, interpolated as QuadraticValues does.
 template <class Node>
 std::unique_ptr<ControlSpace> freeze_quadratic(const Topology<Node>& tree,
-                                               std::span<const Metric> metrics, const QuadraticRule& rule,
-                                               Precision precision);
+                                               std::span<const Metric> metrics,
+                                               const QuadraticRule& rule, Precision precision);
 
 /// A metric a vertex; `corners` are the numbers of the leaves' vertices.
 template <class Node>

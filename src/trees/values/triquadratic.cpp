@@ -73,8 +73,7 @@ std::array<double, 7> published_triquadratic_weights(const Vector& k) {
     };
     // The corner (x-, y+, z-) is the mean of the faces z-, x- and y-.
     constexpr std::size_t wrong = 2, low_y = 2, high_y = 3;
-    const double lagrange =
-        0.125 * k.x() * (k.x() - 1) * k.y() * (k.y() + 1) * k.z() * (k.z() - 1);
+    const double lagrange = 0.125 * k.x() * (k.x() - 1) * k.y() * (k.y() + 1) * k.z() * (k.z() - 1);
     add_face(low_y, lagrange / 3);
     add_face(high_y, -lagrange / 3);
     const Vector t = 0.5 * (k + Vector::Ones());

@@ -54,7 +54,7 @@ struct ReferenceProbes {
 /// on the sources, the kind of reference and g_r of `c`, and on the study's reference_tolerance,
 /// only.
 std::shared_ptr<const ControlSpace> make_reference(const Study& study, const Case& c,
-                                                  const Workload& workload);
+                                                   const Workload& workload);
 
 /// The same at the probes.
 ReferenceProbes make_reference_probes(const Study& study, const Case& c, const Workload& workload);
