@@ -73,7 +73,8 @@ std::string render(const TextTable& table, TableStyle style) {
 std::string render(const std::vector<TextTable>& tables, TableStyle style) {
     std::string text;
     for (const TextTable& table : tables) {
-        text += (text.empty() ? "" : "\n") + render(table, style);
+        if (!text.empty()) text += '\n';
+        text += render(table, style);
     }
     return text;
 }

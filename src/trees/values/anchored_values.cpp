@@ -85,7 +85,7 @@ bool AnchoredValues::is_covered(SourceIndex source, std::span<const SourceIndex>
                                 const Box& box, int halvings) const {
     const Metric& own = sources_.metric(source);
     const Point& q = sources_.position(source);
-    const auto most = [&](SourceIndex s) {
+    const auto largest_factor = [&](SourceIndex s) {
         double factor = 1;
         for (int i = 0; i < 8; ++i) {
             factor = std::max(factor, sources_.factor(s, ratio_, corner(box, i)));
@@ -106,7 +106,7 @@ bool AnchoredValues::is_covered(SourceIndex source, std::span<const SourceIndex>
     const Metric shortest = least * own;
     if (is_within(largest_, 1, shortest)) return true;
     for (const SourceIndex s : others) {
-        if (is_within(most(s) * sources_.metric(s), 1, shortest)) return true;
+        if (is_within(largest_factor(s) * sources_.metric(s), 1, shortest)) return true;
     }
     if (halvings == 0) return false;
     const Subdivision parts = octants(box);
