@@ -13,12 +13,6 @@ namespace {
 
 const Box domain{Point::Constant(-1), Point::Constant(1)};
 
-std::vector<CatalogueEntry> all_trees() {
-    std::vector<CatalogueEntry> all(tree_catalogue().begin(), tree_catalogue().end());
-    all.insert(all.end(), anchored_catalogue().begin(), anchored_catalogue().end());
-    return all;
-}
-
 std::vector<Metric> answers(const ControlSpace& space, const std::vector<Point>& x) {
     std::vector<Metric> metrics(x.size());
     space.sample(x, metrics);
