@@ -75,6 +75,7 @@ public:
         state.require(positions.size() == metrics.size(), "sources.metrics", "has another length");
         require_valid(GradationOptions{.ratio = ratio_});
         sources_.clear();
+        sources_.reserve(positions.size());
         for (std::size_t i = 0; i < positions.size(); ++i) append({positions[i], metrics[i]}, i);
     }
 

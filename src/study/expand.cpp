@@ -25,7 +25,7 @@ std::vector<const CatalogueEntry*> chosen(const Values& names,
         }
         if (!known) {
             throw InputError(fmt::format(
-                "unknown structure '{}': give a family (trees, anchored, baselines) or some of {}",
+                "unknown structure '{}': give a family (trees, further, anchored, baselines) or some of {}",
                 name, all));
         }
     }

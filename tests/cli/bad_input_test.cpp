@@ -73,7 +73,7 @@ std::vector<BadFile> medit_files() {
         {"f.solb", solb({1}, -1), "SolAtVertices -1: nothing to read"},
         {"f.solb", solb({nan}), "size 1 has nan"},
         {"f.solb", solb({1, 2, 1, 0, 0, 1}),
-         "f.solb, byte 96: tensor 1 (1 2 1 0 0 1) is not positive definite"},
+         "f.solb, byte 88: tensor 1 (1 2 1 0 0 1) is not positive definite"},
     };
 }
 

@@ -33,7 +33,7 @@ TEST_CASE("commands, options and values are completed as the program names them"
 }
 
 TEST_CASE("each item of a list is completed") {
-    CHECK(offered("compare --structures K_L,K_oL") == "K_L,K_oL K_L,K_oLB K_L,K_oLA");
+    CHECK(offered("compare --structures K_L,K_oL") == "K_L,K_oL K_L,K_oLB K_L,K_oLi K_L,K_oLA");
 }
 
 TEST_CASE("where files are asked for, nothing is offered in their place") {

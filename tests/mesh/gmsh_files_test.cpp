@@ -162,5 +162,5 @@ TEST_CASE("a .msh that lies or breaks off is refused") {
     const std::uint64_t lie = 2'000'000'000;
     std::memcpy(&bytes[binary_nodes + 8], &lie, sizeof lie);
     CHECK_THAT(error(bytes), Contains("box.msh, byte ") && Contains("Nodes 2000000"));
-    CHECK_THAT(error(bytes.substr(0, binary_nodes + 4)), Contains("the data end within a count"));
+    CHECK_THAT(error(bytes.substr(0, binary_nodes + 4)), Contains("the data end within Nodes"));
 }

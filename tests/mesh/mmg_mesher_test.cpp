@@ -87,7 +87,7 @@ TEST_CASE("what goes wrong with MMG is said with its last words, and its files a
         {"echo MeshVersionFormatted 2 Dimension 3 Vertices 7 > out.mesh", "out.mesh"},
         {"printf 'MeshVersionFormatted 2\\nDimension 3\\nVertices\\n4\\n0 0 0 0\\n1 0 0 0\\n0 1 0 "
          "0\\n0 0 1 0\\nTriangles\\n1\\n1 2 5 0\\nTetrahedra\\n1\\n1 2 3 4 0\\nEnd\\n' > out.mesh",
-         "Triangles 1: '5' is not one of 1 to 4"},
+         "Triangles 1: 5 is not one of 1 to 4"},
         {"kill -SEGV $$", "was ended by signal 11"},
     }));
     CAPTURE(commands);

@@ -5,8 +5,10 @@
 namespace controlspace {
 
 CatalogueEntry octree_quadratic() {
-    return tree_row<OctreeNode, QuadraticValues>(
+    CatalogueEntry row = tree_row<OctreeNode, QuadraticValues>(
         "K_oLi", "octree, quadratic from a leaf and its face neighbours");
+    row.family = "further";
+    return row;
 }
 
 }  // namespace controlspace

@@ -29,16 +29,17 @@ public:
     explicit QuadraticValues(const SpaceOptions& options)
         : LeafValues(options),
           boxes_(1, options.domain),
-          slope_(options.ratio - 1),
+          requested_slope_(options.ratio - 1),
+          slope_(requested_slope_),
           form_(options.quadratic_form) {}
 
     template <class Node>
     Metric value(const Topology<Node>& tree, const Point& x) const {
-        return value_at(tree, x, metrics_.field());
+        return value_at(tree, x, metrics_.field(), slope_);
     }
     template <class Node>
     Metric asked(const Topology<Node>& tree, const Point& x) const {
-        return value_at(tree, x, metrics_.asked());
+        return value_at(tree, x, metrics_.asked(), requested_slope_);
     }
     void prefetch(LeafIndex leaf) const {
         __builtin_prefetch(&boxes_[leaf]);
@@ -47,7 +48,7 @@ public:
     template <class Node>
     void values_in(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
                    std::span<const Point> x, std::span<Metric> out) const {
-        interpolate(tree, leaves, x, out, metrics_.field());
+        interpolate(tree, leaves, x, out, metrics_.field(), slope_);
     }
 
     template <class Node>
@@ -57,7 +58,7 @@ public:
 
     double ceiling(LeafIndex leaf, const Point& x) const {
         if (form_ == QuadraticForm::published) return std::numeric_limits<double>::infinity();
-        return LeafValues::ceiling(leaf, x) + slope_ * boxes_[leaf].half_diagonal();
+        return LeafValues::ceiling(leaf, x) + requested_slope_ * boxes_[leaf].half_diagonal();
     }
 
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new) {
@@ -121,13 +122,14 @@ private:
         const Topology<Node>& tree;
         const QuadraticValues& own;
         std::span<const Metric> metrics;
+        double ratio_slope;
 
         const Box& box(LeafIndex leaf) const { return own.boxes_[leaf]; }
         const Metric& metric(LeafIndex leaf) const { return metrics[leaf]; }
         void prefetch_metric(LeafIndex leaf) const { __builtin_prefetch(&metrics[leaf]); }
         double length(LeafIndex leaf) const { return metrics[leaf].xx; }
         bool all_isotropic() const { return own.isotropic_; }
-        double slope() const { return own.slope_; }
+        double slope() const { return ratio_slope; }
         QuadraticForm form() const { return own.form_; }
         PartsAcross parts_across(LeafIndex leaf, const Point& x) const {
             return own.across_.empty() ? find_across(leaf, x) : own.across_[leaf];
@@ -152,22 +154,23 @@ private:
     template <class Node>
     void interpolate(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
                      std::span<const Point> x, std::span<Metric> out,
-                     std::span<const Metric> metrics) const {
-        const Values<Node> values{tree, *this, metrics};
+                     std::span<const Metric> metrics, double slope) const {
+        const Values<Node> values{tree, *this, metrics, slope};
         QuadraticInLeaves(tree, values).interpolate(leaves, x, out);
     }
     template <class Node>
-    Metric value_at(const Topology<Node>& tree, const Point& x,
-                    std::span<const Metric> metrics) const {
+    Metric value_at(const Topology<Node>& tree, const Point& x, std::span<const Metric> metrics,
+                    double slope) const {
         const LeafIndex leaf = tree.find(x);
         Metric m;
-        interpolate(tree, {&leaf, 1}, {&x, 1}, {&m, 1}, metrics);
+        interpolate(tree, {&leaf, 1}, {&x, 1}, {&m, 1}, metrics, slope);
         return m;
     }
 
     std::vector<Box> boxes_;           // of the leaves
     std::vector<PartsAcross> across_;  // of the leaves; empty where they are not known
-    double slope_;                     // g_r - 1
+    // g_r - 1: of the field before gradation, which insertion compares with, and of the graded one.
+    double requested_slope_, slope_;
     QuadraticForm form_;
     bool isotropic_ = true;  // all metrics are; false where that is not known
 };

@@ -43,7 +43,8 @@ using Capability = std::variant<SourceLeaves, SplitRules, MetricNodes, KeptSourc
 struct CatalogueEntry {
     std::string id;           ///< as in options and result files: "K_L", "uniform-nearest"
     std::string description;  ///< one line
-    /// How it is chosen together with others: "trees" (the paper's), "anchored", "baselines".
+    /// How it is chosen together with others: "trees" (the paper's), "further" (its table's missing
+    /// cell), "anchored" (leaves keep sources), "baselines".
     std::string family = "baselines";
     int order = 0;  ///< of interpolation: 0 constant in a cell, 1 linear, 2 quadratic
     std::unique_ptr<ControlSpaceBuilder> (*construct)(const SpaceOptions&) = nullptr;
