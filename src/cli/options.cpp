@@ -79,8 +79,8 @@ void Options::add_case_parameters(const Run& defaults, const std::string& group,
                                   const Uses& uses, std::string_view without) {
     const std::string key = structures_key;
     add_parameter(text_of(key,
-                          "Structures (see `controlspace list`), or all, trees, anchored, "
-                          "baselines",
+                          "Structures (see `controlspace list`), or all, trees, further, "
+                          "anchored, baselines",
                           "", {}, group),
                   ValueType::text, 0, defaults.structures(), given[structures_key]);
     std::vector<const CaseParameter*> forms;  // in several forms of one value
