@@ -83,15 +83,21 @@ TEST_CASE("two Vec3S trees refuse metrics that floats cannot hold") {
         const Metric thin = metric_from_frame({length, 1, 1}, Eigen::Matrix3d::Identity());
         if (length < 1) {
             for (const Metric& m : {Metric::isotropic(length), thin}) {
-                const auto space = made();
-                space->insert({x, m});
-                CHECK_THROWS_WITH(sample_at(*space, x), Catch::Contains("floats"));
+                const auto inserted = [&] {
+                    const auto space = made();
+                    space->insert({x, m});
+                    return sample_at(*space, x);
+                };
+                CHECK_THROWS_WITH(inserted(), Catch::Contains("floats"));
             }
         }
         const auto space = made();
         const std::size_t nodes = space->control_nodes(Neighbourhood::faces).metrics.size();
-        space->assign(std::vector(nodes, Metric::isotropic(length)));
-        CHECK_THROWS_WITH(sample_at(*space, x), Catch::Contains("floats"));
+        const auto assigned = [&] {
+            space->assign(std::vector(nodes, Metric::isotropic(length)));
+            return sample_at(*space, x);
+        };
+        CHECK_THROWS_WITH(assigned(), Catch::Contains("floats"));
     }
     const auto space = made();
     CHECK(space->insert({x, Metric::isotropic(1e-30)}) == Insertion::inserted);
@@ -103,7 +109,7 @@ TEST_CASE("the footprint of two Vec3S trees is what they have allocated") {
     const auto space = structure_with_id("openvdb-vec3s-trilinear").make(small_grid())->build();
     const std::size_t allocated = live_bytes() - before;
     CHECK(space->footprint().bytes_total() <= allocated);
-    CHECK(space->footprint().bytes_total() + 5120 >= allocated);
+    CHECK(space->footprint().bytes_total() + 8192 >= allocated);
 }
 
 TEST_CASE("the arithmetic of OpenVDB's values is entry by entry") {

@@ -7,7 +7,7 @@
 #include "check.h"
 
 int main() {
-    std::vector<PointSource> sources = sample_sphere({.h = 0.05, .s_a = 4, .s_n = 0.25, .rho = 2});
+    std::vector<PointSource> sources = sample_sphere({.h = 0.05, .rho = 2});
     sources.resize(100);
     const SpaceOptions options{.domain = {Point(-1, -1, -1), Point(1, 1, 1)}};
     const auto made = [&](const CatalogueEntry& row) {

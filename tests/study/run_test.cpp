@@ -237,7 +237,7 @@ TEST_CASE("rows are timed in batches of cases that share their probes") {
     study.runs[0]["tau"] = {1, 1.01};
     study.runs[0]["g_r"] = {1.25, 1.5};
     const auto rows = run(study, tree_catalogue());
-    REQUIRE(rows.size() == 9);
+    REQUIRE(rows.size() == 8);
     for (std::size_t i = 0; i < 8; ++i) CHECK(rows[i].number("access_batch") == (i < 4 ? 0 : 4));
     double largest = 0;
     for (const Row& row : rows) largest = std::max(largest, row.number("bytes_total"));

@@ -128,7 +128,7 @@ TEST_CASE("the paper's study has its 72 rows as published, and all structures by
     std::size_t published = 0;
     for (const Case& c : cases) published += c.reference == ReferenceKind::published_sphere ? 1 : 0;
     CHECK(published == 72);
-    CHECK(cases.size() == 72 + 72 + 6);
+    CHECK(cases.size() == 72 + 78 + 6);
     std::set<std::pair<double, double>> settings;
     for (const Case& c : cases) settings.emplace(c.sources.rho, c.tau);
     CHECK(settings.size() == 6);
@@ -237,7 +237,7 @@ TEST_CASE("fields and sources that do not fit together are refused") {
 
 TEST_CASE("the studies of irregular sources and of fields make sense") {
     const std::filesystem::path folder = data_folder() / "studies";
-    CHECK(expand(read_study(folder / "sources.toml")).size() == 3 * 4 * 7);
-    CHECK(expand(read_study(folder / "fields.toml")).size() == 4 * 7);
-    CHECK(expand(read_study(folder / "mixtures.toml")).size() == 2 * 7);
+    CHECK(expand(read_study(folder / "sources.toml")).size() == 3 * 4 * 8);
+    CHECK(expand(read_study(folder / "fields.toml")).size() == 4 * 8);
+    CHECK(expand(read_study(folder / "mixtures.toml")).size() == 2 * 8);
 }
