@@ -186,12 +186,14 @@ std::vector<BadFile> surface_files() {
         {"f.obj", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n", "f.obj: "},
         {"f.ply", "", "f.ply is empty"},
         {"f.ply", "text\n", "f.ply: "},
-        {"f.ply", ply_head + "2000000000" + ply_properties + corners + "3 0 1 2\n", "f.ply: "},
+        {"f.ply", ply_head + "2000000000" + ply_properties + corners + "3 0 1 2\n",
+         "f.ply: no surface that can be read: is it cut off, or of another format?"},
         {"f.ply", ply_head + "-3" + ply_properties + corners + "3 0 1 2\n", "f.ply: "},
         {"f.ply", ply_head + "3" + ply_properties + "0 0 0\n1 0", "f.ply: "},
         {"f.ply", ply_head + "3" + ply_properties + corners + "3 0 1 7\n", "f.ply: "},
         {"f.ply", ply_head + "3" + ply_properties + "0 0 0\n1 zero 0\n0 1 0\n3 0 1 2\n", "f.ply: "},
-        {"f.off", "OFF\n2000000000 1 0\n" + corners + "3 0 1 2\n", "f.off: "},
+        {"f.off", "OFF\n2000000000 1 0\n" + corners + "3 0 1 2\n",
+         "f.off: no surface that can be read: is it cut off, or of another format?"},
         {"f.off", "OFF\n3 1 0\n" + corners + "3 0 1 7\n", "f.off: "},
     };
 }
