@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "controlspace/error.h"
-#include "io/text/text_file.h"
+#include "files/text_file.h"
 
 namespace controlspace {
 

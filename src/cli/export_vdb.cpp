@@ -10,7 +10,7 @@
 #include "controlspace/io/metric_grids.h"
 #include "controlspace/io/write_vdb.h"
 #include "controlspace/study/provenance.h"
-#include "io/text/text_file.h"
+#include "files/text_file.h"
 #include "mesh/stopwatch.h"
 
 namespace controlspace {

@@ -6,7 +6,7 @@
 #include "cli/export.h"
 #include "controlspace/error.h"
 #include "controlspace/io/write_vtk.h"
-#include "io/text/text_file.h"
+#include "files/text_file.h"
 
 namespace controlspace {
 namespace {

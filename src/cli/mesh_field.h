@@ -6,9 +6,9 @@
 #include "controlspace/geometry/box.h"
 #include "controlspace/mesh/tet_mesh.h"
 #include "controlspace/space/control_space.h"
-#include "mesh/mesh_rows.h"
-#include "mesh/mesh_settings.h"
 #include "mesh/mmg_mesher.h"
+#include "study/mesh_rows.h"
+#include "study/mesh_settings.h"
 
 namespace controlspace {
 

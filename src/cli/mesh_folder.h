@@ -10,8 +10,8 @@
 #include "controlspace/space/control_space.h"
 #include "controlspace/study/provenance.h"
 #include "controlspace/study/study.h"
-#include "mesh/mesh_rows.h"
-#include "mesh/mesh_settings.h"
+#include "study/mesh_rows.h"
+#include "study/mesh_settings.h"
 
 namespace controlspace {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "cli/standard_output.h"
-#include "io/text/output_file.h"
+#include "files/output_file.h"
 
 namespace controlspace {
 namespace {

@@ -57,7 +57,7 @@ struct ConeTreeShape {
 
 private:
     std::size_t cut(std::uint32_t binary, std::uint64_t side) const {
-        const int level = std::bit_width(binary) - 1;
+        const int level = static_cast<int>(std::bit_width(binary)) - 1;
         const std::uint64_t leaf = leaves * (binary - (std::uint64_t{1} << level) + side) >> level;
         return std::min(size, leaf_size * leaf);
     }

@@ -1,9 +1,9 @@
 #include <string>
 
 #include "controlspace/mesh/mesh_files.h"
+#include "files/text_file.h"
 #include "io/text/medit.h"
 #include "io/text/medit_file.h"
-#include "io/text/text_file.h"
 
 namespace controlspace {
 namespace {

@@ -88,28 +88,30 @@ TetMesh remesh(const TetMesh& mesh, const std::vector<Metric>& metrics, const fs
     }
     folder.keep();
     constexpr std::size_t enough = 3;
+    const std::string said = last_lines(log, enough);
     throw InputError(fmt::format("MMG {}{}: {} (its files: {})", reason(outcome, options),
-                                 unreadable, last_lines(log, enough), folder.path().string()));
+                                 unreadable, said.empty() ? "it printed nothing" : said,
+                                 folder.path().string()));
 }
 
 }  // namespace
 
 fs::path find_mmg() {
     for (const char* name : {"mmg3d_O3", "mmg3d"}) {
-        if (const fs::path found = find_program(name); !found.empty()) return found;
+        if (fs::path found = find_program(name); !found.empty()) return found;
     }
     return {};
 }
 
 fs::path require_mmg(const MmgOptions& options) {
     if (options.program.empty()) {
-        const fs::path found = find_mmg();
+        fs::path found = find_mmg();
         if (found.empty()) {
             throw InputError("MMG is missing: there is no mmg3d_O3 in PATH; name it by --mmg");
         }
         return found;
     }
-    const fs::path found = find_program(options.program.string());
+    fs::path found = find_program(options.program.string());
     if (found.empty()) {
         throw InputError(fmt::format("{}: no program that can be run: name MMG's mmg3d_O3",
                                      options.program.string()));

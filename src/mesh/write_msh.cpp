@@ -1,7 +1,7 @@
 #include <cstdint>
 
 #include "controlspace/mesh/mesh_files.h"
-#include "io/text/output_file.h"
+#include "files/output_file.h"
 
 namespace controlspace {
 namespace {

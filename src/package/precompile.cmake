@@ -7,7 +7,7 @@ endif()
 set(precompiled_common
     <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <span> <string> <variant>
     <vector> <Eigen/Core> <fmt/format.h> <tbb/parallel_for.h>)
-file(WRITE ${CMAKE_BINARY_DIR}/empty.cpp "")
+file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/empty.cpp CONTENT "")  # as it was where CMake runs again
 
 # add_precompiled(NAME HEADERS HEADER... LIBRARIES TARGET... PROPERTIES ...): HEADERS and the common ones, for
 # precompile(NAME ...).

@@ -12,8 +12,8 @@
 
 #include "controlspace/error.h"
 #include "controlspace/version.h"
-#include "io/text/output_file.h"
-#include "io/text/text_file.h"
+#include "files/output_file.h"
+#include "files/text_file.h"
 #include "space/saved.h"
 #include "space/state.h"
 

@@ -24,9 +24,10 @@ std::vector<const CatalogueEntry*> chosen(const Values& names,
             if (std::ranges::count(entries, &entry) == 0) entries.push_back(&entry);
         }
         if (!known) {
-            throw InputError(fmt::format(
-                "unknown structure '{}': give a family (trees, further, anchored, baselines) or some of {}",
-                name, all));
+            throw InputError(
+                fmt::format("unknown structure '{}': give a family (trees, further, anchored, "
+                            "baselines) or some of {}",
+                            name, all));
         }
     }
     return entries;

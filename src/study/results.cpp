@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "controlspace/error.h"
-#include "io/text/output_file.h"
+#include "files/output_file.h"
 #include "study/pareto.h"
 #include "study/results_json.h"
 #include "study/sampled_fields.h"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "controlspace/space/sample_parallel.h"
-#include "io/text/output_file.h"
+#include "files/output_file.h"
 
 namespace controlspace {
 namespace {

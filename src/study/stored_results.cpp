@@ -5,7 +5,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/study/results.h"
-#include "io/text/text_file.h"
+#include "files/text_file.h"
 #include "study/results_json.h"
 
 namespace controlspace {

@@ -6,7 +6,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/study/study.h"
-#include "io/text/text_file.h"
+#include "files/text_file.h"
 
 namespace controlspace {
 namespace {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -109,7 +110,7 @@ SpaceOptions space_options(const Study& study, const Case& c, const Workload& wo
     options.tolerance = c.epsilon;
     options.finest_length = workload.finest_length;
     options.ratio = c.g_r;
-    options.max_bytes = static_cast<std::size_t>(study.max_memory_gib * gib);
+    options.max_bytes = static_cast<std::size_t>(std::ceil(study.max_memory_gib * gib));
     if (c.split) options.split = *c.split;
     if (c.max_depth) (c.split ? options.kd_depth : options.octree_depth) = *c.max_depth;
     options.voxel = c.voxel.value_or(0);

@@ -183,7 +183,7 @@ private:
         }
     }
 
-    std::size_t next_look_ = 1024;  // number of leaves at which memory is looked at again
+    std::size_t next_look_ = 0;  // number of leaves at which memory is looked at again
 };
 
 }  // namespace controlspace

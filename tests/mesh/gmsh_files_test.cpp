@@ -6,10 +6,10 @@
 #include <fstream>
 
 #include "controlspace/sources/riemannian.h"
+#include "files/text_file.h"
 #include "gmsh/gmsh_session.h"
 #include "io/text/msh.h"
 #include "io/text/pos.h"
-#include "io/text/text_file.h"
 #include "sources/files.h"
 
 using namespace controlspace;

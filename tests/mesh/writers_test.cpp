@@ -6,8 +6,8 @@
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/mesh/conformity.h"
 #include "controlspace/mesh/mesh_files.h"
+#include "files/text_file.h"
 #include "io/text/medit.h"
-#include "io/text/text_file.h"
 #include "mesh/fixtures.h"
 #include "sources/files.h"
 

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "files/text_file.h"
 #include "io/text/medit.h"
 #include "io/text/medit_file.h"
-#include "io/text/text_file.h"
 #include "sources/files.h"
 #include "sources/medit_bytes.h"
 
@@ -85,6 +85,17 @@ TEST_CASE("sources that are written as Medit files are read back") {
     for (PointSource& s : sources) s.metric = Metric::isotropic(0.1 + s.metric.xx);
     write_medit_sources(scratch.path() / name, sources);
     CHECK(read_medit_sources(mesh, solution) == sources);
+}
+
+TEST_CASE("where one file of a pair cannot be written, neither appears") {
+    const std::string name = GENERATE("a.mesh", "a.sol", "a.meshb", "a.solb");
+    const ScratchDirectory scratch;
+    std::filesystem::create_symlink("/dev/full", scratch.path() / name);
+    const std::vector<PointSource> one{{{0, 0, 0}, Metric::isotropic(1)}};
+    CHECK_THAT(error_of([&] { write_medit_sources(scratch.path() / name, one); }),
+               Contains(name + ": No space left on device"));
+    const std::filesystem::directory_iterator files(scratch.path());
+    CHECK(std::distance(begin(files), end(files)) == 1);
 }
 
 TEST_CASE("what is wrong in a binary mesh is named with its place") {

@@ -1,4 +1,4 @@
-#include "io/text/text_file.h"
+#include "files/text_file.h"
 
 #include <signal.h>
 #include <sys/stat.h>

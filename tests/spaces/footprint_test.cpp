@@ -67,6 +67,14 @@ CASE_OF_EACH(entry, tree_catalogue(),
     CHECK(peak_bytes() - before > cap / 8);
 }
 
+CASE_OF_EACH(entry, tree_catalogue(),
+             "a cap that holds no tree is refused on a coarse sphere too") {
+    const auto space = editable(entry.make(
+        {.domain = {Point::Constant(-1), Point::Constant(1)}, .l_min = 0.1, .max_bytes = 1000}));
+    CHECK_THROWS_WITH(space->insert(sample_sphere({.h = 0.2})),
+                      Catch::Matchers::Contains("more than 9.31e-07 GiB"));
+}
+
 CASE_OF_EACH(entry, tree_catalogue(), "the memory cap holds for gradation too") {
     const std::vector<PointSource> sources = sample_sphere({.h = 0.02, .rho = 2});
     const auto neighbourhood = GENERATE(Neighbourhood::faces, Neighbourhood::all);

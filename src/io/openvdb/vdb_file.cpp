@@ -13,7 +13,7 @@
 #include <fstream>
 
 #include "controlspace/error.h"
-#include "io/text/output_file.h"
+#include "files/output_file.h"
 
 namespace controlspace {
 namespace {

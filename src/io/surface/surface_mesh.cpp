@@ -10,9 +10,9 @@
 #include <string>
 
 #include "controlspace/error.h"
+#include "files/text_file.h"
 #include "geometry/point_order.h"
 #include "io/text/metric_rows.h"
-#include "io/text/text_file.h"
 
 namespace controlspace {
 namespace {

@@ -12,10 +12,10 @@
 
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
+#include "files/output_file.h"
+#include "files/text_file.h"
 #include "io/text/metric_rows.h"
-#include "io/text/output_file.h"
 #include "io/text/scanner.h"
-#include "io/text/text_file.h"
 
 namespace controlspace {
 namespace {

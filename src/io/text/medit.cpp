@@ -5,9 +5,9 @@
 #include <string>
 
 #include "controlspace/error.h"
+#include "files/text_file.h"
 #include "io/text/medit_file.h"
 #include "io/text/metric_rows.h"
-#include "io/text/text_file.h"
 
 namespace controlspace {
 namespace {

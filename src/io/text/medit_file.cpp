@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "controlspace/error.h"
-#include "io/text/text_file.h"
+#include "files/text_file.h"
 
 namespace controlspace {
 namespace {
@@ -166,9 +166,13 @@ void MeditWriter::begin(const MeditKeyword& keyword, std::size_t count, std::siz
 }
 
 void MeditWriter::finish() {
-    if (!binary_) return file_.write("\nEnd\n");
-    file_.write_raw(end.code);
-    write_offset(0);
+    if (binary_) {
+        file_.write_raw(end.code);
+        write_offset(0);
+    } else {
+        file_.write("\nEnd\n");
+    }
+    file_.finish();
 }
 
 }  // namespace controlspace

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/text/output_file.h"
+#include "files/output_file.h"
 #include "io/text/scanner.h"
 
 namespace controlspace {
@@ -86,7 +86,7 @@ public:
         if (reference) file_.print("{}", *reference);
         file_.write("\n");
     }
-    /// Ends the file.
+    /// Ends the file, and writes what is still held back.
     void finish();
     /// Gives the file its name; to be called once, last.
     void commit() { file_.commit(); }

@@ -8,9 +8,9 @@
 #include <unordered_map>
 
 #include "controlspace/error.h"
+#include "files/text_file.h"
 #include "io/text/metric_rows.h"
 #include "io/text/scanner.h"
-#include "io/text/text_file.h"
 
 namespace controlspace {
 namespace {

@@ -7,10 +7,10 @@
 #include <set>
 
 #include "controlspace/error.h"
+#include "files/output_file.h"
+#include "files/text_file.h"
 #include "io/text/metric_rows.h"
-#include "io/text/output_file.h"
 #include "io/text/scanner.h"
-#include "io/text/text_file.h"
 
 namespace controlspace {
 namespace {

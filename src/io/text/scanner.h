@@ -11,7 +11,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "io/text/text_file.h"
+#include "files/text_file.h"
 
 namespace controlspace {
 

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "controlspace/io/read_sources.h"
+#include "files/output_file.h"
 #include "io/text/metric_rows.h"
-#include "io/text/output_file.h"
 
 namespace controlspace {
 namespace {

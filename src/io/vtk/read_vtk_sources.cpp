@@ -20,8 +20,8 @@
 
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
+#include "files/text_file.h"
 #include "io/text/metric_rows.h"
-#include "io/text/text_file.h"
 
 namespace controlspace {
 namespace {

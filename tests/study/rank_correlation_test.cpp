@@ -1,4 +1,4 @@
-#include "mesh/rank_correlation.h"
+#include "study/rank_correlation.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

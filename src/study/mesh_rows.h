@@ -9,7 +9,7 @@
 #include "controlspace/study/case.h"
 #include "controlspace/study/provenance.h"
 #include "controlspace/study/study.h"
-#include "mesh/mesh_settings.h"
+#include "study/mesh_settings.h"
 #include "study/text_table.h"
 
 namespace controlspace {

@@ -1,4 +1,4 @@
-#include "io/text/text_file.h"
+#include "files/text_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

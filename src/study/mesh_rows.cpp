@@ -1,4 +1,4 @@
-#include "mesh/mesh_rows.h"
+#include "study/mesh_rows.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "controlspace/study/measure.h"
-#include "mesh/rank_correlation.h"
+#include "study/rank_correlation.h"
 #include "study/results_json.h"
 #include "study/tables.h"
 
@@ -216,12 +216,7 @@ std::string mesh_tables(std::span<const MeshRow> rows, TableStyle style) {
         tables.push_back(measure_table(group, rows));
         tables.push_back(histogram_table(group));
     }
-    std::string text;
-    for (const TextTable& table : tables) {
-        if (!text.empty()) text += '\n';
-        text += render(table, style);
-    }
-    return text;
+    return render(tables, style);
 }
 
 std::string mesh_json(const Provenance& provenance, const Study& study,

@@ -1,4 +1,4 @@
-#include "mesh/mesh_settings.h"
+#include "study/mesh_settings.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "io/text/output_file.h"
+#include "files/output_file.h"
 
 #include <cerrno>
 #include <cstring>
@@ -49,6 +49,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::string_view bytes) {
+    if (bytes.empty()) return;  // they may be nowhere, which fwrite does not accept
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail();
 }
 
@@ -59,8 +60,12 @@ bool OutputFile::close() {
     return (file == stdout ? std::fflush(file) : std::fclose(file)) == 0;
 }
 
-void OutputFile::commit() {
+void OutputFile::finish() {
     if (!close()) fail();
+}
+
+void OutputFile::commit() {
+    finish();
     if (written_ == target_) return;
     if (std::rename(written_.string().c_str(), target_.string().c_str()) != 0) fail();
     written_ = target_;

@@ -1,4 +1,4 @@
-#include "mesh/mesh_rows.h"
+#include "study/mesh_rows.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -43,6 +43,8 @@ public:
 
     /// Where the bytes go until `commit`, for libraries that open the file themselves.
     const std::filesystem::path& written() const { return written_; }
+    /// Writes what is still held back; for files that belong together, before one is committed.
+    void finish();
     /// To be called once, last.
     void commit();
 
