@@ -164,6 +164,7 @@ std::vector<Pair> LevelNodes::pairs(Links&& links) const {
 NodeGraph LevelNodes::graph_of_cells(Neighbourhood neighbourhood) const {
     const bool all = neighbourhood == Neighbourhood::all;
     std::vector<Coord> steps;
+    steps.reserve(26);
     for (int face = 0; face < 6; ++face) steps.push_back(across({}, face));
     for (int i = 0; i < 27 && all; ++i) {
         const Coord step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);

@@ -42,7 +42,7 @@ inline bool operator<(const VdbMetric& a, const VdbMetric& b) {
 }
 inline bool operator>(const VdbMetric& a, const VdbMetric& b) { return b < a; }
 /// Found by argument-dependent lookup.
-inline VdbMetric Abs(const VdbMetric& a) {
+inline VdbMetric Abs(const VdbMetric& a) {  // NOLINT(readability-identifier-naming): OpenVDB's name
     const Metric& m = a.metric;
     return VdbMetric(Metric{std::abs(m.xx), std::abs(m.yy), std::abs(m.zz), std::abs(m.xy),
                             std::abs(m.xz), std::abs(m.yz)});

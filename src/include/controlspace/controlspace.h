@@ -30,6 +30,8 @@
 extern "C" {
 #endif
 
+/* NOLINTBEGIN(readability-identifier-naming): names as C has them */
+
 /** A control space, and the structure that it is built from. To be freed by cspace_free(). */
 typedef struct cspace cspace;
 
@@ -112,6 +114,8 @@ CSPACE_API cspace_status cspace_save(const cspace* space, const char* file);
 
 /** Loads a saved control space, to be freed by cspace_free(); NULL after a failure. */
 CSPACE_API cspace_status cspace_load(const char* file, cspace** space);
+
+/* NOLINTEND(readability-identifier-naming) */
 
 #ifdef __cplusplus
 }
