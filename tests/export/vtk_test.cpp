@@ -37,13 +37,6 @@ namespace {
 
 const Box domain{{-1, -1, -1}, {1, 1, 2}};
 
-const CatalogueEntry& tree_named(const std::string& id) {
-    for (const CatalogueEntry& entry : tree_catalogue()) {
-        if (entry.id == id) return entry;
-    }
-    throw std::logic_error(id);
-}
-
 /// Filled with tensors whose numbers all differ.
 std::unique_ptr<EditableSpace> filled(const std::string& id) {
     std::vector<PointSource> sources = sample_sphere({.h = 0.2, .rho = 2});

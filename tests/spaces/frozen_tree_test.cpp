@@ -12,6 +12,7 @@
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
+#include "controlspace/space/split_words.h"
 #include "counting_allocator.h"
 #include "editable_space.h"
 #include "geometry/random_fractions.h"
@@ -34,6 +35,10 @@ struct TreeUnderTest {
         return space;
     }
 };
+
+std::string case_name(const TreeUnderTest& tree) {
+    return tree.entry->id + ", " + std::string(name_of(tree.split));
+}
 
 std::vector<TreeUnderTest> trees() {
     std::vector<TreeUnderTest> all;
@@ -69,38 +74,37 @@ std::vector<Metric> answers(const ControlSpace& space, const std::vector<Point>&
 
 }  // namespace
 
-TEST_CASE("frozen with doubles, a tree answers the same bits; with floats, to 1e-6") {
+CASE_OF_EACH(tree, trees(),
+             "frozen with doubles, a tree answers the same bits, with floats to 1e-6") {
     const std::vector<Point> x = places();
     for (const double s_n : {1.0, 0.2}) {
         const std::vector<PointSource> sources = sphere(s_n);
-        for (const TreeUnderTest& tree : trees()) {
-            CAPTURE(tree.entry->id, static_cast<int>(tree.split), s_n);
-            const auto space = tree.graded(sources);
-            const auto doubles = space->compact(Precision::doubles);
-            const auto floats = space->compact(Precision::floats);
-            const std::vector<Metric> expected = answers(*space, x);
-            CHECK(checksum(answers(*doubles, x)) == checksum(expected));
-            double most = 0;
-            const std::vector<Metric> rounded = answers(*floats, x);
-            for (std::size_t i = 0; i < x.size(); ++i) {
-                const double length = mean_length(expected[i]);
-                const auto apart = [&](double a, double b) { return std::abs(a - b) / length; };
-                const Metric& a = rounded[i];
-                const Metric& b = expected[i];
-                most = std::max({most, apart(a.xx, b.xx), apart(a.yy, b.yy), apart(a.zz, b.zz),
-                                 apart(a.xy, b.xy), apart(a.xz, b.xz), apart(a.yz, b.yz)});
-                REQUIRE(doubles->cell_at(x[i]).value() == space->cell_at(x[i]).value());
-                REQUIRE(floats->cell_at(x[i]).value() == space->cell_at(x[i]).value());
-            }
-            CHECK(most > 0);
-            // A metric is rounded by 6e-8; the quadratic's weights reach beyond 1.
-            CHECK(most < 5e-7);
-            CHECK(floats->domain() == domain);
+        CAPTURE(s_n);
+        const auto space = tree.graded(sources);
+        const auto doubles = space->compact(Precision::doubles);
+        const auto floats = space->compact(Precision::floats);
+        const std::vector<Metric> expected = answers(*space, x);
+        CHECK(checksum(answers(*doubles, x)) == checksum(expected));
+        double most = 0;
+        const std::vector<Metric> rounded = answers(*floats, x);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const double length = mean_length(expected[i]);
+            const auto apart = [&](double a, double b) { return std::abs(a - b) / length; };
+            const Metric& a = rounded[i];
+            const Metric& b = expected[i];
+            most = std::max({most, apart(a.xx, b.xx), apart(a.yy, b.yy), apart(a.zz, b.zz),
+                             apart(a.xy, b.xy), apart(a.xz, b.xz), apart(a.yz, b.yz)});
+            REQUIRE(doubles->cell_at(x[i]).value() == space->cell_at(x[i]).value());
+            REQUIRE(floats->cell_at(x[i]).value() == space->cell_at(x[i]).value());
         }
+        CHECK(most > 0);
+        // A metric is rounded by 6e-8; the quadratic's weights reach beyond 1.
+        CHECK(most < 5e-7);
+        CHECK(floats->domain() == domain);
     }
 }
 
-TEST_CASE("frozen trees have the same control nodes and links as before") {
+CASE_OF_EACH(tree, trees(), "frozen trees have the same control nodes and links as before") {
     using Entered = std::tuple<double, double, double, double, std::size_t>;
     const auto entered = [](const ControlSpace& space, Neighbourhood neighbourhood) {
         const ControlNodes nodes = control_nodes(space, neighbourhood).value();
@@ -115,37 +119,32 @@ TEST_CASE("frozen trees have the same control nodes and links as before") {
         return all;
     };
     const std::vector<PointSource> sources = sphere(1);
-    for (const TreeUnderTest& tree : trees()) {
-        CAPTURE(tree.entry->id, static_cast<int>(tree.split));
-        const auto space = tree.graded(sources);
-        const auto frozen = space->compact(Precision::doubles);
-        for (const auto neighbourhood : {Neighbourhood::faces, Neighbourhood::all}) {
-            CHECK(entered(*frozen, neighbourhood) == entered(*space, neighbourhood));
-        }
+    const auto space = tree.graded(sources);
+    const auto frozen = space->compact(Precision::doubles);
+    for (const auto neighbourhood : {Neighbourhood::faces, Neighbourhood::all}) {
+        CHECK(entered(*frozen, neighbourhood) == entered(*space, neighbourhood));
     }
 }
 
-TEST_CASE("frozen trees are small, and their footprint is what they have allocated") {
+CASE_OF_EACH(tree, trees(),
+             "frozen trees are small, and their footprint is what they have allocated") {
     const std::vector<PointSource> sources = sphere(1);
-    for (const TreeUnderTest& tree : trees()) {
-        CAPTURE(tree.entry->id, static_cast<int>(tree.split));
-        const auto space = tree.graded(sources);
-        const Footprint full = space->footprint();
-        for (const Precision precision : {Precision::doubles, Precision::floats}) {
-            const std::size_t before = live_bytes();
-            const auto frozen = space->compact(precision);
-            const std::size_t allocated = live_bytes() - before;
-            const Footprint footprint = frozen->footprint();
-            CHECK(footprint.bytes_total() <= allocated);
-            CHECK(footprint.bytes_total() + 1024 >= allocated);
-            CHECK(footprint.leaves == full.leaves);
-            CHECK(footprint.elements == full.elements);
-            CHECK(footprint.depth == full.depth);
-            CHECK(footprint.control_nodes == full.control_nodes);
-            CHECK(footprint.bytes_payload ==
-                  footprint.control_nodes * (precision == Precision::floats ? 24 : 48));
-            CHECK(footprint.bytes_auxiliary <= full.bytes_auxiliary);
-        }
+    const auto space = tree.graded(sources);
+    const Footprint full = space->footprint();
+    for (const Precision precision : {Precision::doubles, Precision::floats}) {
+        const std::size_t before = live_bytes();
+        const auto frozen = space->compact(precision);
+        const std::size_t allocated = live_bytes() - before;
+        const Footprint footprint = frozen->footprint();
+        CHECK(footprint.bytes_total() <= allocated);
+        CHECK(footprint.bytes_total() + 1024 >= allocated);
+        CHECK(footprint.leaves == full.leaves);
+        CHECK(footprint.elements == full.elements);
+        CHECK(footprint.depth == full.depth);
+        CHECK(footprint.control_nodes == full.control_nodes);
+        CHECK(footprint.bytes_payload ==
+              footprint.control_nodes * (precision == Precision::floats ? 24 : 48));
+        CHECK(footprint.bytes_auxiliary <= full.bytes_auxiliary);
     }
 }
 

@@ -1,6 +1,7 @@
 // What gradation must not do: make the field longer, or forget a source.
 #include <catch2/catch.hpp>
 
+#include "case_of_each.h"
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/sources/sampled_surfaces.h"
@@ -45,61 +46,54 @@ void check_grading(EditableSpace& space, const CatalogueEntry& entry, bool isotr
 
 }  // namespace
 
-TEST_CASE("gradation makes no control node longer, nor what leaves and isotropic vertices answer") {
+CASE_OF_EACH(
+    entry, all_trees(),
+    "gradation makes no control node longer, nor what leaves and isotropic vertices answer") {
     const bool isotropic = GENERATE(true, false);
     const auto sources = isotropic ? sample_sphere({.h = 0.05, .s_a = 2, .s_n = 1, .rho = 2})
                                    : sample_sphere({.h = 0.1, .s_a = 4, .s_n = 0.25, .rho = 2});
-    for (const CatalogueEntry& entry : all_trees()) {
-        for (const double ratio : {1.25, 1.1, 1.6}) {
-            CAPTURE(entry.id, isotropic, ratio);
-            const auto space = editable(entry.make({.domain = domain}));
-            space->insert(sources);
-            check_grading(*space, entry, isotropic, ratio);
-            check_grading(*space, entry, isotropic, ratio);
-        }
+    for (const double ratio : {1.25, 1.1, 1.6}) {
+        CAPTURE(isotropic, ratio);
+        const auto space = editable(entry.make({.domain = domain}));
+        space->insert(sources);
+        check_grading(*space, entry, isotropic, ratio);
+        check_grading(*space, entry, isotropic, ratio);
     }
 }
 
-TEST_CASE("gradation makes what was adapted no longer") {
+CASE_OF_EACH(entry, all_trees(), "gradation makes what was adapted no longer") {
     const bool isotropic = GENERATE(true, false);
     const auto sources = isotropic ? sample_sphere({.h = 0.1, .s_a = 2, .s_n = 1, .rho = 2})
                                    : sample_sphere({.h = 0.2, .s_a = 4, .s_n = 0.25, .rho = 2});
-    for (const CatalogueEntry& entry : all_trees()) {
-        CAPTURE(entry.id, isotropic);
-        const auto space = editable(entry.make({.domain = domain}));
-        space->adapt({.sources = sources, .continuous = nullptr, .ratio = 1.25, .target = 0.2});
-        check_grading(*space, entry, isotropic, 1.25);
-    }
+    CAPTURE(isotropic);
+    const auto space = editable(entry.make({.domain = domain}));
+    space->adapt({.sources = sources, .continuous = nullptr, .ratio = 1.25, .target = 0.2});
+    check_grading(*space, entry, isotropic, 1.25);
 }
 
-TEST_CASE("a lone source in a large leaf is kept by gradation") {
+CASE_OF_EACH(entry, anchored_catalogue(), "a lone source in a large leaf is kept by gradation") {
     const PointSource source{Point(0.31, -0.22, 0.13), Metric::isotropic(0.309)};
-    for (const CatalogueEntry& entry : anchored_catalogue()) {
-        CAPTURE(entry.id);
-        const auto space = editable(entry.make({.domain = domain, .l_min = 2, .ratio = 10}));
-        space->insert(source);
-        space->grade({.ratio = 10});
-        CHECK(sample_at(*space, source.position).xx == Approx(0.309));
-        space->grade({.ratio = 10});
-        CHECK(sample_at(*space, source.position).xx == Approx(0.309));
-    }
+    const auto space = editable(entry.make({.domain = domain, .l_min = 2, .ratio = 10}));
+    space->insert(source);
+    space->grade({.ratio = 10});
+    CHECK(sample_at(*space, source.position).xx == Approx(0.309));
+    space->grade({.ratio = 10});
+    CHECK(sample_at(*space, source.position).xx == Approx(0.309));
 }
 
-TEST_CASE("a later source that was met is met after the next gradation") {
+CASE_OF_EACH(entry, anchored_catalogue(),
+             "a later source that was met is met after the next gradation") {
     const auto sources = sample_sphere({.h = 0.1, .s_a = 4, .s_n = 0.25, .rho = 2});
-    for (const CatalogueEntry& entry : anchored_catalogue()) {
-        CAPTURE(entry.id);
-        const auto space = editable(entry.make({.domain = domain, .takes_later_sources = true}));
-        space->insert(sources);
+    const auto space = editable(entry.make({.domain = domain, .takes_later_sources = true}));
+    space->insert(sources);
+    space->grade({});
+    std::size_t met = 0;
+    for (const Point& x : cell_centres(domain, 4)) {
+        const Metric own = 1.02 * sample_at(*space, x);
+        if (space->insert(PointSource{x, own}) == Insertion::inserted) continue;
+        ++met;
         space->grade({});
-        std::size_t met = 0;
-        for (const Point& x : cell_centres(domain, 4)) {
-            const Metric own = 1.02 * sample_at(*space, x);
-            if (space->insert(PointSource{x, own}) == Insertion::inserted) continue;
-            ++met;
-            space->grade({});
-            CHECK(growth(sample_at(*space, x), own) <= 1.02);
-        }
-        CHECK(met > 0);
+        CHECK(growth(sample_at(*space, x), own) <= 1.02);
     }
+    CHECK(met > 0);
 }

@@ -15,13 +15,6 @@ namespace {
 
 const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
 
-const CatalogueEntry& tree(const std::string& id) {
-    for (const CatalogueEntry& entry : tree_catalogue()) {
-        if (entry.id == id) return entry;
-    }
-    throw std::logic_error(id);
-}
-
 struct Built {
     std::unique_ptr<EditableSpace> space;
     InsertionReport inserted;
@@ -34,7 +27,7 @@ Built build(const std::string& id, SplitRule split, double rho, double tau) {
     std::vector<PointSource>& sources = spheres[rho];
     if (sources.empty()) sources = sample_sphere({.rho = rho});
     Built built;
-    built.space = editable(tree(id).make({.domain = domain, .split = split, .l_min = tau}));
+    built.space = editable(tree_named(id).make({.domain = domain, .split = split, .l_min = tau}));
     built.inserted = built.space->insert(sources);
     built.footprint = built.space->footprint();
     built.megabytes = static_cast<double>(*built.footprint.bytes_published) / 1e6;
