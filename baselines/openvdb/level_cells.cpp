@@ -29,9 +29,7 @@ Box LevelCells::box(int level, const Coord& c, const Point& x) const {
 }
 
 bool LevelCells::contains(int level, const Coord& c) const {
-    const Coord n = cells_of(level);
-    return c.x() >= 0 && c.y() >= 0 && c.z() >= 0 && c.x() < n.x() && c.y() < n.y() &&
-           c.z() < n.z();
+    return openvdb::CoordBBox({}, cells_of(level).offsetBy(-1)).isInside(c);
 }
 
 LevelCells choose_levels(const SpaceOptions& options) {

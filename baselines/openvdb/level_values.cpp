@@ -12,14 +12,9 @@ namespace {
 
 using Coord = openvdb::Coord;
 
-/// visit(c) for the `n` places from the origin on, x fastest.
-template <class Visit>
-void for_each_place(const Coord& n, Visit&& visit) {
-    for (int k = 0; k < n.z(); ++k) {
-        for (int j = 0; j < n.y(); ++j) {
-            for (int i = 0; i < n.x(); ++i) visit(Coord(i, j, k));
-        }
-    }
+/// The `n` places from the origin on, x fastest.
+openvdb::CoordBBox::Iterator<false> places(const Coord& n) {
+    return openvdb::CoordBBox({}, n.offsetBy(-1)).beginXYZ();
 }
 
 /// visit(level, c) for the places of all levels where a vertex of level `own` stands.
@@ -65,17 +60,18 @@ void LevelMetrics<corner_count>::fill(LevelWriter& at, const LevelCells& cells,
                                       const Metric& metric) {
     auto& nodes = at[cells.top()];
     const Coord n = cells.cells_of(cells.top());
-    for_each_place(n.offsetBy(corners == 1 ? 0 : 1),
-                   [&](const Coord& c) { nodes.setValueOnly(c, VdbMetric(metric)); });
-    for_each_place(n, [&](const Coord& c) { nodes.setActiveState(c, true); });
+    for (auto c = places(n.offsetBy(corners == 1 ? 0 : 1)); c; ++c) {
+        nodes.setValueOnly(*c, VdbMetric(metric));
+    }
+    for (auto c = places(n); c; ++c) nodes.setActiveState(*c, true);
 }
 
 template <std::size_t corner_count>
 void LevelMetrics<corner_count>::split(LevelWriter& at, int level, const Coord& c) {
     std::array<Metric, corners> own;
     for (std::size_t i = 0; i < corners; ++i) own[i] = at.metric(level, c + corner_step(i));
-    for_each_place(Coord(corners == 1 ? 2 : 3), [&](const Coord& step) {
-        const Coord part = (c << 1) + step;
+    for (auto place = places(Coord(corners == 1 ? 2 : 3)); place; ++place) {
+        const Coord step = *place, part = (c << 1) + step;
         Metric metric = own[0];
         if constexpr (corners > 1) {
             metric =
@@ -88,7 +84,7 @@ void LevelMetrics<corner_count>::split(LevelWriter& at, int level, const Coord& 
             }
         }
         at[level - 1].setValueOnly(part, VdbMetric(metric));
-    });
+    }
     at[level].setActiveState(c, false);
     for (std::size_t i = 0; i < 8; ++i) {
         at[level - 1].setActiveState((c << 1) + corner_step(i), true);

@@ -10,7 +10,7 @@
 
 #include "cli/given_settings.h"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming)
 class App;
 }
 

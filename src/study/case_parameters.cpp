@@ -17,8 +17,8 @@ auto of_sources(Member SourcesChoice::*member) {
 auto field_kind = [](auto& c) -> auto& { return c.sources.field.kind; };
 
 template <class Place>
-Access<Case> number_of(Place place, Check check = positive) {
-    return number<Case>(place, std::move(check));
+Access<Case> number_of(Place place, const Check& check = positive) {
+    return number<Case>(place, check);
 }
 template <class Place>
 Access<Case> number_or_none(Place place) {

@@ -8,8 +8,8 @@ namespace controlspace {
 namespace {
 
 template <class Place>
-Access<MeshSettings> number_of(Place place, Check check = positive) {
-    return number<MeshSettings>(place, std::move(check));
+Access<MeshSettings> number_of(Place place, const Check& check = positive) {
+    return number<MeshSettings>(place, check);
 }
 
 Access<MeshSettings> yes_or_no() {

@@ -31,8 +31,8 @@ auto of_curvature(M CurvatureSizes::*member) {
 }
 
 template <class Place>
-Access<Study> number_of(Place place, Check check = any_number) {
-    return number<Study>(place, std::move(check));
+Access<Study> number_of(Place place, const Check& check = any_number) {
+    return number<Study>(place, check);
 }
 /// A length of which 0 means that it is not given.
 template <class Place>

@@ -153,7 +153,7 @@ TEST_CASE("a field linear in M is reproduced between nodes, or at the nearest on
     }
 }
 
-TEST_CASE("a batch is answered as its points one by one, by any number of threads") {
+TEST_CASE("a batch is answered as its points one by one, by any number of threads", "[threads]") {
     Grid grid = any_grid();
     INFO(grid.entry->id);
     grid.space->assign(random_metrics(grid.lattice.size()));

@@ -161,7 +161,7 @@ TEST_CASE("C: metrics become Riemannian ones and come back") {
     CHECK(cspace_from_riemannian(1, nullptr, other.data()) == CSPACE_BAD_INPUT);
 }
 
-TEST_CASE("C: each thread has a last error of its own") {
+TEST_CASE("C: each thread has a last error of its own", "[threads]") {
     CHECK(cspace_grade(nullptr, 1.25) == CSPACE_BAD_INPUT);
     std::string other = "not asked";
     std::thread([&] { other = cspace_last_error(); }).join();

@@ -233,7 +233,8 @@ STRUCTURE_CASE(does_not_round,
 }
 
 STRUCTURE_CASE(does_not_round,
-               "one by one, in a batch, in any order, from many threads: the same answers") {
+               "one by one, in a batch, in any order, from many threads: the same answers",
+               "[threads]") {
     const Work work = GENERATE(anisotropic_sphere(), anisotropic_oblong_box());
     CAPTURE(work.name);
     const std::vector<Point> x = random_points(work.domain, 4000, 5);

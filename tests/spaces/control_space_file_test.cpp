@@ -132,7 +132,8 @@ CASE_OF_EACH(entry, structures(),
     if (entry.has<CompactForm>()) check(*space->compact(Precision::floats));
 }
 
-TEST_CASE("files are the same to the bit however many threads there are, and read by any number") {
+TEST_CASE("files are the same to the bit however many threads there are, and read by any number",
+          "[threads]") {
     const ScratchDirectory scratch("ctrl");
     const auto space = editable(tree_named("K_oL").make({.domain = domain, .l_min = 1}));
     space->insert(sample_sphere({.rho = 0.5}));

@@ -4,7 +4,7 @@
 #include <random>
 #include <set>
 
-#include "trees/topology/face_pairs.h"
+#include "spaces/face_pairs.h"
 #include "trees/topology/touching_pairs.h"
 
 using namespace controlspace;

@@ -13,9 +13,9 @@
 
 using namespace controlspace;
 
-CASE_OF_EACH(
-    entry, structures(),
-    "a batch on many threads gets the bits of one thread, whatever its size and its place") {
+CASE_OF_EACH(entry, structures(),
+             "a batch on many threads gets the bits of one thread, whatever its size and its place",
+             "[threads]") {
     const auto threads = GENERATE(1, 2, 3);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(threads));

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "controlspace/space/split_rule.h"
+#include "spaces/face_pairs.h"
 #include "trees/topology/adjacency.h"
-#include "trees/topology/face_pairs.h"
 
 using namespace controlspace;
 

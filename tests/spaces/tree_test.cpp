@@ -5,8 +5,8 @@
 #include "case_of_each.h"
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"
+#include "spaces/face_pairs.h"
 #include "trees/control_nodes.h"
-#include "trees/topology/face_pairs.h"
 #include "trees/values/quadratic_values.h"
 #include "trees/values/vertex_values.h"
 

@@ -1,26 +1,14 @@
+#include "io/openvdb/vdb_points.h"
+
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
-
-#include <string>
-#include <vector>
 
 #include "controlspace/io/metric_grids.h"
 #include "io/openvdb/vdb_builder.h"
 
 namespace controlspace {
-namespace {
 
 namespace points = openvdb::points;
-
-template <class Value>
-void add_attribute(points::PointDataGrid& grid, const openvdb::tools::PointIndexGrid& index,
-                   const std::string& name, const std::vector<Value>& values) {
-    points::appendAttribute<Value>(grid.tree(), name);
-    points::populateAttribute(grid.tree(), index.tree(), name,
-                              points::PointAttributeVector<Value>(values));
-}
-
-}  // namespace
 
 openvdb::GridBase::Ptr make_points_grid(std::span<const PointSource> sources,
                                         const openvdb::math::Transform& transform) {

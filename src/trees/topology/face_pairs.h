@@ -90,10 +90,4 @@ private:
     Visit& visit_;
 };
 
-/// For all pairs of a tree.
-template <class Node, class Visit>
-void for_each_face_pair(const Topology<Node>& tree, Visit&& visit) {
-    FacePairs<Node, Visit>(tree, visit).within({tree.root(), tree.domain()});
-}
-
 }  // namespace controlspace

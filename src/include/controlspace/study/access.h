@@ -73,7 +73,7 @@ using Member = std::remove_reference_t<std::invoke_result_t<Place, Target&>>;
 
 /// The number at `place`: &Case::tau, or `[](auto& c) -> auto& { return c.sources.rho; }`.
 template <class Target, class Place>
-Access<Target> number(Place place, Check check = any_number, Zero zero = Zero::is_a_number) {
+Access<Target> number(Place place, const Check& check = any_number, Zero zero = Zero::is_a_number) {
     using Stored = detail::Member<Target, Place>;
     using Number = typename detail::Plain<Stored>::type;
     Access<Target> access;
