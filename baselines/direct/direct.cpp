@@ -11,10 +11,10 @@
 #include "cones/cone_field.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
-#include "space/goal_field.h"
-#include "space/saved.h"
-#include "space/shared_builder.h"
-#include "space/state.h"
+#include "controlspace/space/detail/goal_field.h"
+#include "controlspace/space/detail/saved.h"
+#include "controlspace/space/detail/shared_builder.h"
+#include "controlspace/space/detail/state.h"
 
 namespace controlspace {
 
@@ -23,9 +23,8 @@ namespace {
 /// The sources as inserted.
 class Sources {
 public:
-    explicit Sources(const SpaceOptions& options)
-        : domain_(require_volume(options.domain)), ratio_(options.ratio) {
-        require_valid(GradationOptions{.ratio = ratio_});
+    explicit Sources(const SpaceOptions& options) : domain_(options.domain), ratio_(options.ratio) {
+        require_valid(options);
     }
 
     InsertionReport insert(std::span<const PointSource> sources) {

@@ -12,7 +12,7 @@ namespace controlspace {
 /// It is graded from the start, to the `ratio` of its options; `grade` only changes that ratio,
 /// whatever the law and the schedule. Every source is kept, those that cannot matter being left out
 /// of the search; `insert` always answers `inserted`. Control nodes are the sources, in order of
-/// insertion, without neighbours: a node's metric is what its source asks for, and the field at its
+/// insertion, without neighbours: a node's metric is what its source requests, and the field at its
 /// place is smaller where another source's cone is.
 ///
 /// The search is made by `build`, on all of TBB's threads, in time in proportion to the number of

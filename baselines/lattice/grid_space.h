@@ -10,8 +10,8 @@
 #include "baselines/lattice/stencil.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/control_space.h"
-#include "space/saved.h"
-#include "space/shared_builder.h"
+#include "controlspace/space/detail/saved.h"
+#include "controlspace/space/detail/shared_builder.h"
 
 namespace controlspace {
 
@@ -22,7 +22,7 @@ namespace controlspace {
 ///   bytes_for, and, if it does not keep all bits, stored: see GridKind
 ///   reader() -> r   for one thread: r(i, j, k) -> const Metric& or Metric, and what
 ///   Stencil::sample
-///                   asks for
+///                   requests
 ///   void add_to(Footprint&) const           its bytes
 template <class Storage, Interpolation interpolation>
 class GridSpace final : public ControlSpace, public HasControlNodes, public Saved {
@@ -46,7 +46,7 @@ public:
         footprint.remark = remark_;
         storage_.add_to(footprint);
         if (!later_) return footprint;
-        footprint.bytes_auxiliary += later_->later().asked.capacity() * sizeof(Metric);
+        footprint.bytes_auxiliary += later_->later().requested.capacity() * sizeof(Metric);
         if (!Storage::shares_field) {
             footprint.bytes_auxiliary += later_->field().capacity() * sizeof(Metric);
         }

@@ -5,9 +5,9 @@
 
 #include "baselines/lattice/stencil.h"
 #include "controlspace/error.h"
+#include "controlspace/geometry/detail/large_pages.h"
 #include "controlspace/metric/intersection.h"
-#include "geometry/large_pages.h"
-#include "trees/regradation/past_state.h"
+#include "controlspace/space/detail/past_gradation.h"
 
 namespace controlspace {
 
@@ -18,10 +18,10 @@ struct RegradedNodes {
     using Node = NodeIndex;
 
     Lattice lattice;
-    std::span<const Metric> asked_metrics;
+    std::span<const Metric> requested_metrics;
     std::span<Metric> metrics;
 
-    double asked(NodeIndex node) const { return asked_metrics[node].xx; }
+    double requested(NodeIndex node) const { return requested_metrics[node].xx; }
     double field(NodeIndex node) const { return metrics[node].xx; }
     void set(NodeIndex node, double h) { metrics[node] = Metric::isotropic(h); }
     template <class Visit>
@@ -33,9 +33,9 @@ struct RegradedNodes {
 template <class Later, class State>
 void exchange(Later& later, State& state) {
     exchange_past(later.past, state);
-    state("grid.asked", later.asked);
+    state("grid.requested", later.requested);
     state("grid.lowered", later.lowered);
-    state("grid.asks_isotropic", later.asks_isotropic);
+    state("grid.requests_isotropic", later.requests_isotropic);
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ InsertionReport LatticeData::insert_between(std::span<const PointSource> sources
     const Stencil<interpolation> stencil(domain(), cells());
     const Lattice lattice = stencil.lattice();
     field();
-    std::vector<Metric>& asked = later_.asked.empty() ? field_ : later_.asked;
+    std::vector<Metric>& requested = later_.requested.empty() ? field_ : later_.requested;
     const auto lower = [this](Metric& metric, const Metric& by) {
         metric = intersection(metric, by);
         if (kind_.stored != nullptr) metric = kind_.stored(metric);
@@ -75,19 +75,20 @@ InsertionReport LatticeData::insert_between(std::span<const PointSource> sources
     for (const PointSource& source : sources) {
         require_valid(source, report.sources, domain());
         ++report.sources;
-        const Metric held = stencil.value(
-            source.position,
-            [&](auto i, auto j, auto k) -> const Metric& { return asked[lattice.index(i, j, k)]; });
+        const Metric held =
+            stencil.value(source.position, [&](auto i, auto j, auto k) -> const Metric& {
+                return requested[lattice.index(i, j, k)];
+            });
         if (!calls_for_change(source.metric, held, options_.tolerance)) continue;
         ++report.inserted;
         stencil.for_each_node(source.position, [&](auto i, auto j, auto k) {
             const NodeIndex node = lattice.index(i, j, k);
             lower(field_[node], source.metric);
-            if (later_.asked.empty()) return;
-            lower(later_.asked[node], source.metric);
+            if (later_.requested.empty()) return;
+            lower(later_.requested[node], source.metric);
             later_.lowered.push_back(node);
         });
-        later_.asks_isotropic = later_.asks_isotropic && is_isotropic(source.metric);
+        later_.requests_isotropic = later_.requests_isotropic && is_isotropic(source.metric);
     }
     return report;
 }
@@ -96,14 +97,14 @@ GradationReport LatticeData::grade(const GradationOptions& options) {
     require_valid(options);
     field();
     GradationReport report;
-    if (!later_.asked.empty() && may_regrade(later_.past, options) && later_.asks_isotropic &&
-        !are_many(later_.lowered.size(), field_.size())) {
+    if (!later_.requested.empty() && may_regrade(later_.past, options) &&
+        later_.requests_isotropic && !are_many(later_.lowered.size(), field_.size())) {
         report = regrade();
     } else {
-        if (!later_.asked.empty()) {
-            field_ = later_.asked;
+        if (!later_.requested.empty()) {
+            field_ = later_.requested;
         } else if (options_.takes_later_sources) {
-            later_.asked = field_;
+            later_.requested = field_;
         }
         report = controlspace::grade(lattice(neighbourhood_of(options)), field_, options);
         round(field_);
@@ -114,7 +115,7 @@ GradationReport LatticeData::grade(const GradationOptions& options) {
 }
 
 GradationReport LatticeData::regrade() {
-    RegradedNodes nodes{lattice(neighbourhood_of(later_.past->options)), later_.asked, field_};
+    RegradedNodes nodes{lattice(neighbourhood_of(later_.past->options)), later_.requested, field_};
     Regradation regradation(nodes, later_.past->options.ratio);
     std::sort(later_.lowered.begin(), later_.lowered.end());
     later_.lowered.erase(std::unique(later_.lowered.begin(), later_.lowered.end()),
@@ -132,7 +133,7 @@ void LatticeData::assign(std::span<const Metric> metrics) {
     field_.assign(metrics.begin(), metrics.end());
     round(field_);
     later_ = {};
-    later_.asks_isotropic = std::all_of(metrics.begin(), metrics.end(), is_isotropic);
+    later_.requests_isotropic = std::all_of(metrics.begin(), metrics.end(), is_isotropic);
 }
 
 std::unique_ptr<ControlSpace> LatticeData::finished(std::shared_ptr<const LatticeData> data) {
@@ -152,9 +153,10 @@ void LatticeData::load(const StateReader& state) {
     exchange(later_, state);
     constexpr auto misfit = "has another number of nodes than this grid";
     state.require(field_.size() == nodes, "grid.field", misfit);
-    state.require(later_.asked.empty() || later_.asked.size() == nodes, "grid.asked", misfit);
+    state.require(later_.requested.empty() || later_.requested.size() == nodes, "grid.requested",
+                  misfit);
     require_metrics(state, "grid.field", field_);
-    require_metrics(state, "grid.asked", later_.asked);
+    require_metrics(state, "grid.requested", later_.requested);
     require_below(state, "grid.lowered", later_.lowered, nodes);
 }
 

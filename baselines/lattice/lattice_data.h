@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "baselines/lattice/voxels.h"
+#include "controlspace/gradation/detail/regrade.h"
 #include "controlspace/gradation/node_graph.h"
 #include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/detail/state.h"
 #include "controlspace/space/space_options.h"
-#include "gradation/regrade.h"
-#include "space/state.h"
 
 namespace controlspace {
 
@@ -19,10 +19,10 @@ class LatticeData;
 
 /// What has to be known where sources may come after gradation.
 struct LaterSources {
-    std::vector<Metric> asked;       ///< by the sources alone; empty until it is kept apart
+    std::vector<Metric> requested;   ///< by the sources alone; empty until it is kept apart
     std::vector<NodeIndex> lowered;  ///< since the last gradation, with repetitions
     std::optional<PastGradation> past;
-    bool asks_isotropic = true;
+    bool requests_isotropic = true;
 };
 
 /// A grid of some system, as its builder needs it.

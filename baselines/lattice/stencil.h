@@ -142,7 +142,7 @@ public:
     }
 
     /// Metrics at `x`, for some points at a time, so that metrics are on their way while those
-    /// before them are blended. Of `read`, a storage's reader, it asks
+    /// before them are blended. `read`, a storage's reader, provides
     ///   prepare(cell) -> hint            a first step to the nodes of a cell
     ///   find<corners>(cell, hint) -> at  where their metrics are, which it prefetches
     ///   metric(at, corner)               one of them, const Metric& or Metric

@@ -43,7 +43,7 @@ double finest_voxel(const SpaceOptions& options) {
     if (!std::isfinite(options.finest_length) || !(options.finest_length > 0)) {
         throw InputError(
             fmt::format("a grid cannot size its voxels by a finest length of {}: set SpaceOptions::"
-                        "voxel, or finest_length to the smallest length that any source asks for",
+                        "voxel, or finest_length to the smallest length that any source requests",
                         options.finest_length));
     }
     return options.l_min * options.finest_length;

@@ -30,7 +30,7 @@ std::unique_ptr<ControlSpaceBuilder> make_openvdb_grid(const SpaceOptions& optio
 /// Gradation runs over the voxels of all grids, and refines those with an edge above `voxel_factor`
 /// in a metric that they hold, until there is none. What refines starts from the metrics before
 /// gradation, so it does not hand on what a large voxel had to be content with. No voxel is shorter
-/// than `voxel`, or, where that is 0, half of the shortest that l_min and voxel_factor ask for.
+/// than `voxel`, or, where that is 0, half of the shortest that l_min and voxel_factor request.
 ///
 /// Leaves of voxels that the finished field leaves within `prune_delta` of each other become tiles;
 /// a vertex that several grids have may then differ from grid to grid by as much.
@@ -38,7 +38,7 @@ std::unique_ptr<ControlSpaceBuilder> make_openvdb_grid(const SpaceOptions& optio
 /// Nearest: a metric per voxel. Trilinear: one per vertex, also where it hangs on the side of a
 /// larger voxel; each grid has a halo of inactive voxels for the vertices on its rim.
 ///
-/// With `takes_later_sources`, each gradation starts from what the sources ask for, on voxels that
+/// With `takes_later_sources`, each gradation starts from what the sources request, on voxels that
 /// they alone have refined: at the cost of the first one, unless nothing has changed.
 ///
 /// Payload is the leaves' values, those that mean nothing included. Throws InputError where options

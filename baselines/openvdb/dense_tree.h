@@ -57,7 +57,7 @@ void fill_densely(Tree& tree, const LatticeData& data, ValueOf&& value_of) {
 template <class Tree>
 using Accessor = openvdb::tree::ValueAccessor<Tree, false>;
 
-/// Where the values at the low corner of a cell and the others are, which it requests. `leaf` is
+/// Where the values at the low corner of a cell and the others are, which it prefetches. `leaf` is
 /// the low corner's, null where a tile is.
 template <std::size_t corners, class Tree>
 auto find_values(const Accessor<const Tree>& nodes, const openvdb::Coord& low,

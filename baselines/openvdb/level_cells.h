@@ -35,7 +35,7 @@ private:
 
 /// Levels whose finest cells have edges of at most `voxel`, or of l_min and voxel_factor times the
 /// finest length where that is 0; the coarsest are 8 to 15 along the longest edge, if there are so
-/// many. Throws InputError where the options are invalid or ask for more than 2^29 cells along an
+/// many. Throws InputError where the options are invalid or request more than 2^29 cells along an
 /// edge.
 LevelCells choose_levels(const SpaceOptions& options);
 

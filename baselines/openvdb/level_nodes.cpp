@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "controlspace/space/control_space_builder.h"
-#include "trees/topology/adjacency.h"
-#include "trees/topology/corners.h"
+#include "controlspace/trees/detail/adjacency.h"
+#include "controlspace/trees/detail/corners.h"
 
 namespace controlspace {
 

@@ -9,7 +9,7 @@
 #include "baselines/openvdb/level_cells.h"
 #include "baselines/openvdb/level_values.h"
 #include "controlspace/metric/blend.h"
-#include "space/state.h"
+#include "controlspace/space/detail/state.h"
 
 namespace controlspace {
 

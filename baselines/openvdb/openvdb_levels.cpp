@@ -10,9 +10,9 @@
 #include "baselines/openvdb/level_stack.h"
 #include "baselines/openvdb/prune.h"
 #include "controlspace/error.h"
-#include "gradation/regrade.h"
-#include "space/shared_builder.h"
-#include "trees/regradation/past_state.h"
+#include "controlspace/gradation/detail/regrade.h"
+#include "controlspace/space/detail/past_gradation.h"
+#include "controlspace/space/detail/shared_builder.h"
 
 namespace controlspace {
 
@@ -33,19 +33,19 @@ public:
 
     InsertionReport insert(std::span<const PointSource> sources) {
         InsertionReport report;
-        LevelStack& asked = asked_ ? *asked_ : field_;
-        LevelWriter to_asked(asked.trees);
+        LevelStack& requested = requested_ ? *requested_ : field_;
+        LevelWriter to_requested(requested.trees);
         LevelWriter to_field(field_.trees);
-        const LevelReader from_asked(asked.trees);
+        const LevelReader from_requested(requested.trees);
         for (const PointSource& source : sources) {
             require_valid(source, report.sources++, domain());
             Metric held;
-            sample_levels<Values>(cells_, from_asked, {&source.position, 1}, {&held, 1});
+            sample_levels<Values>(cells_, from_requested, {&source.position, 1}, {&held, 1});
             if (!calls_for_change(source.metric, held, options_.tolerance)) continue;
             ++report.inserted;
             past_.reset();
-            lower(asked, to_asked, source);
-            if (asked_) lower(field_, to_field, source);
+            lower(requested, to_requested, source);
+            if (requested_) lower(field_, to_field, source);
         }
         return report;
     }
@@ -58,7 +58,7 @@ public:
     void assign(std::span<const Metric> metrics) {
         set_field(metrics);
         prune({.delta = options_.prune_delta});
-        asked_.reset();
+        requested_.reset();
         past_.reset();
     }
 
@@ -68,10 +68,10 @@ public:
             if (past_ && past_->options == options) {
                 return {.largest_ratio_left = past_->largest_ratio_left, .visits = 0};
             }
-            if (asked_) {
-                field_ = LevelStack(*asked_);
+            if (requested_) {
+                field_ = LevelStack(*requested_);
             } else {
-                asked_.emplace(field_);
+                requested_.emplace(field_);
             }
         }
         GradationReport report;
@@ -98,18 +98,18 @@ public:
 
     void save(StateWriter& state) const {
         save_levels(field_, cells_, field_name, state);
-        state("levels.keeps_asked", asked_.has_value());
-        if (asked_) save_levels(*asked_, cells_, asked_name, state);
+        state("levels.keeps_requested", requested_.has_value());
+        if (requested_) save_levels(*requested_, cells_, requested_name, state);
         exchange_past(past_, state);
     }
     void load(const StateReader& state) {
         load_stack(field_, field_name, state);
         // Tiles stand where voxels are equal.
         prune({.delta = options_.prune_delta > 0 ? std::numeric_limits<double>::min() : 0});
-        bool keeps_asked = false;
-        state("levels.keeps_asked", keeps_asked);
-        asked_.reset();
-        if (keeps_asked) load_stack(asked_.emplace(new_stack()), asked_name, state);
+        bool keeps_requested = false;
+        state("levels.keeps_requested", keeps_requested);
+        requested_.reset();
+        if (keeps_requested) load_stack(requested_.emplace(new_stack()), requested_name, state);
         exchange_past(past_, state);
     }
 
@@ -135,7 +135,7 @@ public:
             coarsest = std::max(coarsest, level);
         }
         footprint.bytes_topology = field_.bytes() - footprint.bytes_payload;
-        if (asked_) footprint.bytes_auxiliary = asked_->bytes();
+        if (requested_) footprint.bytes_auxiliary = requested_->bytes();
         footprint.depth = coarsest - finest + 1;
         footprint.remark =
             fmt::format("voxels of {:.3g} to {:.3g}", cells_.edges(finest).maxCoeff(),
@@ -145,7 +145,7 @@ public:
 
 private:
     static constexpr const char* field_name = "levels.field";
-    static constexpr const char* asked_name = "levels.asked";
+    static constexpr const char* requested_name = "levels.requested";
 
     LevelStack new_stack() const { return {cells_, largest_metric(options_.domain), Values()}; }
     void load_stack(LevelStack& stack, const char* name, const StateReader& state) {
@@ -186,7 +186,7 @@ private:
 
     // Stops a structure that outgrows the cap, long before the system stops the program.
     void require_memory(Neighbourhood neighbourhood = Neighbourhood::faces) {
-        const std::size_t bytes = field_.bytes() + (asked_ ? asked_->bytes() : 0) +
+        const std::size_t bytes = field_.bytes() + (requested_ ? requested_->bytes() : 0) +
                                   field_.voxels * gradation_bytes_per_voxel(neighbourhood);
         if (bytes > options_.max_bytes) {
             throw InputError(
@@ -234,9 +234,9 @@ private:
     LevelStack field_;
     std::size_t next_look_ = 1 << 12;  // number of voxels at which memory is looked at again
 
-    // Where sources may come after gradation: what they ask for, on voxels that sources alone have
+    // Where sources may come after gradation: what they request, on voxels that sources alone have
     // refined; and the gradation that still holds.
-    std::optional<LevelStack> asked_;
+    std::optional<LevelStack> requested_;
     std::optional<PastGradation> past_;
 };
 

@@ -11,8 +11,8 @@
 namespace controlspace {
 
 /// A metric as the value of an OpenVDB tree, with the arithmetic, entry by entry, that the library
-/// asks of a value. Its order is lexicographic and means nothing for metrics: tools that compare
-/// values (prune with a tolerance, minimum and maximum) are of no use on such a tree.
+/// requests of a value. Its order is lexicographic and means nothing for metrics: tools that
+/// compare values (prune with a tolerance, minimum and maximum) are of no use on such a tree.
 struct VdbMetric {
     Metric metric;
 

@@ -18,7 +18,7 @@ struct PruneRule {
     bool inactive_count = true;
 };
 
-/// Puts tiles in place of nodes that are alike: the intersection of their metrics, which asks for
+/// Puts tiles in place of nodes that are alike: the intersection of their metrics, which requests
 /// no larger elements than any of them, where all are within the rule's δ of it; nothing, where all
 /// voxels are inactive and hold the background. Nodes above the leaves are joined where their tiles
 /// are equal, so that tolerances do not add up. openvdb::tools::prune is no way to do it: it

@@ -190,7 +190,7 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double
              lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
             const Metric metric = leaf.metric[lane];
-            // As the definition computes it: of like cones the last bit tells which comes first.
+            // As the definition computes it: of like cones the last bit decides which comes first.
             const double exactly = is_axis_aligned(metric)
                                        ? cone_factor({leaf.position[lane], metric}, g_, p)
                                        : factor[lane];
@@ -211,7 +211,7 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double
     queue.push(least, 0, 0);
     while (queue.advance()) {
         // The cones of a node are in its bucket or a later one: with all nodes of the bucket
-        // opened, all cones of the bucket are at hand.
+        // opened, all cones of the bucket are known.
         batch.clear();
         while (queue.has_more()) {
             const LengthQueue::Waiting next = queue.take();

@@ -174,7 +174,7 @@ IsotropicCones::Range IsotropicCones::range_in(const Box& box, Hint& hint) const
 }
 
 // The smallest of what `visit_leaf` lowers the length to, below `cap`, or up to the fraction
-// `tolerance` more. It starts where the hint says.
+// `tolerance` more. It starts at the hint.
 template <class LowerBounds, class VisitLeaf>
 double IsotropicCones::search(double cap, double tolerance, Hint& hint,
                               const LowerBounds& lower_bounds, const VisitLeaf& visit_leaf) const {

@@ -101,7 +101,7 @@ IsotropicCones::IsotropicCones(std::span<const PointSource> sources, double g, d
       // A cone's length is computed as h (1 + (g-1) |v / h|), its bounds as h + (g-1) |v|; the two
       // differ by a few roundings, and the bounds give way by more. Without growth, by none.
       safely_(g > 1 ? 1 - 64 * epsilon : 1) {
-    // Without growth only the lengths tell cones apart.
+    // Without growth cones differ in their lengths only.
     const double weight = slope_ > 0 ? 1 / slope_ : 1;
     std::vector<ConeTreeItem> items(sources.size());
     for (std::size_t i = 0; i < sources.size(); ++i) {

@@ -22,7 +22,7 @@ public:
         }
     };
 
-    /// Empties the queue. Positive lengths are told apart from `least` to `most`.
+    /// Empties the queue. Positive lengths are distinguished from `least` to `most`.
     void reset(double least, double most) {
         first_key_ = key(least);
         present_ = 0;

@@ -11,7 +11,7 @@
 
 namespace controlspace {
 
-/// Bounds of all sources below each child, for `AnisotropicCones` (which says what follows from
+/// Bounds of all sources below each child, for `AnisotropicCones` (which states what follows from
 /// them).
 struct TensorNode {
     VectorLanes centre;

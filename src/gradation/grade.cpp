@@ -7,8 +7,9 @@
 #include <functional>
 
 #include "controlspace/error.h"
-#include "geometry/large_pages.h"
+#include "controlspace/geometry/detail/large_pages.h"
 #include "geometry/threads.h"
+#include "gradation/require_known.h"
 #include "gradation/schedules.h"
 
 namespace controlspace {
@@ -18,6 +19,9 @@ void require_valid(const GradationOptions& options) {
         throw InputError(fmt::format("gradation ratio g_r is {}: give a finite value of at least 1",
                                      options.ratio));
     }
+    require_known("the law of gradation", options.law, GradationLaw::mean_length);
+    require_known("the schedule of gradation", options.schedule, GradationSchedule::passes);
+    require_known("the neighbourhood", options.neighbourhood, Neighbourhood::all);
 }
 
 namespace {
@@ -93,6 +97,7 @@ double largest_gradation_of(const ControlGraph& graph, const Metrics& metrics, G
 
 double largest_gradation(const ControlGraph& graph, std::span<const Metric> metrics,
                          GradationLaw law) {
+    require_known("the law of gradation", law, GradationLaw::mean_length);
     return largest_gradation_of(graph, metrics, law);
 }
 

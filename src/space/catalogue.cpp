@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "space/saved.h"
+#include "controlspace/space/detail/saved.h"
 
 namespace controlspace {
 

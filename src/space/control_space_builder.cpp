@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "controlspace/error.h"
+#include "controlspace/space/detail/goal_field.h"
 #include "controlspace/space/sample_parallel.h"
-#include "space/goal_field.h"
 
 namespace controlspace {
 

@@ -11,11 +11,11 @@
 #include <string_view>
 
 #include "controlspace/error.h"
+#include "controlspace/space/detail/saved.h"
+#include "controlspace/space/detail/state.h"
 #include "controlspace/version.h"
 #include "files/output_file.h"
 #include "files/text_file.h"
-#include "space/saved.h"
-#include "space/state.h"
 
 namespace controlspace {
 
@@ -80,13 +80,9 @@ void fill(const CatalogueEntry& entry, const StateReader& state, SavedControlSpa
         throw InputError("structure " + entry.id + " cannot be loaded: choose another");
     }
     own->set_recipe(saved.recipe);
-    if (saved.recipe.precision) {
-        saved.space = own->load_compact(*saved.recipe.precision, state);
-        return;
-    }
     own->load(state);
-    saved.space = builder->build();
-    saved.builder = std::move(builder);
+    saved.space = builder->build({.precision = saved.recipe.precision});
+    if (!saved.recipe.precision) saved.builder = std::move(builder);
 }
 
 // What lies between the header and the checksum.
@@ -108,8 +104,10 @@ std::string_view checked_body(std::string_view bytes, const std::string& name) {
                          header.version, control_space_file_version));
     }
     if (header.version < control_space_file_version) {
-        fail(fmt::format("has format version {}, of before the first release: build it again",
-                         header.version));
+        fail(
+            fmt::format("has format version {}, which is read no longer: build it again from its "
+                        "sources",
+                        header.version));
     }
     if (bytes.size() < header.size) {
         fail(

@@ -1,17 +1,18 @@
-#include "space/goal_field.h"
+#include "controlspace/space/detail/goal_field.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "cones/cone_field.h"
 #include "controlspace/error.h"
+#include "controlspace/geometry/detail/place_sequence.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/control_space_builder.h"
 #include "controlspace/space/sample_parallel.h"
 #include "controlspace/space/space_options.h"
-#include "geometry/place_sequence.h"
 
 namespace controlspace {
 
@@ -29,8 +30,8 @@ const AdaptationGoal& require_valid(const AdaptationGoal& goal, const Box& domai
     return goal;
 }
 
-// Shortening of lengths that may be passed over: some hundredth of the target, as δ.
-double negligible(double target) { return 0.1 * std::sqrt(target); }
+// Some hundredth of the target, as δ.
+double negligible_for(double target) { return 0.1 * std::sqrt(target); }
 
 }  // namespace
 
@@ -40,35 +41,18 @@ GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
       sources_(goal.sources),
       continuous_(goal.continuous),
       largest_(largest_metric(domain)),
-      cones_(goal.sources, goal.ratio, largest_, negligible(goal.target)) {}
+      cones_(std::make_unique<ConeField>(goal.sources, goal.ratio, largest_,
+                                         negligible_for(goal.target))) {}
+
+GoalField::~GoalField() = default;
+
+bool GoalField::has_ranges() const { return continuous_ == nullptr && cones_->is_isotropic(); }
+std::span<const std::uint32_t> GoalField::kept() const { return cones_->kept(); }
+double GoalField::negligible() const { return negligible_for(target_); }
 
 void GoalField::sample(std::span<const Point> x, std::span<Metric> out) const {
-    cones_.evaluate(x, out);
+    cones_->evaluate(x, out);
     add_continuous(x, out);
-}
-
-void GoalField::evaluate_here(std::span<const Point> x, std::span<Metric> out,
-                              ConeField::Memory& memory) const {
-    cones_.evaluate(x, out, memory);
-    add_continuous(x, out);
-}
-
-void GoalField::evaluate_here(std::span<const Point> x, std::span<Metric> out,
-                              const NearbyCones& nearby) const {
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        out[i] = Metric::isotropic(nearby.smallest_length(x[i]));
-    }
-    add_continuous(x, out);
-}
-
-double GoalField::evaluate_roughly(std::span<const Point> x, std::span<Metric> out,
-                                   ConeField::Memory& memory) const {
-    if (!has_ranges()) {
-        evaluate_here(x, out, memory);
-        return 1;
-    }
-    cones_.evaluate_roughly(x, negligible(target_), out, memory);
-    return 1 + negligible(target_);
 }
 
 void GoalField::add_continuous(std::span<const Point> x, std::span<Metric> out) const {

@@ -6,6 +6,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/gradation/grade.h"
+#include "gradation/require_known.h"
 
 namespace controlspace {
 
@@ -26,15 +27,6 @@ void require_not_negative(const char* name, double value) {
 void require_depth(const char* name, int depth, int deepest) {
     if (depth < 0 || depth > deepest) {
         throw InputError(fmt::format("{} is {}: give a value from 0 to {}", name, depth, deepest));
-    }
-}
-
-// Enumerations from outside, cast from numbers.
-template <class Enumeration>
-void require_known(const char* name, Enumeration value, Enumeration last) {
-    if (value < Enumeration{} || value > last) {
-        throw InputError(
-            fmt::format("{} is {}: give one of its named values", name, static_cast<int>(value)));
     }
 }
 

@@ -1,4 +1,4 @@
-#include "space/state.h"
+#include "controlspace/space/detail/state.h"
 
 #include <blosc.h>
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace {
 
 // Small enough for a second-level cache, large enough for the compressor.
 constexpr std::size_t chunk_bytes = std::size_t{1} << 18;
-// LZ4 turns a byte into 255 at most: a chunk that says more lies.
+// LZ4 expands a byte to 255 at most: a chunk that claims more is forged.
 constexpr std::size_t largest_expansion = 256;
 constexpr std::size_t largest_element = 255;  // that Blosc can shuffle
 
@@ -49,8 +49,8 @@ std::size_t chunk_elements(std::size_t element_size) {
 
 std::size_t chunks_at_once() { return 2 * threads_allowed(); }
 
-// Calls make(i) on all threads and, in the order of i, take(i) on one at a time; what the two hand
-// over fits in `room` places i % room.
+// Calls make(i) on all threads and, in the order of i, take(i) on one at a time; their results are
+// exchanged in `room` places i % room.
 template <class Make, class Take>
 void in_order(std::size_t count, std::size_t room, const Make& make, const Take& take) {
     if (count == 1) {  // most arrays are single numbers: no other thread needs to wake up

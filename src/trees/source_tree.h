@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "controlspace/gradation/grade.h"
-#include "trees/growing_tree.h"
-#include "trees/insertion/published_bytes.h"
-#include "trees/topology/leaf_graph.h"
+#include "controlspace/trees/detail/growing_tree.h"
+#include "controlspace/trees/detail/leaf_graph.h"
+#include "controlspace/trees/detail/published_bytes.h"
 #include "trees/values/anchored_values.h"
 
 namespace controlspace {
 
-/// A tree whose leaves keep sources (K_LA, K_oLA), as SharedBuilder wants it: a query evaluates the
+/// A tree whose leaves keep sources (K_LA, K_oLA), for SharedBuilder: a query evaluates the
 /// cones of the leaf's sources.
 template <class Node>
 class SourceTree : public GrowingTree<Node, AnchoredValues> {
@@ -28,7 +28,7 @@ public:
         InsertionReport report;
         for (const PointSource& source : sources) {
             require_valid(source, report.sources++, Base::domain());
-            const Metric held = storage_.value(topology_, source.position);
+            const Metric held = value_at(topology_, storage_, source.position);
             if (!calls_for_change(source.metric, held, options_.tolerance)) continue;
             storage_.add(Base::cut_for(source).leaf, source);
             is_graded_ = false;
@@ -44,16 +44,16 @@ public:
         std::vector<Metric> metrics;
         metrics.reserve(leaves.order.size());
         for (const Point& x : leaves.graph.positions) {
-            metrics.push_back(storage_.value(topology_, x));
+            metrics.push_back(value_at(topology_, storage_, x));
         }
         return {std::move(leaves.graph), std::move(metrics)};
     }
 
-    /// Looks up which sources govern the leaves; the law is the cone law whatever is asked, since
-    /// that is what a cone is. On the way leaves where three and more do are cut, down to l_min in
-    /// their own metric. The field gets nowhere longer, if all is isotropic: a ratio larger than
-    /// before changes nothing, and what may govern a place in a leaf stays its anchor. Without new
-    /// sources or a smaller ratio there is nothing to do.
+    /// Finds the sources that govern the leaves; the law is always the cone law. Leaves governed by
+    /// three sources and more are cut, down to
+    /// l_min in their own metric. The field gets nowhere longer, if all is isotropic: a ratio
+    /// larger than before changes nothing, and what may govern a place in a leaf stays its anchor.
+    /// Without new sources or a smaller ratio there is nothing to do.
     GradationReport grade(const GradationOptions& options) {
         require_valid(options);
         constexpr double close = 0.02;  // non-conformity to the exact field
@@ -68,7 +68,7 @@ public:
         TreeAdaptation adaptation(topology_, storage_, field, goal);
         adaptation.run(false, [&](const Box& box, const auto& along, auto& cut) {
             ++report.operations;
-            return Base::cuts().is_too_long(storage_.value(topology_, box.centre()), box) &&
+            return Base::cuts().is_too_long(value_at(topology_, storage_, box.centre()), box) &&
                    Base::split_across(box, along, cut);
         });
         finish();

@@ -232,7 +232,7 @@ TEST_CASE("an isotropic source is met at its place, and changes only the nodes a
     grid.read();
     CHECK(grid.metrics == expected);
 
-    // Met now, and so is anything that asks for no less; a smaller length is not.
+    // Met now, and so is anything that requests no less; a smaller length is not.
     CHECK(grid.space->insert(source) == Insertion::already_met);
     CHECK(grid.space->insert({source.position, Metric::isotropic(0.5)}) == Insertion::already_met);
     CHECK(grid.space->insert({source.position, Metric::isotropic(0.095)}) ==
@@ -245,9 +245,9 @@ TEST_CASE("sources on the corners and faces of the domain are met") {
     INFO(grid.entry->id);
     const Box& box = grid.space->domain();
     for (int i = 0; i < 8; ++i) {
-        const Metric asked = Metric::isotropic(0.1 + 0.01 * i);
-        grid.space->insert({corner(box, i), asked});
-        CHECK(difference(sample_at(*grid.space, corner(box, i)), asked) <= 1e-15);
+        const Metric requested = Metric::isotropic(0.1 + 0.01 * i);
+        grid.space->insert({corner(box, i), requested});
+        CHECK(difference(sample_at(*grid.space, corner(box, i)), requested) <= 1e-15);
     }
 }
 

@@ -181,7 +181,7 @@ TEST_CASE("after gradation no voxel is longer than its factor times the size it 
         largest_allowed = std::max(largest_allowed, element.edges().maxCoeff());
     }
     CHECK(longest <= options.voxel_factor * (1 + 1e-6));
-    CHECK(longest > 0.5 * options.voxel_factor);  // not finer than that asks for
+    CHECK(longest > 0.5 * options.voxel_factor);  // not finer than that requests
     CHECK(largest_allowed > 2 * finest);
 }
 

@@ -38,9 +38,9 @@ std::vector<Workload> workloads() {
     for (Workload& work : all) {
         if (&work == &all.back()) break;
         const Box& box = work.options.domain;
-        const Metric asked = Metric::isotropic(2 * work.options.voxel);
-        work.sources = {{box.low + 0.3 * box.edges(), asked}};
-        if (&work != &all[5]) work.sources.push_back({box.low + 0.9 * box.edges(), asked});
+        const Metric requested = Metric::isotropic(2 * work.options.voxel);
+        work.sources = {{box.low + 0.3 * box.edges(), requested}};
+        if (&work != &all[5]) work.sources.push_back({box.low + 0.9 * box.edges(), requested});
     }
     return all;
 }

@@ -55,7 +55,7 @@ TEST_CASE("info says what a saved control space is and holds") {
     CHECK_THAT(said("--structures K_V --splits s_G --tau 0.5 --frozen floats"),
                Contains("structure    K_V: kd-tree, trilinear") &&
                    Contains("frozen       in floats") && Contains("saved by     controlspace ") &&
-                   Contains(", format 2\n") && Contains("split s_G, tau 0.5, epsilon 0.2") &&
+                   Contains(", format 3\n") && Contains("split s_G, tau 0.5, epsilon 0.2") &&
                    Contains("of them leaves, in ") && Contains("MB in the file") &&
                    Contains("sizes        0.1 to ") && Contains("anisotropy   1 at most") &&
                    Contains("gradation    1."));

@@ -126,7 +126,7 @@ TEST_CASE("bounds in a box: the least is met, and one cone stays below the most"
     CHECK(most == cap);
 }
 
-TEST_CASE("a rough answer is never below the exact one, nor above it by more than asked") {
+TEST_CASE("a rough answer is never below the exact one, nor above it by more than requested") {
     Draw draw(4);
     const auto sources = sample_sphere({.h = 0.05});
     const ConeField field(sources, g, wide);

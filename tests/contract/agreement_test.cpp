@@ -71,7 +71,7 @@ Work any_isotropic_work() { return GENERATE(isotropic_sphere(), oblong_box()); }
 // there: b no slower than along the straight line from somewhere in the source's cell to somewhere
 // in the probe's, which nodes are half a diagonal away from, a by g - 1 for each length of the way.
 // Where values pass from node to node that way is along the axes at worst: √3 times as long, within
-// cells too. And a may hold up to `met` times what the source asks for.
+// cells too. And a may hold up to `met` times what the source requests.
 double largest_excess(const Work& work, const Exact& exact, const Field& a, const Field& b,
                       std::size_t i) {
     const double detour = a.structure.entry->has<KeptSources>() ? 1 : std::sqrt(3);
@@ -135,7 +135,7 @@ TEST_CASE("structures agree with each other, pair by pair") {
 }
 
 STRUCTURE_CASE(has_no_slabs,
-               "where elements are small against the size asked for, agreement is close") {
+               "where elements are small against the size requested, agreement is close") {
     // With l_min a quarter, and sources as dense, only the propagation along the axes is left near
     // the sphere: sizes up to (0.1 + √3 0.25 d) / (0.1 + 0.25 d) too large, d = 0.02, and an
     // element's extent.

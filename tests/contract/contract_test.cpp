@@ -31,9 +31,9 @@ Work any_work() {
 }
 Work any_isotropic_work() { return GENERATE(isotropic_sphere(), oblong_box()); }
 
-// How much larger `held` is than `asked` allows: δ to what it should at most be.
-double coarser_than_asked(const Metric& held, const Metric& asked) {
-    return nonconformity(held, intersection(held, asked));
+// How much larger `held` is than `requested` allows: δ to what it should at most be.
+double coarser_than_requested(const Metric& held, const Metric& requested) {
+    return nonconformity(held, intersection(held, requested));
 }
 
 // Length of a path along the axes by `v`, in metric `m`: no path through faces is shorter than the
@@ -82,14 +82,14 @@ STRUCTURE_CASE(does_not_round,
 }
 
 STRUCTURE_CASE(does_not_round,
-               "at its place a source is met: never coarser than asked by epsilon") {
+               "at its place a source is met: never coarser than requested by epsilon") {
     const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere(), oblong_box());
     CAPTURE(work.name);
     const auto space = work.graded(structure);
     double worst = 0;
     for (const PointSource& source : work.sources) {
-        worst =
-            std::max(worst, coarser_than_asked(sample_at(*space, source.position), source.metric));
+        worst = std::max(worst,
+                         coarser_than_requested(sample_at(*space, source.position), source.metric));
     }
     CHECK(worst < 0.2);
 }
@@ -189,7 +189,7 @@ STRUCTURE_CASE(does_not_round, "a control node's own metric at its own place") {
     std::visit(
         [&](const auto& graph) {
             double worst = 0;
-            std::size_t asked = 0;
+            std::size_t requested = 0;
             for (NodeIndex i = 0; i < graph.size(); i += 5) {
                 const Point p = graph.position(i);
                 // A hanging vertex counts in the finer elements at it only.
@@ -198,9 +198,9 @@ STRUCTURE_CASE(does_not_round, "a control node's own metric at its own place") {
                     continue;
                 const double delta = nonconformity(sample_at(*space, p), nodes.metrics[i]);
                 worst = std::max(worst, delta);
-                ++asked;
+                ++requested;
             }
-            CHECK(asked > graph.size() / 50);
+            CHECK(requested > graph.size() / 50);
             CHECK(worst < 1e-12);
         },
         nodes.graph);

@@ -127,7 +127,7 @@ std::size_t bad_answers(const ControlSpace& space, const std::vector<Point>& x, 
 }
 
 /// Largest δ over the sources between what is held there and what it should at most be. K_Li holds
-/// at its leaf's centre what is asked, and grows from there as the gradation allows.
+/// at its leaf's centre what is requested, and grows from there as the gradation allows.
 double worst_at_sources(const ControlSpace& space, const std::vector<PointSource>& sources,
                         int order) {
     double worst = 0;

@@ -1,4 +1,4 @@
-// Sources that lie anyhow and ask for 50:1: every structure must take them.
+// Sources that lie anyhow and request 50:1: every structure must take them.
 #include <catch2/catch.hpp>
 
 #include "contract/structure_case.h"
@@ -11,14 +11,14 @@ using namespace controlspace;
 
 namespace {
 
-// A grid as fine as 50:1 asks for would take gigabytes.
+// A grid as fine as 50:1 requests would take gigabytes.
 std::unique_ptr<EditableSpace> made(const Structure& structure, const Work& work) {
     SpaceOptions options = work.options(structure.split);
     options.voxel = 0.2;
     return editable(structure.entry->make(options));
 }
 
-// Largest ratio of a length that `space` answers at a source to what the source asks for.
+// Largest ratio of a length that `space` answers at a source to what the source requests.
 double largest_growth(const ControlSpace& space, const std::vector<PointSource>& sources) {
     double largest = 0;
     for (const PointSource& source : sources) {

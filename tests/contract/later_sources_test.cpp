@@ -164,7 +164,7 @@ STRUCTURE_CASE(keeps_node_values,
 }
 
 STRUCTURE_CASE(keeps_node_values,
-               "another neighbourhood grades what the sources ask for, not what was graded") {
+               "another neighbourhood grades what the sources request, not what was graded") {
     const std::vector<Batch> batches{scattered(100, 12)};
     const auto space = all_at_once(structure, batches, {.neighbourhood = Neighbourhood::all});
     space->grade({});
@@ -172,7 +172,7 @@ STRUCTURE_CASE(keeps_node_values,
 }
 
 STRUCTURE_CASE(keeps_node_values,
-               "another ratio grades what the sources ask for, not what was graded") {
+               "another ratio grades what the sources request, not what was graded") {
     const std::vector<Batch> batches{scattered(100, 12)};
     const auto space = all_at_once(structure, batches, {.ratio = 1.1});
     space->grade({.ratio = 1.5});
@@ -201,7 +201,7 @@ STRUCTURE_CASE(keeps_node_values,
     CHECK(growth < 1 + 1e-12);
 }
 
-STRUCTURE_CASE(keeps_node_values, "an assigned field is what is asked for from then on") {
+STRUCTURE_CASE(keeps_node_values, "an assigned field is what is requested from then on") {
     if (is_direct(*structure.entry)) return;
     const auto space = all_at_once(structure, {scattered(100, 15)}, {});
     std::vector<Metric> metrics = node_metrics(*space);

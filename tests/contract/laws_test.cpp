@@ -47,20 +47,20 @@ bool is_independent_of_axes(const Structure& structure) {
 
 }  // namespace
 
-STRUCTURE_CASE(does_not_round, "twice as large, a field asks for twice the lengths") {
+STRUCTURE_CASE(does_not_round, "twice as large, a field requests twice the lengths") {
     const auto twice = [](const auto& x) { return std::decay_t<decltype(x)>(2 * x); };
     const auto doubled = [](const Metric& m) { return 2 * m; };
     CHECK(largest_difference(structure, rounded_oblong_box(), twice, doubled) < 1e-9);
 }
 
 // Golden and metric cuts lie at rounded places, where a leaf more or less may be needed.
-STRUCTURE_CASE(splits_in_the_middle, "moved, a field asks for the same") {
+STRUCTURE_CASE(splits_in_the_middle, "moved, a field requests the same") {
     const auto moved = [](const Point& x) { return Point(x + Vector(-1024, 256, 64)); };
     const auto same = [](const Metric& m) { return m; };
     CHECK(largest_difference(structure, rounded_oblong_box(), moved, same) < 1e-9);
 }
 
-STRUCTURE_CASE(is_independent_of_axes, "with its axes exchanged, a field asks for the same") {
+STRUCTURE_CASE(is_independent_of_axes, "with its axes exchanged, a field requests the same") {
     const auto turned = [](const Point& x) { return Point(x[1], x[2], x[0]); };
     const auto metric = [](const Metric& m) { return Metric{m.yy, m.zz, m.xx, m.yz, m.xy, m.xz}; };
     CHECK(largest_difference(structure, rounded_oblong_box(), turned, metric) < 1e-9);

@@ -64,6 +64,16 @@ double gradation_excess(const ControlGraph& graph, const std::vector<Metric>& me
 
 }  // namespace
 
+TEST_CASE("an unknown law is refused by each function that takes one") {
+    const ControlGraph graph = Lattice{Point::Zero(), Vector::Ones(), {2, 1, 1}};
+    std::vector<Metric> metrics{Metric::isotropic(1), Metric::isotropic(9)};
+    const std::vector<Metric> before = metrics;
+    const auto law = static_cast<GradationLaw>(77);
+    CHECK_THROWS_WITH(grade(graph, metrics, {.law = law}), Catch::Contains("gradation is 77"));
+    CHECK_THROWS_WITH(largest_gradation(graph, metrics, law), Catch::Contains("gradation is 77"));
+    CHECK(metrics == before);
+}
+
 TEST_CASE("one small node: sizes grow with the length of the path along the lattice") {
     const Lattice lattice = cube(9);
     std::vector<Metric> metrics(lattice.size(), Metric::isotropic(10));

@@ -1,4 +1,4 @@
-#include "gradation/regrade.h"
+#include "controlspace/gradation/detail/regrade.h"
 
 #include <catch2/catch.hpp>
 #include <random>
@@ -17,9 +17,9 @@ struct Cloud {
 
     std::vector<Point> positions;
     std::vector<std::vector<NodeIndex>> links;
-    std::vector<Metric> asks, holds;
+    std::vector<Metric> requests, holds;
 
-    double asked(NodeIndex i) const { return asks[i].xx; }
+    double requested(NodeIndex i) const { return requests[i].xx; }
     double field(NodeIndex i) const { return holds[i].xx; }
     void set(NodeIndex i, double h) { holds[i] = Metric::isotropic(h); }
     template <class Visit>
@@ -42,7 +42,7 @@ struct Cloud {
             graph.neighbours.insert(graph.neighbours.end(), row.begin(), row.end());
             graph.first.push_back(graph.neighbours.size());
         }
-        std::vector<Metric> metrics = asks;
+        std::vector<Metric> metrics = requests;
         grade(graph, metrics, {.ratio = g});
         return metrics;
     }
@@ -56,7 +56,7 @@ Cloud random_cloud(NodeIndex n, unsigned seed) {
     cloud.links.resize(n);
     for (NodeIndex i = 0; i < n; ++i) {
         cloud.positions.emplace_back(uniform(engine), uniform(engine), uniform(engine));
-        cloud.asks.push_back(Metric::isotropic(uniform(engine) < 0.9 ? 1 : 0.02));
+        cloud.requests.push_back(Metric::isotropic(uniform(engine) < 0.9 ? 1 : 0.02));
         for (NodeIndex j = 0; j < i; ++j) {
             if ((cloud.positions[i] - cloud.positions[j]).norm() < 0.2) cloud.link(i, j);
         }
@@ -68,12 +68,12 @@ Cloud random_cloud(NodeIndex n, unsigned seed) {
 }  // namespace
 
 TEST_CASE(
-    "where nodes ask for less: to the bit as all graded, and only what they change is visited") {
+    "where nodes request less: to the bit as all graded, and only what they change is visited") {
     Cloud cloud = random_cloud(400, 1);
     const std::vector<Metric> before = cloud.holds;
     Regradation regradation(cloud, g);
     const NodeIndex lowered = 17;
-    cloud.asks[lowered] = cloud.holds[lowered] = Metric::isotropic(0.4 * cloud.field(lowered));
+    cloud.requests[lowered] = cloud.holds[lowered] = Metric::isotropic(0.4 * cloud.field(lowered));
     regradation.touch(lowered);
     const GradationReport report = regradation.run(1);
     CHECK(cloud.holds == cloud.all_graded());
@@ -97,7 +97,7 @@ TEST_CASE("where nodes lose their neighbours, those that hung on them grow") {
         std::vector<NodeIndex> doubtful;
         for (const NodeIndex j : neighbours) {
             const Vector v = cloud.positions[j] - cloud.positions[lost];
-            if (regradation.may_hang_on(j, held, v)) doubtful.push_back(j);
+            if (regradation.may_depend_on(j, held, v)) doubtful.push_back(j);
         }
         regradation.renew(lost);
         for (const NodeIndex j : doubtful) regradation.release(j);
@@ -120,7 +120,7 @@ TEST_CASE("new links and new nodes take part") {
         const auto c = static_cast<NodeIndex>(cloud.links.size());
         if (a == b) continue;
         cloud.positions.push_back(0.5 * (cloud.positions[a] + cloud.positions[b]));
-        cloud.asks.push_back(Metric::isotropic(0.02 + uniform(engine)));
+        cloud.requests.push_back(Metric::isotropic(0.02 + uniform(engine)));
         cloud.holds.push_back(Metric::isotropic(1e-3));  // whatever it is
         cloud.links.emplace_back();
         cloud.link(a, b);

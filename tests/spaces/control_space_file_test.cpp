@@ -65,7 +65,7 @@ TEST_CASE("files of control spaces: what they begin with") {
     const std::string bytes = saved(scratch, "K_oL");
     // Signature, version 2, order of bytes, size: little-endian.
     CHECK(bytes.substr(0, 16) == std::string("\x89"
-                                             "CTRL\r\n\x1a\2\0\0\0\4\3\2\1",
+                                             "CTRL\r\n\x1a\3\0\0\0\4\3\2\1",
                                              16));
     std::string signed_again = bytes;
     sign(signed_again);
@@ -84,11 +84,13 @@ TEST_CASE("files of control spaces: what is refused, and why") {
                Contains("is a directory"));
 
     std::string newer = bytes;
-    put(newer, 8, std::uint32_t{3});
-    CHECK_THAT(loading_error(scratch, newer), Contains("format version 3, this program reads up"));
-    std::string older = bytes;
-    put(older, 8, std::uint32_t{1});
-    CHECK_THAT(loading_error(scratch, older), Contains("version 1, of before the first release"));
+    put(newer, 8, std::uint32_t{4});
+    CHECK_THAT(loading_error(scratch, newer), Contains("format version 4, this program reads up"));
+    for (const std::uint32_t version : {1, 2}) {
+        std::string older = bytes;
+        put(older, 8, version);
+        CHECK_THAT(loading_error(scratch, older), Contains("read no longer: build it again"));
+    }
     std::string turned = bytes;
     std::reverse(turned.begin() + 12, turned.begin() + 16);
     CHECK_THAT(loading_error(scratch, turned), Contains("order of bytes"));
@@ -158,7 +160,7 @@ TEST_CASE("files are the same to the bit however many threads there are, and rea
     CHECK(saved_by(*loaded, "again.ctrl") == by_many);
 }
 
-TEST_CASE("an array that is said to be huge is refused before memory is asked for") {
+TEST_CASE("an array that is said to be huge is refused before memory is requested") {
     const ScratchDirectory scratch("ctrl");
     const std::string bytes = saved(scratch, "K_oL");
     const std::size_t name = bytes.find("nodes.field");

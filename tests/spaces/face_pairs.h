@@ -1,6 +1,6 @@
 #pragma once
 
-#include "trees/topology/face_pairs.h"
+#include "controlspace/trees/detail/face_pairs.h"
 
 namespace controlspace {
 

@@ -1,11 +1,11 @@
-#include "trees/topology/leaves_where.h"
+#include "controlspace/trees/detail/leaves_where.h"
 
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
 
+#include "controlspace/trees/detail/touching_pairs.h"
 #include "spaces/face_pairs.h"
-#include "trees/topology/touching_pairs.h"
 
 using namespace controlspace;
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "controlspace/space/split_rule.h"
+#include "controlspace/trees/detail/adjacency.h"
 #include "geometry/random_fractions.h"
-#include "trees/topology/adjacency.h"
 
 using namespace controlspace;
 

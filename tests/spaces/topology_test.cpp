@@ -1,4 +1,4 @@
-#include "trees/topology/topology.h"
+#include "controlspace/trees/topology.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -8,8 +8,8 @@
 #include <set>
 
 #include "controlspace/space/split_rule.h"
+#include "controlspace/trees/detail/adjacency.h"
 #include "spaces/face_pairs.h"
-#include "trees/topology/adjacency.h"
 
 using namespace controlspace;
 

@@ -4,9 +4,10 @@
 
 #include "case_of_each.h"
 #include "controlspace/metric/nonconformity.h"
+#include "controlspace/trees/detail/control_nodes.h"
+#include "controlspace/trees/detail/sample_leaves.h"
 #include "editable_space.h"
 #include "spaces/face_pairs.h"
-#include "trees/control_nodes.h"
 #include "trees/values/quadratic_values.h"
 #include "trees/values/vertex_values.h"
 
@@ -53,7 +54,7 @@ int level_of(const Box& box) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a split alone changes nothing in a leaf storage", "", LeafValues,
+TEMPLATE_TEST_CASE("a split alone changes nothing in a leaf storage", "", LeafMetrics,
                    QuadraticValues) {
     Topology<OctreeNode> tree(domain);
     TestType storage({.domain = domain});
@@ -63,15 +64,16 @@ TEMPLATE_TEST_CASE("a split alone changes nothing in a leaf storage", "", LeafVa
         const LeafPlace place = tree.locate(source.position);
         const std::vector<Point> x = places(50, 99);
         std::vector<Metric> before;
-        for (const Point& p : x) before.push_back(LeafValues(storage).value(tree, p));
+        for (const Point& p : x)
+            before.push_back(value_at(tree, field_of(LeafMetrics(storage)), p));
         const auto first_new = static_cast<LeafIndex>(tree.leaves());
         const Subdivision s = octants(place.box);
         tree.split(place, s);
         storage.split(s, place.leaf, first_new);
         for (std::size_t k = 0; k < x.size(); ++k) {
-            CHECK(LeafValues(storage).value(tree, x[k]) == before[k]);
+            CHECK(value_at(tree, field_of(LeafMetrics(storage)), x[k]) == before[k]);
         }
-        lower_nodes(storage, tree.find(source.position), source.metric);
+        lower_nodes(storage, tree.locate(source.position), source.metric);
     }
 }
 
@@ -81,7 +83,7 @@ TEST_CASE("a split alone changes nothing in a vertex storage, but for hanging ve
     const std::vector<Point> x = places(200, 99);
     const auto field = [&] {
         std::vector<double> values;
-        for (const Point& p : x) values.push_back(storage.value(tree, p).xx);
+        for (const Point& p : x) values.push_back(value_at(tree, field_of(storage), p).xx);
         return values;
     };
     const auto split = [&](const Point& at) {
@@ -93,7 +95,7 @@ TEST_CASE("a split alone changes nothing in a vertex storage, but for hanging ve
     };
     split(Point::Zero());
     for (const Point& corner_of : {Point(-0.5, -0.5, -0.5), Point(0.5, 0.5, 0.5)}) {
-        lower_nodes(storage, tree.find(corner_of), Metric::isotropic(0.3));
+        lower_nodes(storage, tree.locate(corner_of), Metric::isotropic(0.3));
     }
     SECTION("where no neighbour is finer, the field stays") {
         const std::vector<double> before = field();
@@ -105,7 +107,7 @@ TEST_CASE("a split alone changes nothing in a vertex storage, but for hanging ve
     SECTION("a finer neighbour's vertices begin to count: never larger") {
         split(Point(-0.5, -0.5, -0.5));
         const Point inner(-0.1, -0.1, -0.1);
-        lower_nodes(storage, tree.find(inner), Metric::isotropic(0.1));
+        lower_nodes(storage, tree.locate(inner), Metric::isotropic(0.1));
         const std::vector<double> before = field();
         split(Point(0.5, -0.5, -0.5));
         const std::vector<double> after = field();

@@ -1,4 +1,4 @@
-#include "trees/topology/work_through.h"
+#include "controlspace/trees/detail/work_through.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,4 +1,4 @@
-#include "trees/adaptation/leaf_places.h"
+#include "controlspace/trees/detail/leaf_places.h"
 
 #include <algorithm>
 

@@ -5,14 +5,14 @@
 
 namespace controlspace {
 
-bool calls_for_change(const Metric& asked, const Metric& held, double tolerance) {
+bool calls_for_change(const Metric& requested, const Metric& held, double tolerance) {
     // At once where an intersection would leave `held` as it is.
-    if (is_axis_aligned(asked) && is_axis_aligned(held) && held.xx <= asked.xx &&
-        held.yy <= asked.yy && held.zz <= asked.zz) {
+    if (is_axis_aligned(requested) && is_axis_aligned(held) && held.xx <= requested.xx &&
+        held.yy <= requested.yy && held.zz <= requested.zz) {
         return false;
     }
-    if (nonconformity(asked, held) < tolerance) return false;
-    const Metric limited = intersection(held, asked);
+    if (nonconformity(requested, held) < tolerance) return false;
+    const Metric limited = intersection(held, requested);
     return limited != held && nonconformity(held, limited) >= tolerance;
 }
 

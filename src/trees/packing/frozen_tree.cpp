@@ -11,47 +11,12 @@
 
 #include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
-#include "space/saved.h"
+#include "controlspace/trees/detail/packed_tree.h"
 #include "trees/packing/frozen_values.h"
-#include "trees/topology/sample_leaves.h"
-#include "trees/topology/topology_state.h"
 
 namespace controlspace {
 
 namespace {
-
-template <class Node, class Values>
-class FrozenTree final : public ControlSpace, public HasControlNodes, public Saved {
-public:
-    FrozenTree(Topology<Node> topology, Values values)
-        : topology_(std::move(topology)), values_(std::move(values)) {}
-
-    void sample(std::span<const Point> x, std::span<Metric> out) const override {
-        sample_leaves(topology_, values_, x, out);
-    }
-    ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
-        return values_.control_nodes(topology_, neighbourhood);
-    }
-    Box domain() const override { return topology_.domain(); }
-    std::optional<Box> cell_at(const Point& x) const override { return topology_.locate(x).box; }
-    Footprint footprint() const override {
-        Footprint footprint;
-        topology_.describe(footprint);
-        values_.describe(footprint);
-        return footprint;
-    }
-
-    void save(StateWriter& state) const override {
-        state("frozen.is_octree", Node::is_octant);
-        state("frozen.kind", Values::kind, FrozenKind::vertices);
-        controlspace::save(topology_, state);
-        values_.save(state);
-    }
-
-private:
-    Topology<Node> topology_;
-    Values values_;
-};
 
 // Throws InputError if `rounded` is too far from `m`.
 void require_close(const StoredMetric<float>& rounded, const Metric& m) {
@@ -66,13 +31,14 @@ void require_close(const StoredMetric<float>& rounded, const Metric& m) {
                     to_string(m)));
 }
 
-// The metrics with these numbers, in their order.
-template <class Number, class Index>
-std::vector<StoredMetric<Number>> stored(std::span<const Metric> metrics,
-                                         const std::vector<Index>& numbers) {
+}  // namespace
+
+template <class Number>
+std::vector<StoredMetric<Number>> stored_metrics(std::span<const Metric> metrics,
+                                                 std::span<const NodeIndex> numbers) {
     std::vector<StoredMetric<Number>> result;
     result.reserve(numbers.size());
-    for (const Index i : numbers) result.emplace_back(metrics[i]);
+    for (const NodeIndex i : numbers) result.emplace_back(metrics[i]);
     if constexpr (std::is_same_v<Number, float>) {
         // In a loop of its own: GCC 12 takes what is rounded and widened at once for unrounded.
         for (std::size_t k = 0; k < result.size(); ++k) {
@@ -82,38 +48,25 @@ std::vector<StoredMetric<Number>> stored(std::span<const Metric> metrics,
     return result;
 }
 
-template <class Number>
-using NumberType = std::type_identity<Number>;
+template std::vector<StoredMetric<float>> stored_metrics(std::span<const Metric>,
+                                                         std::span<const NodeIndex>);
+template std::vector<StoredMetric<double>> stored_metrics(std::span<const Metric>,
+                                                          std::span<const NodeIndex>);
 
-// make(NumberType<Number>()) for the numbers that metrics are to be kept in.
-template <class Make>
-auto with_number(Precision precision, Make&& make) {
-    return precision == Precision::floats ? make(NumberType<float>()) : make(NumberType<double>());
-}
+namespace {
 
-// The same for the numbers of planes.
-template <class Make>
-auto with_plane(const CutPlanes& planes, Make&& make) {
-    return planes.most() <= std::size_t{1} << 16 ? make(NumberType<std::uint16_t>())
-                                                 : make(NumberType<std::uint32_t>());
+// pack(Plane()) for the type of numbers of planes.
+template <class Pack>
+auto with_plane(const CutPlanes& planes, Pack&& pack) {
+    return planes.most() <= std::size_t{1} << 16 ? pack(std::uint16_t()) : pack(std::uint32_t());
 }
 
 template <class Node, class Values>
 std::unique_ptr<ControlSpace> frozen(Topology<Node> tree, Values values) {
-    return std::make_unique<FrozenTree<Node, Values>>(std::move(tree), std::move(values));
+    return std::make_unique<PackedTree<Node, Values>>(std::move(tree), std::move(values));
 }
 
 }  // namespace
-
-template <class Node>
-std::unique_ptr<ControlSpace> freeze_leaves(const Topology<Node>& tree,
-                                            std::span<const Metric> metrics, Precision precision) {
-    std::vector<LeafIndex> order;
-    Topology<Node> ordered = tree.depth_first(order);
-    return with_number(precision, [&]<class Number>(NumberType<Number>) {
-        return frozen(std::move(ordered), FrozenLeaves<Number>(stored<Number>(metrics, order)));
-    });
-}
 
 template <class Node>
 std::unique_ptr<ControlSpace> freeze_quadratic(const Topology<Node>& tree,
@@ -122,10 +75,10 @@ std::unique_ptr<ControlSpace> freeze_quadratic(const Topology<Node>& tree,
     std::vector<LeafIndex> order;
     Topology<Node> ordered = tree.depth_first(order);
     CutPlanes planes(ordered);
-    return with_number(precision, [&]<class Number>(NumberType<Number>) {
-        return with_plane(planes, [&]<class Plane>(NumberType<Plane>) {
+    return with_number(precision, [&]<class Number>(Number) {
+        return with_plane(planes, [&]<class Plane>(Plane) {
             FrozenQuadratic<Number, Plane> values(ordered, std::move(planes),
-                                                  stored<Number>(metrics, order), rule);
+                                                  stored_metrics<Number>(metrics, order), rule);
             return frozen(std::move(ordered), std::move(values));
         });
     });
@@ -158,21 +111,19 @@ std::unique_ptr<ControlSpace> freeze_vertices(const Topology<Node>& tree,
         ordered_corners.push_back(renumbered);
     }
     CutPlanes planes(ordered);
-    return with_number(precision, [&]<class Number>(NumberType<Number>) {
-        return with_plane(planes, [&]<class Plane>(NumberType<Plane>) {
+    return with_number(precision, [&]<class Number>(Number) {
+        return with_plane(planes, [&]<class Plane>(Plane) {
             FrozenVertices<Number, Plane> values(ordered, std::move(planes), ordered_corners,
-                                                 stored<Number>(metrics, vertices));
+                                                 stored_metrics<Number>(metrics, vertices));
             return frozen(std::move(ordered), std::move(values));
         });
     });
 }
 
-#define CONTROLSPACE_FREEZE(Node)                                                             \
-    template std::unique_ptr<ControlSpace> freeze_leaves(const Topology<Node>&,               \
-                                                         std::span<const Metric>, Precision); \
-    template std::unique_ptr<ControlSpace> freeze_quadratic(                                  \
-        const Topology<Node>&, std::span<const Metric>, const QuadraticRule&, Precision);     \
-    template std::unique_ptr<ControlSpace> freeze_vertices(                                   \
+#define CONTROLSPACE_FREEZE(Node)                                                         \
+    template std::unique_ptr<ControlSpace> freeze_quadratic(                              \
+        const Topology<Node>&, std::span<const Metric>, const QuadraticRule&, Precision); \
+    template std::unique_ptr<ControlSpace> freeze_vertices(                               \
         const Topology<Node>&, std::span<const Corners>, std::span<const Metric>, Precision);
 CONTROLSPACE_FREEZE(KdNode)
 CONTROLSPACE_FREEZE(OctreeNode)

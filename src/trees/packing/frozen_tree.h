@@ -6,19 +6,13 @@
 #include "controlspace/metric/stored_metric.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/space_options.h"
-#include "trees/topology/corners.h"
-#include "trees/topology/topology.h"
+#include "controlspace/trees/detail/corners.h"
+#include "controlspace/trees/topology.h"
 
 namespace controlspace {
 
-// Compact forms of trees, which can only be read (BuildOptions::precision): nodes and leaves lie
-// depth first, and only what reading needs is kept. With doubles they answer as the tree does, to
-// the bit. For KdNode and OctreeNode. All throw InputError where floats cannot hold a metric.
-
-/// One metric a leaf, constant over it.
-template <class Node>
-std::unique_ptr<ControlSpace> freeze_leaves(const Topology<Node>& tree,
-                                            std::span<const Metric> metrics, Precision precision);
+// Compact forms (packed_tree.h) of storages whose queries need the boxes of leaves: these are kept
+// as numbers of planes. For KdNode and OctreeNode.
 
 /// How QuadraticValues interpolates.
 struct QuadraticRule {

@@ -7,64 +7,28 @@
 
 #include "controlspace/metric/stored_metric.h"
 #include "controlspace/space/control_nodes.h"
-#include "trees/packing/frozen_state.h"
+#include "controlspace/trees/detail/corners.h"
+#include "controlspace/trees/detail/leaf_graph.h"
 #include "trees/packing/frozen_tree.h"
-#include "trees/topology/corners.h"
 #include "trees/topology/leaf_faces.h"
-#include "trees/topology/leaf_graph.h"
 #include "trees/topology/parts_across.h"
 #include "trees/values/quadratic_in_leaves.h"
 #include "trees/values/trilinear_in_leaves.h"
 
 namespace controlspace {
 
-// What the leaves of a tree hold once it is only read, its leaves numbered depth first. What
-// FrozenTree asks of each:
-//   prefetch(leaf), if it is worth it; value_in(tree, leaf, x), or values_in(tree, leaves, x, out)
-//   control_nodes(tree, neighbourhood), describe(footprint)
-//   kind, save(state)                    see frozen_state.h
-// `Number` is what metrics are kept in, `Plane` what planes are numbered in.
-
-/// One metric a leaf, constant over it.
-template <class Number>
-class FrozenLeaves {
-public:
-    static constexpr FrozenKind kind = FrozenKind::leaves;
-
-    explicit FrozenLeaves(std::vector<StoredMetric<Number>> metrics)
-        : metrics_(std::move(metrics)) {}
-
-    template <class Node>
-    Metric value_in(const Topology<Node>&, LeafIndex leaf, const Point&) const {
-        return metrics_[leaf];
-    }
-
-    template <class Node>
-    ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
-        return {leaf_graph(tree, neighbourhood).graph, {metrics_.begin(), metrics_.end()}};
-    }
-    void describe(Footprint& footprint) const {
-        footprint.control_nodes = metrics_.size();
-        footprint.bytes_payload = metrics_.capacity() * sizeof(StoredMetric<Number>);
-    }
-    void save(StateWriter& state) const {
-        state("frozen.metrics", std::vector<Metric>(metrics_.begin(), metrics_.end()));
-    }
-
-protected:
-    std::vector<StoredMetric<Number>> metrics_;
-};
+// What the leaves of compact forms hold (PackedTree), and save(state): as the storage does whose
+// compact form it is. `Number` is the type of the numbers in metrics, `Plane` that of the numbers
+// of planes.
 
 /// One metric a leaf, interpolated with those of the neighbours.
 template <class Number, class Plane>
-class FrozenQuadratic : public FrozenLeaves<Number> {
+class FrozenQuadratic {
 public:
-    static constexpr FrozenKind kind = FrozenKind::quadratic;
-
     template <class Node>
     FrozenQuadratic(const Topology<Node>& tree, CutPlanes planes,
                     std::vector<StoredMetric<Number>> metrics, const QuadraticRule& rule)
-        : FrozenLeaves<Number>(std::move(metrics)), planes_(std::move(planes)), rule_(rule) {
+        : planes_(std::move(planes)), metrics_(std::move(metrics)), rule_(rule) {
         leaves_.reserve(tree.leaves());
         for_each_faces<Plane>(tree, planes_, [&](LeafIndex, const Faces<Plane>& faces) {
             leaves_.push_back({faces, {}});
@@ -73,7 +37,7 @@ public:
             leaves_[leaf].across = across;
         });
         isotropic_ = std::ranges::all_of(
-            this->metrics_, [](const StoredMetric<Number>& m) { return is_isotropic(m); });
+            metrics_, [](const StoredMetric<Number>& m) { return is_isotropic(m); });
     }
 
     void prefetch(LeafIndex leaf) const { __builtin_prefetch(&leaves_[leaf]); }
@@ -87,21 +51,25 @@ public:
     const PartsAcross& parts_across(LeafIndex leaf, const Point&) const {
         return leaves_[leaf].across;
     }
-    Metric metric(LeafIndex leaf) const { return this->metrics_[leaf]; }
-    void prefetch_metric(LeafIndex leaf) const { __builtin_prefetch(&this->metrics_[leaf]); }
-    double length(LeafIndex leaf) const { return this->metrics_[leaf].xx; }
+    Metric metric(LeafIndex leaf) const { return metrics_[leaf]; }
+    void prefetch_metric(LeafIndex leaf) const { __builtin_prefetch(&metrics_[leaf]); }
+    double length(LeafIndex leaf) const { return metrics_[leaf].xx; }
     bool all_isotropic() const { return isotropic_; }
     double slope() const { return rule_.slope; }
     QuadraticForm form() const { return rule_.form; }
 
+    template <class Node>
+    ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
+        return {leaf_graph(tree, neighbourhood).graph, {metrics_.begin(), metrics_.end()}};
+    }
     void describe(Footprint& footprint) const {
-        FrozenLeaves<Number>::describe(footprint);
+        footprint.control_nodes = metrics_.size();
+        footprint.bytes_payload = metrics_.capacity() * sizeof(StoredMetric<Number>);
         footprint.bytes_topology += leaves_.capacity() * sizeof(Leaf) + planes_.bytes();
     }
     void save(StateWriter& state) const {
-        FrozenLeaves<Number>::save(state);
-        state("frozen.slope", rule_.slope);
-        state("frozen.form", rule_.form, QuadraticForm::published);
+        NodeMetrics::exchange(NodeMetrics({metrics_.begin(), metrics_.end()}), state);
+        state("quadratic.slope", rule_.slope);
     }
 
 private:
@@ -111,6 +79,7 @@ private:
     };
 
     CutPlanes planes_;
+    std::vector<StoredMetric<Number>> metrics_;
     std::vector<Leaf> leaves_;
     QuadraticRule rule_;
     bool isotropic_;
@@ -121,8 +90,6 @@ private:
 template <class Number, class Plane>
 class FrozenVertices {
 public:
-    static constexpr FrozenKind kind = FrozenKind::vertices;
-
     /// `corners` are those of the tree's leaves, whose numbers point into `metrics`.
     template <class Node>
     FrozenVertices(const Topology<Node>& tree, CutPlanes planes,
@@ -162,8 +129,8 @@ public:
         footprint.bytes_topology += leaves_.capacity() * sizeof(Leaf) + planes_.bytes();
     }
     void save(StateWriter& state) const {
-        state("frozen.metrics", std::vector<Metric>(metrics_.begin(), metrics_.end()));
-        state("frozen.corners", all_corners());
+        NodeMetrics::exchange(NodeMetrics({metrics_.begin(), metrics_.end()}), state);
+        state("vertices.of_leaves", all_corners());
     }
 
 private:

@@ -1,4 +1,4 @@
-#include "space/shared_builder.h"
+#include "controlspace/space/detail/shared_builder.h"
 #include "trees/source_tree.h"
 #include "trees/structures/rows.h"
 

@@ -1,5 +1,5 @@
+#include "controlspace/trees/tree_row.h"
 #include "trees/structures/rows.h"
-#include "trees/tree_row.h"
 #include "trees/values/vertex_values.h"
 
 namespace controlspace {

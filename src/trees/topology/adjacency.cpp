@@ -1,4 +1,4 @@
-#include "trees/topology/adjacency.h"
+#include "controlspace/trees/detail/adjacency.h"
 
 #include <tbb/parallel_for.h>
 
@@ -57,7 +57,7 @@ NodeGraph vertex_graph(std::span<const Corners> leaves, std::vector<Point> posit
 namespace {
 
 // Sorts rows from `begin` to `end` and closes up what is left of them, from the first one's place
-// on. Returns where they end. `last` is where the last row ended; the row after is not looked at.
+// on. Returns where they end. `last` is where the last row ended; the row after is not read.
 std::size_t close_up(NodeGraph& graph, std::size_t begin, std::size_t end, std::size_t last) {
     const auto at = [&](std::size_t i) {
         return graph.neighbours.begin() + static_cast<std::ptrdiff_t>(i);

@@ -1,4 +1,4 @@
-#include "trees/topology/cell_steps.h"
+#include "controlspace/trees/detail/cell_steps.h"
 
 #include <algorithm>
 #include <bit>

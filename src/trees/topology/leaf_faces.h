@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "trees/topology/topology.h"
+#include "controlspace/trees/topology.h"
 
 namespace controlspace {
 

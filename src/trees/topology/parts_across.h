@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "trees/topology/topology.h"
-#include "trees/topology/work_through.h"
+#include "controlspace/trees/detail/work_through.h"
+#include "controlspace/trees/topology.h"
 
 namespace controlspace {
 

@@ -2,13 +2,13 @@
 
 #include <bit>
 
-#include "geometry/large_pages.h"
+#include "controlspace/geometry/detail/large_pages.h"
 
 namespace controlspace {
 
 namespace {
 
-constexpr NodeIndex nobody = ~NodeIndex{0};
+constexpr NodeIndex none = ~NodeIndex{0};
 constexpr std::size_t smallest_table = 64;
 
 std::uint64_t hash(const Point& x) {
@@ -26,7 +26,7 @@ std::uint64_t hash(const Point& x) {
 std::size_t PlaceIndex::slot_of(const Point& x, std::span<const Point> positions) const {
     const std::size_t mask = table_.size() - 1;
     std::size_t slot = hash(x) & mask;
-    while (table_[slot] != nobody && positions[table_[slot]] != x) slot = (slot + 1) & mask;
+    while (table_[slot] != none && positions[table_[slot]] != x) slot = (slot + 1) & mask;
     return slot;
 }
 
@@ -35,7 +35,7 @@ void PlaceIndex::prefetch(const Point& x) const {
 }
 
 NodeIndex PlaceIndex::likely_at(const Point& x) const {
-    return table_.empty() ? nobody : table_[hash(x) & (table_.size() - 1)];
+    return table_.empty() ? none : table_[hash(x) & (table_.size() - 1)];
 }
 
 PlaceIndex::PlaceIndex(std::span<const Point> positions) : used_(positions.size()) {
@@ -46,7 +46,7 @@ NodeIndex PlaceIndex::find_or_enter(const Point& x, NodeIndex next,
                                     std::span<const Point> positions) {
     if (2 * used_ >= table_.size()) grow(positions);
     NodeIndex& entry = table_[slot_of(x, positions)];
-    if (entry == nobody) {
+    if (entry == none) {
         entry = next;
         ++used_;
     }
@@ -59,7 +59,7 @@ void PlaceIndex::grow(std::span<const Point> positions) {
 
 void PlaceIndex::enter_all(std::size_t slots, std::span<const Point> positions) {
     table_ = {};  // so that both are never there together
-    table_ = large_array<NodeIndex>(slots, nobody);
+    table_ = large_array<NodeIndex>(slots, none);
     for (NodeIndex i = 0; i < positions.size(); ++i) table_[slot_of(positions[i], positions)] = i;
 }
 

@@ -4,9 +4,10 @@
 #include <array>
 #include <cmath>
 
+#include "cones/cone_field.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
-#include "trees/adaptation/in_parallel.h"
+#include "controlspace/trees/detail/in_parallel.h"
 
 namespace controlspace {
 
@@ -58,6 +59,12 @@ Metric AnchoredValues::cones_at(const Point& x, std::span<const SourceIndex> anc
         m = intersection(m, sources_.factor(s, ratio_, x) * sources_.metric(s));
     }
     return m;
+}
+
+Metric AnchoredValues::value(const Box& domain, LeafIndex leaf, const Point& place) const {
+    const Point x = place.cwiseMax(domain.low).cwiseMin(domain.high);
+    const Metric m = cones_at(x, anchors_.of(leaf));
+    return continuous_ ? intersection(m, sample_at(*continuous_, x)) : m;
 }
 
 void AnchoredValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex) {
@@ -116,7 +123,7 @@ bool AnchoredValues::is_covered(SourceIndex source, std::span<const SourceIndex>
     return true;
 }
 
-void AnchoredValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& field,
+void AnchoredValues::fit(std::span<const LeafBox> leaves, const GoalField& field,
                          std::size_t places, bool beside_old) {
     const double well_within = 0.25 * field.target();
     const double negligible = negligible_shortening(field.target());
@@ -168,7 +175,7 @@ void AnchoredValues::fit(std::span<const AdaptedLeaf> leaves, const GoalField& f
     }
 }
 
-void AnchoredValues::cover(std::span<const AdaptedLeaf> leaves, const GoalField& field,
+void AnchoredValues::cover(std::span<const LeafBox> leaves, const GoalField& field,
                            std::span<std::uint8_t> is_kept) {
     const double tolerance = factor_of(field.target()) - 1;
     std::vector<SourceIndex> chosen(leaves.size() * most);

@@ -5,12 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include "cones/cone_cover.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/space/control_space.h"
+#include "controlspace/space/detail/state.h"
 #include "controlspace/space/space_options.h"
-#include "space/state.h"
-#include "trees/adaptation/leaf_judge.h"
-#include "trees/topology/topology.h"
+#include "controlspace/trees/detail/leaf_judge.h"
+#include "controlspace/trees/topology.h"
 #include "trees/values/anchors.h"
 #include "trees/values/source_table.h"
 
@@ -18,28 +19,22 @@ namespace controlspace {
 
 /// The sources that govern a leaf in place of a metric (K_LA, K_oLA): a query evaluates their cones
 /// at the very place. So the field varies inside a leaf, and distances are straight lines, where
-/// values handed from leaf to leaf add up along a path.
+/// values passed from leaf to leaf add up along a path.
 ///
-/// Gradation looks up which sources govern each leaf, at its centre and its corners; the law is the
-/// cone law whatever is asked, since that is what a cone is. A continuous source is kept as it is
-/// and evaluated with the cones.
+/// Gradation finds the sources that govern each leaf, at its centre and its corners; the law is
+/// always the cone law. A continuous source is kept as it
+/// is and evaluated with the cones.
 class AnchoredValues {
 public:
     static constexpr int order = 0;
     static constexpr CutBy cut_by = CutBy::longest_edge;
-    static constexpr bool follows_neighbours = false;
 
     explicit AnchoredValues(const SpaceOptions& options);
 
     template <class Node>
-    Metric value(const Topology<Node>& tree, const Point& place) const {
-        return value_in(tree, tree.find(place), place);
-    }
-    template <class Node>
-    Metric value_in(const Topology<Node>& tree, LeafIndex leaf, const Point& place) const {
-        const Point x = place.cwiseMax(tree.domain().low).cwiseMin(tree.domain().high);
-        const Metric m = cones_at(x, anchors_.of(leaf));
-        return continuous_ ? intersection(m, sample_at(*continuous_, x)) : m;
+    void values_in(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
+                   std::span<const Point> x, std::span<Metric> out) const {
+        for (std::size_t i = 0; i < x.size(); ++i) out[i] = value(tree.domain(), leaves[i], x[i]);
     }
     void prefetch(LeafIndex leaf) const { anchors_.prefetch(leaf); }
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex);
@@ -54,15 +49,15 @@ public:
     /// Anchors for these leaves, out of the sources of `field`'s goal; if it will not be proved,
     /// beside those that may shorten the field somewhere in the leaf: so it never gets longer.
     template <class Node>
-    void fit(const Topology<Node>&, std::span<const AdaptedLeaf> leaves, const GoalField& field,
+    void fit(const Topology<Node>&, std::span<const LeafBox> leaves, const GoalField& field,
              bool proved) {
         // Of tensors hundreds may each cut a little: what governs the centre has to do.
         fits_tensors_loosely_ = !proved;
         fit(leaves, field, sources_.all_isotropic() || proved ? LeafPlaces::all : 1, !proved);
     }
     /// Anchors for these leaves that keep within the target everywhere in them, of an isotropic
-    /// field; `is_kept` tells where so many are not enough.
-    void cover(std::span<const AdaptedLeaf> leaves, const GoalField& field,
+    /// field; `is_kept` is 0 where so many are not enough.
+    void cover(std::span<const LeafBox> leaves, const GoalField& field,
                std::span<std::uint8_t> is_kept);
     bool is_fitted(LeafIndex leaf) const {
         return (fits_tensors_loosely_ && !sources_.all_isotropic()) ||
@@ -88,13 +83,15 @@ private:
     static constexpr std::size_t most = ConeCover::room;
 
     // At so many places, the centre first.
-    void fit(std::span<const AdaptedLeaf> leaves, const GoalField& field, std::size_t places,
+    void fit(std::span<const LeafBox> leaves, const GoalField& field, std::size_t places,
              bool beside_old);
     // Whether the cone of a source is nowhere in the box shorter than those of the others, or than
-    // the largest metric, in any direction; as far as can be told from parts of the box.
+    // the largest metric, in any direction; as far as parts of the box show.
     bool is_covered(SourceIndex source, std::span<const SourceIndex> others, const Box& box,
                     int halvings) const;
     void load(std::size_t leaves, const StateReader& state);
+    // At the nearest point of the domain.
+    Metric value(const Box& domain, LeafIndex leaf, const Point& place) const;
     Metric cones_at(const Point& x, std::span<const SourceIndex> anchors) const;
 
     AnchorLists anchors_;

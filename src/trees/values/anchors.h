@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "space/state.h"
-#include "trees/topology/topology.h"
+#include "controlspace/space/detail/state.h"
+#include "controlspace/trees/topology.h"
 #include "trees/values/source_table.h"
 
 namespace controlspace {

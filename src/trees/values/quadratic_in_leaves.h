@@ -15,7 +15,7 @@ namespace controlspace {
 /// Metrics at places in leaves, each interpolated with those across the leaf's faces: at the
 /// nearest place of the leaf; nowhere coarser than the cone of its own metric at its centre.
 ///
-/// Of `values` it asks
+/// `values` provides
 ///   box(leaf)
 ///   parts_across(leaf, x)  PartsAcross, or the leaves there that touch x
 ///   metric(leaf)
@@ -103,7 +103,8 @@ private:
         }
     }
 
-    // All planes across a face lie beyond it, so that the place on it tells their sides.
+    // All planes across a face lie beyond it, so the place on it decides on which side of each it
+    // is.
     static Point on_face(const Box& box, Point x, std::size_t face) {
         const auto a = static_cast<Axis>(face / 2);
         x[a] = (face % 2 == 1 ? box.high : box.low)[a];

@@ -9,84 +9,84 @@
 #include <span>
 #include <vector>
 
-#include "trees/topology/make_room.h"
+#include "controlspace/trees/detail/make_room.h"
+#include "controlspace/trees/leaf_metrics.h"
+#include "trees/packing/frozen_tree.h"
 #include "trees/topology/parts_across.h"
-#include "trees/values/leaf_values.h"
 #include "trees/values/quadratic_in_leaves.h"
 
 namespace controlspace {
 
-/// One metric a leaf, interpolated with those of the neighbours when asked (K_Li). Nowhere coarser
-/// than the cone of the leaf's own metric at its centre, with the ratio of the last gradation, or
-/// of the one to come: on the paper's sphere that leaves its Tables 1 and 4 as they are, and
-/// divides δ_S by up to 20.
-class QuadraticValues : public LeafValues {
+/// One metric a leaf, interpolated with those of its face neighbours (K_Li, K_oLi; paper §3.1.2).
+/// Nowhere coarser than the cone of the leaf's own metric at its centre, with the ratio of the last
+/// gradation, or of the one to come: on the paper's sphere that leaves its Tables 1 and 4 as they
+/// are, and divides δ_S by up to 20.
+class QuadraticValues : public LeafMetrics {
 public:
     static constexpr int order = 2;
     static constexpr CutBy cut_by = CutBy::faces;
     static constexpr bool follows_neighbours = true;
 
     explicit QuadraticValues(const SpaceOptions& options)
-        : LeafValues(options),
+        : LeafMetrics(options),
           boxes_(1, options.domain),
           requested_slope_(options.ratio - 1),
           slope_(requested_slope_),
           form_(options.quadratic_form) {}
 
-    template <class Node>
-    Metric value(const Topology<Node>& tree, const Point& x) const {
-        return value_at(tree, x, metrics_.field(), slope_);
-    }
-    template <class Node>
-    Metric asked(const Topology<Node>& tree, const Point& x) const {
-        return value_at(tree, x, metrics_.asked(), requested_slope_);
-    }
     void prefetch(LeafIndex leaf) const {
         __builtin_prefetch(&boxes_[leaf]);
         if (!across_.empty()) __builtin_prefetch(&across_[leaf]);
     }
     template <class Node>
     void values_in(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
-                   std::span<const Point> x, std::span<Metric> out) const {
-        interpolate(tree, leaves, x, out, metrics_.field(), slope_);
+                   std::span<const Point> x, const NodeView<Metric>& nodes,
+                   std::span<Metric> out) const {
+        const double slope = nodes.are_requested ? requested_slope_ : slope_;
+        const Values<Node> values{tree, *this, nodes, slope};
+        QuadraticInLeaves(tree, values).interpolate(leaves, x, out);
     }
 
     template <class Node>
-    std::unique_ptr<ControlSpace> freeze(const Topology<Node>& tree, Precision precision) const {
+    std::unique_ptr<ControlSpace> pack(const Topology<Node>& tree, Precision precision) const {
         return freeze_quadratic(tree, metrics_.field(), {slope_, form_}, precision);
     }
 
-    double ceiling(LeafIndex leaf, const Point& x) const {
-        if (form_ == QuadraticForm::published) return std::numeric_limits<double>::infinity();
-        return LeafValues::ceiling(leaf, x) + requested_slope_ * boxes_[leaf].half_diagonal();
+    double ceiling(LeafIndex leaf, const Point&) const {
+        const Metric& m = metrics_.requested()[leaf];
+        if (form_ == QuadraticForm::published || !is_isotropic(m)) {
+            return std::numeric_limits<double>::infinity();
+        }
+        return m.xx + requested_slope_ * boxes_[leaf].half_diagonal();
     }
 
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new) {
-        LeafValues::split(subdivision, leaf, first_new);
+        LeafMetrics::split(subdivision, leaf, first_new);
         make_room(boxes_, static_cast<std::size_t>(subdivision.children() - 1));
         boxes_[leaf] = subdivision.child(0);
         for (int c = 1; c < subdivision.children(); ++c) boxes_.push_back(subdivision.child(c));
         if (!across_.empty()) across_ = {};
     }
 
-    /// All metrics have been set, or some intersected with one.
-    void refresh() {
+    void lower(const LeafPlace& place, const Metric& metric) {
+        metrics_.lower(place.leaf, metric);
+        isotropic_ = isotropic_ && is_isotropic(metric);
+    }
+    void assigned() {
         isotropic_ = std::ranges::all_of(metrics_.field(), is_isotropic) &&
-                     std::ranges::all_of(metrics_.asked(), is_isotropic);
+                     std::ranges::all_of(metrics_.requested(), is_isotropic);
     }
-    void refresh(const Metric& metric) { isotropic_ = isotropic_ && is_isotropic(metric); }
-    void set_ratio(double ratio) { slope_ = ratio - 1; }
+    void graded(double ratio) {
+        slope_ = ratio - 1;
+        assigned();
+    }
 
-    void save(StateWriter& state) const {
-        LeafValues::save(state);
-        state("quadratic.slope", slope_);
-    }
+    static void data(auto& self, auto&& visit) { visit("quadratic.slope", self.slope_); }
     template <class Node>
-    void load(const Topology<Node>& tree, const StateReader& state) {
-        LeafValues::load(tree, state);
-        state("quadratic.slope", slope_);
+    void loaded(const Topology<Node>& tree, const StateReader& state) {
+        metrics_.require_sound(state, tree.leaves());
         state.require(std::isfinite(slope_) && slope_ >= 0, "quadratic.slope", "is no slope");
-        refresh();
+        assigned();
         tbb::parallel_invoke([&] { boxes_.resize(tree.leaves()); },
                              [&] { across_.resize(tree.leaves()); });
         for_each_parts_across(tree, [&](LeafIndex leaf, const Box& box, const PartsAcross& parts) {
@@ -95,9 +95,9 @@ public:
         });
     }
 
-    /// Makes answers faster until a leaf is split.
+    /// Makes queries faster until a leaf is split.
     template <class Node>
-    void remember_parts(const Topology<Node>& tree) {
+    void prepare(const Topology<Node>& tree) {
         if (!across_.empty()) return;
         across_.resize(tree.leaves());
         for_each_parts_across(tree, [&](LeafIndex leaf, const Box&, const PartsAcross& parts) {
@@ -106,22 +106,22 @@ public:
     }
 
     void describe(Footprint& footprint) const {
-        LeafValues::describe(footprint);
+        metrics_.describe(footprint);
         footprint.bytes_auxiliary +=
             boxes_.capacity() * sizeof(Box) + across_.capacity() * sizeof(PartsAcross);
     }
     void shrink_to_fit() {
-        LeafValues::shrink_to_fit();
+        metrics_.shrink_to_fit();
         controlspace::shrink_to_fit(boxes_);
     }
 
 private:
-    /// What QuadraticInLeaves wants to know of them.
+    /// What QuadraticInLeaves reads.
     template <class Node>
     struct Values {
         const Topology<Node>& tree;
         const QuadraticValues& own;
-        std::span<const Metric> metrics;
+        NodeView<Metric> metrics;
         double ratio_slope;
 
         const Box& box(LeafIndex leaf) const { return own.boxes_[leaf]; }
@@ -150,22 +150,6 @@ private:
             return across;
         }
     };
-
-    template <class Node>
-    void interpolate(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
-                     std::span<const Point> x, std::span<Metric> out,
-                     std::span<const Metric> metrics, double slope) const {
-        const Values<Node> values{tree, *this, metrics, slope};
-        QuadraticInLeaves(tree, values).interpolate(leaves, x, out);
-    }
-    template <class Node>
-    Metric value_at(const Topology<Node>& tree, const Point& x, std::span<const Metric> metrics,
-                    double slope) const {
-        const LeafIndex leaf = tree.find(x);
-        Metric m;
-        interpolate(tree, {&leaf, 1}, {&x, 1}, {&m, 1}, metrics, slope);
-        return m;
-    }
 
     std::vector<Box> boxes_;           // of the leaves
     std::vector<PartsAcross> across_;  // of the leaves; empty where they are not known

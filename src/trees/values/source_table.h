@@ -5,7 +5,7 @@
 
 #include "controlspace/metric/metric.h"
 #include "controlspace/sources/point_source.h"
-#include "space/state.h"
+#include "controlspace/space/detail/state.h"
 
 namespace controlspace {
 

@@ -7,8 +7,8 @@
 
 #include "controlspace/geometry/box.h"
 #include "controlspace/metric/blend.h"
-#include "trees/topology/corners.h"
-#include "trees/topology/topology.h"
+#include "controlspace/trees/detail/corners.h"
+#include "controlspace/trees/topology.h"
 
 namespace controlspace {
 
@@ -70,7 +70,7 @@ private:
 };
 
 /// Metrics at `x`, trilinear between the corners of the leaves that hold them, for some places at a
-/// time, so that metrics are on their way while weights are worked out. Of `values` it asks
+/// time, so that metrics are prefetched while weights are computed. `values` provides
 /// box(leaf), prefetch_box(leaf), if it is worth it, corners(leaf), and metrics(), which these
 /// number.
 template <class Values>

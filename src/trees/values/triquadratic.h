@@ -23,7 +23,7 @@ namespace controlspace {
 /// A leaf's face gets the mean of two leaves, far coarser than `own` beside a large neighbour, as
 /// beside a source at a cut plane. Where the result would exceed `largest_growth` times `own` along
 /// any direction, its departure is scaled down too; at least 1. (Cut off at the coarsest of the
-/// seven metrics instead, it is as often coarser than asked, and less accurate.)
+/// seven metrics instead, it is as often coarser than requested, and less accurate.)
 Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, const Vector& t,
                     double largest_growth);
 
@@ -63,7 +63,7 @@ inline double triquadratic(double own, const std::array<double, 6>& across, cons
     for (std::size_t i = 0; i < 6; ++i) sum += weights[i] * across[i];
     sum += weights[6] * own;
     const double departure = sum - own;
-    // Most lie so far inside what is allowed that it needs no closer look; one branch tells.
+    // Most lie so far inside what is allowed that one comparison suffices.
     constexpr double surely = 1 - 1e-12;
     const bool is_deep_enough = departure >= -0.5 * own;
     const bool is_small = departure <= 0;

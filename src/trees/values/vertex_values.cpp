@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "trees/topology/make_room.h"
+#include "controlspace/trees/detail/make_room.h"
 
 namespace controlspace {
 
@@ -21,28 +21,28 @@ VertexValues::VertexValues(const SpaceOptions& options)
 // corners; it is as large as the leaf's field there at most.
 NodeIndex VertexValues::vertex_at(const Point& x, const Box& box, const Corners& corners) {
     const auto weights = corner_weights(box, x);
-    const Metric asked = interpolate(corners, weights, metrics_.asked());
+    const Metric requested = interpolate(corners, weights, metrics_.requested());
     const auto next = static_cast<NodeIndex>(positions_.size());
     if (places_.is_empty()) places_ = PlaceIndex(positions_);
     const NodeIndex node = places_.find_or_enter(x, next, positions_);
     if (node == next) {
         make_room(positions_, 1);
         positions_.push_back(x);
-        metrics_.append(asked, metrics_.keeps_asked()
-                                   ? interpolate(corners, weights, metrics_.field())
-                                   : asked);
+        metrics_.append(requested, metrics_.keeps_requested()
+                                       ? interpolate(corners, weights, metrics_.field())
+                                       : requested);
     } else {
-        metrics_.lower(node, asked);
+        metrics_.lower(node, requested);
     }
     return node;
 }
 
 void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new) {
     // The children's corners stand on a lattice of up to 3 x 3 x 3 places: per axis the low face,
-    // the cut and the high face. Those that are not corners of the leaf are looked up, once each.
+    // the cut and the high face. Those that are not corners of the leaf are searched, once each.
     const Corners old = corners_[leaf];
     const Box& box = subdivision.box;
-    constexpr NodeIndex unknown = ~NodeIndex{0}, wanted = unknown - 1;
+    constexpr NodeIndex unknown = ~NodeIndex{0}, searched = unknown - 1;
     std::array<NodeIndex, 27> lattice;
     lattice.fill(unknown);
     struct Place {
@@ -63,7 +63,7 @@ void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafInd
             old_corner |= (s / 2) << a;
             is_old = is_old && s != 1;
         }
-        lattice[at] = is_old ? old[static_cast<std::size_t>(old_corner)] : wanted;
+        lattice[at] = is_old ? old[static_cast<std::size_t>(old_corner)] : searched;
         if (!is_old) fresh[count++] = {at, x};
         return at;
     };
@@ -81,7 +81,7 @@ void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafInd
             corners_at[static_cast<std::size_t>(c)][static_cast<std::size_t>(i)] = enter(step);
         }
     }
-    // Memory is asked for all of them, before the first has to wait for it.
+    // All are prefetched before the first is waited for.
     const auto places = std::span(fresh).first(count);
     for (const Place& place : places) places_.prefetch(place.x);
     for (const Place& place : places) {
@@ -102,10 +102,10 @@ void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafInd
     }
 }
 
-void VertexValues::complete(const StateReader& state, std::size_t leaves) {
+void VertexValues::require_sound(const StateReader& state, std::size_t leaves) {
     state.require(corners_.size() == leaves, "vertices.of_leaves", "has another number of leaves");
-    require_below(state, "vertices.of_leaves", corners_, positions_.size());
-    metrics_.require_sound(state, positions_.size());
+    require_below(state, "vertices.of_leaves", corners_, metrics_.size());
+    metrics_.require_sound(state, metrics_.size());
     places_ = PlaceIndex();
 }
 

@@ -8,15 +8,14 @@
 
 #include "controlspace/metric/blend.h"
 #include "controlspace/space/control_space.h"
+#include "controlspace/space/detail/state.h"
 #include "controlspace/space/space_options.h"
-#include "space/state.h"
-#include "trees/adaptation/leaf_judge.h"
+#include "controlspace/trees/detail/corners.h"
+#include "controlspace/trees/detail/leaf_judge.h"
+#include "controlspace/trees/node_metrics.h"
+#include "controlspace/trees/topology.h"
 #include "trees/packing/frozen_tree.h"
-#include "trees/regradation/vertex_changes.h"
-#include "trees/topology/corners.h"
 #include "trees/topology/place_index.h"
-#include "trees/topology/topology.h"
-#include "trees/values/node_metrics.h"
 #include "trees/values/trilinear_in_leaves.h"
 
 namespace controlspace {
@@ -31,19 +30,14 @@ class VertexValues {
 public:
     static constexpr int order = 1;
     static constexpr CutBy cut_by = CutBy::edges;
-    static constexpr bool follows_neighbours = false;
-    using Changes = VertexChanges;
 
     explicit VertexValues(const SpaceOptions& options);
 
     template <class Node>
-    Metric value(const Topology<Node>& tree, const Point& place) const {
-        return interpolate(tree.find(place), place, metrics_.field());
-    }
-    template <class Node>
     void values_in(const Topology<Node>&, std::span<const LeafIndex> leaves,
-                   std::span<const Point> x, std::span<Metric> out) const {
-        trilinear_in_leaves(Field{*this}, leaves, x, out);
+                   std::span<const Point> x, const NodeView<Metric>& nodes,
+                   std::span<Metric> out) const {
+        trilinear_in_leaves(Field{*this, nodes.metrics}, leaves, x, out);
     }
     void prefetch(LeafIndex leaf) const { __builtin_prefetch(&corners_[leaf]); }
     // Inlined, since GCC 12 leaves out calls of functions that do nothing but prefetch.
@@ -54,16 +48,6 @@ public:
     Box box(LeafIndex leaf) const {
         return {positions_[corners_[leaf].front()], positions_[corners_[leaf].back()]};
     }
-    template <class Node>
-    Metric asked(const Topology<Node>& tree, const Point& place) const {
-        return interpolate(tree.find(place), place, metrics_.asked());
-    }
-
-    double ceiling(LeafIndex leaf, const Point& x) const {
-        const Metric m = interpolate(leaf, x, metrics_.asked());
-        return is_isotropic(m) ? m.xx : std::numeric_limits<double>::infinity();
-    }
-
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new);
     NodeMetrics& metrics() { return metrics_; }
     const NodeMetrics& metrics() const { return metrics_; }
@@ -72,15 +56,21 @@ public:
     const std::vector<Point>& positions() const { return positions_; }
 
     template <class Node>
-    std::unique_ptr<ControlSpace> freeze(const Topology<Node>& tree, Precision precision) const {
+    std::unique_ptr<ControlSpace> pack(const Topology<Node>& tree, Precision precision) const {
         return freeze_vertices(tree, corners_, metrics_.field(), precision);
     }
 
-    void save(StateWriter& state) const { exchange(*this, state); }
+    static void data(auto& self, auto&& visit) { visit("vertices.of_leaves", self.corners_); }
+    /// Checks the vertices, and finds their positions.
     template <class Node>
-    void load(const Topology<Node>& tree, const StateReader& state) {
-        exchange(*this, state);
-        complete(state, tree.leaves());
+    void loaded(const Topology<Node>& tree, const StateReader& state) {
+        require_sound(state, tree.leaves());
+        positions_.assign(metrics_.size(), tree.domain().low);
+        tree.for_each_leaf([&](LeafIndex leaf, const Box& box) {
+            for (int i = 0; i < 8; ++i) {
+                positions_[corners_[leaf][static_cast<std::size_t>(i)]] = corner(box, i);
+            }
+        });
     }
 
     void describe(Footprint& footprint) const;
@@ -90,11 +80,12 @@ private:
     /// What trilinear_in_leaves reads.
     struct Field {
         const VertexValues& own;
+        std::span<const Metric> of_nodes;
 
         [[gnu::always_inline]] void prefetch_box(LeafIndex leaf) const { own.prefetch_box(leaf); }
         Box box(LeafIndex leaf) const { return own.box(leaf); }
         const Corners& corners(LeafIndex leaf) const { return own.corners_[leaf]; }
-        std::span<const Metric> metrics() const { return own.metrics_.field(); }
+        std::span<const Metric> metrics() const { return of_nodes; }
     };
 
     static Metric interpolate(const Corners& corners, const std::array<double, 8>& weights,
@@ -102,21 +93,9 @@ private:
         return blend_lengths(weights,
                              [&](std::size_t i) -> const Metric& { return metrics[corners[i]]; });
     }
-    // At the nearest place of the leaf.
-    Metric interpolate(LeafIndex leaf, const Point& place, std::span<const Metric> metrics) const {
-        const Box box = this->box(leaf);
-        const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
-        return interpolate(corners_[leaf], corner_weights(box, x), metrics);
-    }
     NodeIndex vertex_at(const Point& x, const Box& box, const Corners& corners);
-    template <class Self, class State>
-    static void exchange(Self& self, State& state) {
-        NodeMetrics::exchange(self.metrics_, state);
-        state("vertices.of_leaves", self.corners_);
-        state("vertices.positions", self.positions_);
-    }
-    // Checks what was loaded. The index of places waits for the first cut, which needs it.
-    void complete(const StateReader& state, std::size_t leaves);
+    // The index of places waits for the first cut, which needs it.
+    void require_sound(const StateReader& state, std::size_t leaves);
 
     std::vector<Corners> corners_;  // of a leaf, in the order of controlspace::corner
     NodeMetrics metrics_;

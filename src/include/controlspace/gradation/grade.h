@@ -50,10 +50,12 @@ inline Neighbourhood neighbourhood_of(const GradationOptions& options) {
                                                         : Neighbourhood::nearest_per_face;
 }
 
-/// Throws InputError for a ratio below 1 or not finite.
+/// Throws InputError for a ratio below 1 or not finite, and for an unknown law, schedule or
+/// neighbourhood.
 void require_valid(const GradationOptions& options);
 
-/// The largest gradation ratio between neighbours under `law`; 1 if all metrics are alike.
+/// The largest gradation ratio between neighbours under `law`; 1 if all metrics are alike. Throws
+/// InputError for an unknown law.
 double largest_gradation(const ControlGraph& graph, std::span<const Metric> metrics,
                          GradationLaw law);
 

@@ -22,11 +22,11 @@ struct AdaptationGoal {
 };
 
 struct AdaptationReport {
-    /// Largest δ to the field wherever the finished structure was looked at, at sources and at
-    /// places that it was not fitted to; below 3/4 of the target, a bound of it. Places are
-    /// samples: a peak between them may be higher. Not so of trees whose leaves are constant or
-    /// keep sources (K_L, K_oL, K_oLB, K_LA, K_oLA) where all is isotropic and no source
-    /// continuous: there it is a bound that holds everywhere.
+    /// Largest sampled δ to the field: at sources and at places that the structure was not fitted
+    /// to; below 3/4 of the target, a bound of it. Places are samples: a peak between them may be
+    /// higher. Not so of trees whose leaves are constant or keep sources (K_L, K_oL, K_oLB, K_LA,
+    /// K_oLA) where all is isotropic and no source continuous: there it is a bound that holds
+    /// everywhere.
     double reached = 0;
     bool met = false;       ///< reached <= target
     std::string shortfall;  ///< why it was not met, and what would help; empty where it was

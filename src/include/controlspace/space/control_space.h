@@ -39,7 +39,7 @@ public:
     /// of the paper is this call's duration divided by x.size().
     virtual void sample(std::span<const Point> x, std::span<Metric> out) const = 0;
 
-    /// The smallest length that the metric at each of `x` asks for in any direction, without its
+    /// The smallest length that the metric at each of `x` requests in any direction, without its
     /// tensor; otherwise as `sample`.
     virtual void sample_lengths(std::span<const Point> x, std::span<double> out) const;
 

@@ -44,15 +44,15 @@ public:
 
     /// Replaces all that was held by the field of `goal`, with few cells that keep within its
     /// target. A tree is built anew from its root, without regard to l_min; a grid keeps its
-    /// voxels. What could not be reached is said in the report. Throws InputError for a goal that
+    /// voxels. The report states what could not be reached. Throws InputError for a goal that
     /// is not valid, and where the structure would outgrow its cap on memory; the field is
     /// undefined then.
     virtual AdaptationReport adapt(const AdaptationGoal& goal) = 0;
 
     /// The control space made so far. It stays as it is while the builder goes on; both share their
-    /// data until then, so that this costs no copy. Throws InputError where a compact form is asked
-    /// of a structure that has none, and for metrics that floats cannot hold (beyond 1e-38 to 3e38,
-    /// or with lengths in ratios above about 1e4).
+    /// data until then, so that this costs no copy. Throws InputError where a compact form is
+    /// requested of a structure that has none, and for metrics that floats cannot hold (beyond
+    /// 1e-38 to 3e38, or with lengths in ratios above about 1e4).
     virtual std::unique_ptr<ControlSpace> build(const BuildOptions& options = {}) = 0;
 
     virtual Box domain() const = 0;

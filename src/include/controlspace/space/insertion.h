@@ -17,10 +17,10 @@ struct InsertionReport {
     std::uint64_t inserted = 0;
 };
 
-/// Steps 2 and 3 of insertion: whether a source of metric `asked`, at a place where the structure
-/// has `held`, has to change it: δ(asked, held) >= tolerance, and intersecting changes `held` by at
-/// least the tolerance as well.
-bool calls_for_change(const Metric& asked, const Metric& held, double tolerance);
+/// Steps 2 and 3 of insertion: whether a source of metric `requested`, at a place where the
+/// structure has `held`, has to change it: δ(requested, held) >= tolerance, and intersecting
+/// changes `held` by at least the tolerance as well.
+bool calls_for_change(const Metric& requested, const Metric& held, double tolerance);
 
 /// How many times longer than an isotropic source a metric may be, in any direction, and
 /// calls_for_change still be false; less by a millionth, in which rounding has room.

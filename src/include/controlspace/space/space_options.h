@@ -24,7 +24,7 @@ struct SpaceOptions {
     double tolerance = 0.2;    ///< ε_δ of insertion
     int kd_depth = 42;         ///< deepest level of a kd-tree, the root being 0
     int octree_depth = 14;     ///< deepest level of an octree, the root being 0
-    double finest_length = 0;  ///< smallest length any source asks for; grids size voxels by it
+    double finest_length = 0;  ///< smallest length any source requests; grids size voxels by it
     double voxel = 0;          ///< longest edge of a grid's finest voxels; 0: l_min * finest_length
     double voxel_factor = 1;   ///< grids in levels: longest edge of a voxel, in the metric it holds
     double prune_delta = 0;    ///< δ up to which voxels of a field that is set join; 0: none do
@@ -32,7 +32,7 @@ struct SpaceOptions {
     /// leaves, whose interpolation it bounds until they are graded.
     double ratio = 1.25;
     QuadraticForm quadratic_form = QuadraticForm::corrected;
-    /// Sources may come after gradation. What they ask for is then kept beside the graded field:
+    /// Sources may come after gradation. What they request is then kept beside the graded field:
     /// insertion goes by it, and grading again gives the field of all sources at once, to the bit.
     /// Of isotropic sources, under the cone law and by the queue, that costs in proportion to what
     /// they change, as long as that is little; otherwise all is graded anew. Between the two, the
@@ -40,7 +40,7 @@ struct SpaceOptions {
     /// grow.
     ///
     /// Without it, later sources are held against the graded field, and gradation starts from that.
-    /// Structures that keep sources do so in any case: trees hand on sources from all leaves again,
+    /// Structures that keep sources do so in any case: trees pass on sources from all leaves again,
     /// which gives a field close to that of all at once; `direct` builds its search anew.
     bool takes_later_sources = false;
     /// Cap on memory, gradation included: grids get coarser, trees that outgrow it throw

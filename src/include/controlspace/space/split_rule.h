@@ -10,9 +10,8 @@ namespace controlspace {
 /// which the leaf is cut; of axes that are equally long z is cut before y before x.
 ///
 /// Lengths are compared as computed, without a tolerance. Under s_M many edges differ from each
-/// other and from l_min by rounding alone, so its trees hang on the order of operations here; the
-/// published ones hang on that of their program, and are within 6 % in size. A tolerance of 1e-9
-/// on l_min would more than halve them.
+/// other and from l_min by round-off alone, so tree sizes are sensitive to the order of operations;
+/// the published ones differ by up to 6 %. A tolerance of 1e-9 on l_min would more than halve them.
 enum class SplitRule {
     middle,  ///< s_L: middle of the longest axis
     golden,  ///< s_G: of the two golden sections of the longest axis the one nearer to the source,

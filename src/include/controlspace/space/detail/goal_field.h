@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "controlspace/geometry/box.h"
+#include "controlspace/space/adaptation.h"
+#include "controlspace/space/control_space.h"
+
+namespace controlspace {
+
+class ConeField;
+
+/// The field of a goal, whose sources must outlive it, as exact as the target needs: cones of
+/// tensors that would change it by some hundredth of the target are left out.
+class GoalField final : public ControlSpace {
+public:
+    /// Throws InputError for sources outside of `domain` or with bad metrics, a ratio below 1, a
+    /// target that is not positive.
+    GoalField(const AdaptationGoal& goal, const Box& domain);
+    ~GoalField() override;
+
+    void sample(std::span<const Point> x, std::span<Metric> out) const override;
+    /// Intersects `out`, the metrics of the sources' cones at `x`, with the continuous field.
+    void add_continuous(std::span<const Point> x, std::span<Metric> out) const;
+
+    /// Whether the field has bounds in every box: all is isotropic, and no source continuous.
+    bool has_ranges() const;
+    /// Of isotropic sources: indices of those that are not covered by others.
+    std::span<const std::uint32_t> kept() const;
+
+    /// Answers metrics at places.
+    using Sample = std::function<void(std::span<const Point>, std::span<Metric>)>;
+    /// Largest δ between what `sample` answers and the field, at places all over the domain and
+    /// near to sources.
+    double largest_departure(const Box& domain, const Sample& sample) const;
+
+    const ConeField& cones() const { return *cones_; }
+    /// Relative shortening of lengths that is left out.
+    double negligible() const;
+    const Metric& largest() const { return largest_; }
+    double target() const { return target_; }
+    double ratio() const { return ratio_; }
+
+private:
+    double target_;
+    double ratio_;
+    std::span<const PointSource> sources_;
+    std::shared_ptr<const ControlSpace> continuous_;
+    Metric largest_;
+    std::unique_ptr<const ConeField> cones_;
+};
+
+}  // namespace controlspace

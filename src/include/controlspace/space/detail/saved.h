@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "controlspace/space/control_space_file.h"
+#include "controlspace/space/detail/state.h"
+
+namespace controlspace {
+
+/// What save_control_space can write: finished structures and builders derive from it.
+class Saved {
+public:
+    virtual ~Saved() = default;
+
+    /// Writes all that it holds, but for what its recipe gives. Throws InputError where it cannot
+    /// be saved.
+    virtual void save(StateWriter& state) const = 0;
+
+    /// The entry of the catalogue and the options that it was made by; none if it was made in
+    /// another way.
+    const std::optional<Recipe>& recipe() const { return recipe_; }
+    void set_recipe(std::optional<Recipe> recipe) { recipe_ = std::move(recipe); }
+
+private:
+    std::optional<Recipe> recipe_;
+};
+
+/// A builder that takes back what was saved. Throws InputError where what is read is not sound; it
+/// is undefined then.
+class SavedBuilder : public Saved {
+public:
+    /// Into a new builder, made with the same options.
+    virtual void load(const StateReader& state) = 0;
+};
+
+}  // namespace controlspace

@@ -1,0 +1,171 @@
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "controlspace/geometry/box.h"
+#include "controlspace/geometry/subdivision.h"
+
+namespace controlspace {
+
+// A cut is the inner node of a tree: how a box is divided into parts, and which part holds a point.
+
+/// Number of a leaf of a tree, from 0 on without gaps.
+using LeafIndex = std::uint32_t;
+
+/// Reference to a part of a tree: a leaf, or an inner node; 30 bits of index. The remaining bit is
+/// free for the node that holds the reference.
+class Ref {
+public:
+    static constexpr std::uint32_t leaf_bit = 1u << 31;
+    static constexpr std::uint32_t spare_bit = 1u << 30;
+    static constexpr std::uint32_t max_index = spare_bit - 1;
+
+    static Ref leaf(LeafIndex i) { return Ref(i | leaf_bit); }
+    static Ref inner(std::size_t i) { return Ref(static_cast<std::uint32_t>(i)); }
+    Ref() : bits_(leaf_bit) {}
+
+    static Ref from_bits(std::uint32_t bits) { return Ref(bits); }
+    std::uint32_t bits() const { return bits_; }
+    bool is_leaf() const { return (bits_ & leaf_bit) != 0; }
+    std::uint32_t index() const { return bits_ & max_index; }
+    bool spare() const { return (bits_ & spare_bit) != 0; }
+    Ref with_spare(bool on) const { return Ref((bits_ & ~spare_bit) | (on ? spare_bit : 0)); }
+
+private:
+    explicit Ref(std::uint32_t bits) : bits_(bits) {}
+    std::uint32_t bits_;
+};
+
+/// Inner node of a kd-tree: a plane and two children, 16 bytes. The axis sits in the spare bits of
+/// the children's references.
+struct KdNode {
+    static constexpr int arity = 2;
+    static constexpr bool is_octant = false;
+    double at = 0;
+    std::array<Ref, 2> children;
+
+    KdNode() = default;
+    KdNode(const Subdivision& s) {
+        const Axis axis = s.cuts[0] ? 0 : s.cuts[1] ? 1 : 2;
+        at = s.at[axis];
+        children = {Ref().with_spare((axis & 1) != 0), Ref().with_spare((axis & 2) != 0)};
+    }
+    Axis axis() const { return (children[0].spare() ? 1 : 0) + (children[1].spare() ? 2 : 0); }
+    /// Where the planes stand.
+    std::span<const double> planes() const { return {&at, 1}; }
+    std::span<double> planes() { return {&at, 1}; }
+    Axis plane_axis(std::size_t) const { return axis(); }
+    void set_child(int c, Ref ref) {
+        Ref& child = children[static_cast<std::size_t>(c)];
+        child = ref.with_spare(child.spare());
+    }
+    Subdivision subdivision(const Box& box) const { return halves(box, axis(), at); }
+    static Subdivision even_subdivision(const Box& box) { return longest_edge_halves(box); }
+    /// The cut through the middle that serves a box where something varies by `along` the axes.
+    static Subdivision subdivision_across(const Box& box, const std::array<double, 3>& along) {
+        return halves_across(box, along);
+    }
+
+    /// Number of the child that holds `x`.
+    int child_with(const Point& x) const { return x[axis()] > at ? 1 : 0; }
+    /// The same, and narrows `box` to that child.
+    int descend(const Point& x, Box& box) const {
+        const int c = child_with(x);
+        narrow(box, c);
+        return c;
+    }
+    /// Makes the node's box that of child `c`.
+    void narrow(Box& box, int c) const { (c == 1 ? box.low : box.high)[axis()] = at; }
+};
+
+/// Inner node of an octree: eight children and the planes, which go through the middle of the box;
+/// one line of a cache.
+struct alignas(64) OctreeNode {
+    static constexpr int arity = 8;
+    static constexpr bool is_octant = true;
+    std::array<Ref, 8> children;
+    std::array<double, 3> at{};
+
+    OctreeNode() = default;
+    OctreeNode(const Subdivision& s) : at{s.at.x(), s.at.y(), s.at.z()} {}
+    std::span<const double> planes() const { return at; }
+    std::span<double> planes() { return at; }
+    static Axis plane_axis(std::size_t plane) { return static_cast<Axis>(plane); }
+    void set_child(int c, Ref ref) { children[static_cast<std::size_t>(c)] = ref; }
+    Subdivision subdivision(const Box& box) const {
+        return {box, {at[0], at[1], at[2]}, {true, true, true}};
+    }
+    static Subdivision even_subdivision(const Box& box) { return octants(box); }
+    static Subdivision subdivision_across(const Box& box, const std::array<double, 3>&) {
+        return octants(box);
+    }
+
+    int child_with(const Point& x) const {
+        return (x.x() > at[0] ? 1 : 0) | (x.y() > at[1] ? 2 : 0) | (x.z() > at[2] ? 4 : 0);
+    }
+    int descend(const Point& x, Box& box) const {
+        const int c = child_with(x);
+        narrow(box, c);
+        return c;
+    }
+    void narrow(Box& box, int c) const {
+        for (Axis a = 0; a < 3; ++a) {
+            ((c >> a & 1) != 0 ? box.low : box.high)[a] = at[static_cast<std::size_t>(a)];
+        }
+    }
+};
+
+/// How the error of the interpolation in a leaf depends on the place, which shows adaptation along
+/// which axis to cut it.
+enum class CutBy {
+    corners,      ///< constant in a leaf: it differs between opposite corners
+    faces,        ///< exact at the centre: it is large at the faces across the axis
+    edges,        ///< exact at the corners: it is large in the middle of edges along the axis
+    longest_edge  ///< it does not show
+};
+
+/// Compiles for what is a cut, the inner node of a tree (KdNode, OctreeNode): how a box is divided,
+/// into how many parts, and which of them holds a place. Says otherwise what it lacks.
+template <class Node>
+consteval void check_cut() {
+    static_assert(
+        requires {
+            { Node::arity } -> std::convertible_to<int>;
+        },
+        "a cut needs a constant `int arity`, 2 or 8");
+    static_assert(
+        requires(const Subdivision& s) { Node(s); },
+        "a cut needs a constructor from `const Subdivision&`");
+    static_assert(
+        requires(const Node& node, const Box& box) {
+            { node.subdivision(box) } -> std::same_as<Subdivision>;
+        },
+        "a cut needs `Subdivision subdivision(const Box&)`, which it has made of the box");
+    static_assert(
+        requires(const Box& box, const std::array<double, 3>& along) {
+            { Node::even_subdivision(box) } -> std::same_as<Subdivision>;
+            { Node::subdivision_across(box, along) } -> std::same_as<Subdivision>;
+        },
+        "a cut needs the static `even_subdivision(box)` and `subdivision_across(box, along)`");
+    static_assert(
+        requires(const Node& node, const Point& x, Box& box) {
+            { node.child_with(x) } -> std::same_as<int>;
+            { node.descend(x, box) } -> std::same_as<int>;
+            node.narrow(box, 0);
+        },
+        "a cut needs `int child_with(x)`, `int descend(x, box)` and `narrow(box, child)`");
+    static_assert(
+        requires(Node & node) {
+            node.children[0];
+            node.set_child(0, node.children[0]);
+            { node.planes() } -> std::convertible_to<std::span<double>>;
+            { node.plane_axis(0) } -> std::same_as<Axis>;
+        },
+        "a cut needs `children`, `set_child(c, ref)`, `planes()` and `plane_axis(i)`");
+}
+
+}  // namespace controlspace

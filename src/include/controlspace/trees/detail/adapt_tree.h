@@ -1,0 +1,255 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/space/detail/goal_field.h"
+#include "controlspace/space/sample_parallel.h"
+#include "controlspace/trees/detail/control_nodes.h"
+#include "controlspace/trees/detail/in_parallel.h"
+#include "controlspace/trees/detail/leaf_judge.h"
+#include "controlspace/trees/detail/nearby_field.h"
+#include "controlspace/trees/detail/sample_leaves.h"
+#include "controlspace/trees/topology.h"
+
+namespace controlspace {
+
+/// Splits leaves of a tree, which should consist of its root, until each is within the target of
+/// the field wherever it is sampled.
+template <class Node, class Storage>
+class TreeAdaptation {
+public:
+    TreeAdaptation(const Topology<Node>& tree, Storage& storage, const GoalField& field,
+                   const AdaptationGoal& goal)
+        : tree_(tree), storage_(storage), field_(field) {
+        if (field.has_ranges()) {
+            for (const std::uint32_t i : field.kept()) {
+                sources_.push_back(goal.sources[i].position);
+                at_sources_.push_back(intersection(goal.sources[i].metric, field.largest()));
+            }
+        } else {
+            for (const PointSource& source : goal.sources) sources_.push_back(source.position);
+            at_sources_.resize(sources_.size());
+            sample_parallel(field, sources_, at_sources_);
+        }
+        leaf_of_source_.resize(sources_.size(), 0);
+    }
+
+    /// `split(box, along, cut)` cuts the leaf with that box, across an axis for which `along`
+    /// speaks most, and appends to `cut` the numbers of all leaves that it had to cut; it returns
+    /// false where the leaf must stay as it is.
+    ///
+    /// Leaves are sampled in their LeafPlaces; if `proved`, those that pass also at other places.
+    /// Leaves above the target are fitted anew or cut, and sampled again. Returns the
+    /// largest departure that is left.
+    template <class Split>
+    double run(bool proved, Split&& split) {
+        states_.assign(tree_.leaves(), LeafState::fresh);
+        departures_.resize(tree_.leaves());
+        while (round(proved, split)) {
+        }
+        if constexpr (follows_neighbours<Storage>()) {
+            // Neighbours may have been cut after a leaf was sampled.
+            constexpr int rounds_of_all = 2;
+            for (int k = 0; proved && k < rounds_of_all; ++k) {
+                states_.assign(tree_.leaves(), LeafState::changed);
+                while (round(proved, split)) {
+                }
+            }
+        }
+        double left = 0;
+        for (const Departure& d : departures_) left = std::max(left, d.worst);
+        return left;
+    }
+
+private:
+    enum class LeafState : std::uint8_t { settled, changed, fresh };
+
+    // Samples the leaves that are not settled, and settles, fits or cuts them. Returns
+    // whether some have to be sampled again.
+    template <class Split>
+    bool round(bool proved, Split&& split) {
+        const std::vector<LeafBox> young = leaves_in_state(LeafState::changed);
+        if (proved && covers()) {
+            cover(young);
+        } else {
+            fit(leaves_in_state(LeafState::fresh), proved);
+            sample(young, proved);
+        }
+        for (const LeafBox& l : young) states_[l.leaf] = LeafState::settled;
+        bool changes = false;
+        std::vector<LeafIndex> cut;
+        for (const LeafBox& l : young) {
+            // It may have been cut to make way for a neighbour.
+            if (states_[l.leaf] != LeafState::settled) continue;
+            Departure& departure = departures_[l.leaf];
+            if (!(departure.worst > field_.target())) continue;
+            if constexpr (requires { storage_.learn(l.leaf, departure.where, field_); }) {
+                if (departure.is_elsewhere && storage_.learn(l.leaf, departure.where, field_)) {
+                    states_[l.leaf] = LeafState::changed;
+                    changes = true;
+                    continue;
+                }
+            }
+            cut.clear();
+            const bool is_cut = split(l.box, departure.along, cut);
+            changes = is_cut || changes;
+            if (!is_cut && std::isinf(departure.worst)) departure = at_some_places(l);
+            departures_.resize(tree_.leaves());
+            states_.resize(tree_.leaves(), LeafState::fresh);
+            for (const LeafIndex leaf : cut) states_[leaf] = LeafState::fresh;
+        }
+        return changes;
+    }
+
+    void fit(const std::vector<LeafBox>& leaves, bool proved) {
+        if constexpr (requires { storage_.fit(tree_, leaves, field_, proved); }) {
+            storage_.fit(tree_, leaves, field_, proved);
+        } else if constexpr (requires { storage_.fit(leaves[0], field_); }) {
+            in_parallel(leaves.size(), [&](std::size_t i) { storage_.fit(leaves[i], field_); });
+        } else {
+            // Constant leaves are set by the bounds of the field in them, where these are known.
+            if (Storage::cut_by == CutBy::corners && field_.has_ranges()) return;
+            fit_nodes(storage_, leaves, field_);
+        }
+        if constexpr (requires { storage_.graded(field_.ratio()); }) {
+            storage_.graded(field_.ratio());
+        }
+    }
+
+    // Whether what the storage answers at the leaf's own places is known to follow the field.
+    bool is_fitted(LeafIndex leaf) const {
+        if constexpr (requires { storage_.is_fitted(leaf); }) return storage_.is_fitted(leaf);
+        return false;
+    }
+
+    // Whether the storage can be brought to keep the target everywhere in a leaf.
+    bool covers() const {
+        if constexpr (requires { &Storage::cover; }) return field_.has_ranges();
+        return false;
+    }
+
+    // Leaves that cannot be brought to that depart without bound, as far as is known.
+    void cover(std::span<const LeafBox> leaves) {
+        if constexpr (requires { &Storage::cover; }) {
+            std::vector<std::uint8_t> is_kept(leaves.size(), 0);
+            storage_.cover(leaves, field_, is_kept);
+            constexpr double infinity = std::numeric_limits<double>::infinity();
+            const double most_kept = sources_.empty() ? 0 : field_.target();
+            for (std::size_t i = 0; i < leaves.size(); ++i) {
+                departures_[leaves[i].leaf] = {};
+                departures_[leaves[i].leaf].worst = is_kept[i] != 0 ? most_kept : infinity;
+            }
+        }
+    }
+
+    Departure at_some_places(const LeafBox& leaf) const {
+        constexpr std::uint64_t places = 64;
+        NearbyField nearby(field_);
+        nearby.enter(leaf.box, true);
+        return LeafJudge<Node, Storage>(tree_, storage_, field_.target())
+            .at_sequence(leaf, nearby, 0, places);
+    }
+
+    // Those in this state, or in a later one.
+    std::vector<LeafBox> leaves_in_state(LeafState least) const {
+        std::vector<LeafBox> leaves;
+        tree_.for_each_leaf([&](LeafIndex leaf, const Box& box) {
+            if (states_[leaf] >= least) leaves.push_back({leaf, box});
+        });
+        return leaves;
+    }
+
+    // At their own places, if fresh, and, if `proved`, at places that no leaf has been fitted to:
+    // some in each leaf, more in a large one, and the more the closer the target.
+    void sample(std::span<const LeafBox> leaves, bool proved) {
+        const double places_in_domain = 5e3 / field_.target();
+        constexpr std::uint64_t places_at_least = 16;
+        const double volume = tree_.domain().edges().prod();
+        std::vector<std::uint64_t> first(leaves.size() + 1, places_used_);
+        for (std::size_t i = 0; i < leaves.size(); ++i) {
+            const double share = leaves[i].box.edges().prod() / volume;
+            first[i + 1] =
+                first[i] + places_at_least + static_cast<std::uint64_t>(share * places_in_domain);
+        }
+        places_used_ = first.back();
+        for (const LeafBox& l : leaves) departures_[l.leaf] = {};
+        const LeafJudge judge(tree_, storage_, field_.target());
+        if constexpr (Storage::cut_by == CutBy::corners) {
+            if (field_.has_ranges()) {
+                fit_to_ranges(leaves, judge);
+                return;
+            }
+        }
+        sample_sources();
+        in_parallel(leaves.size(), [&, nearby = NearbyField(field_)](std::size_t i) mutable {
+            const LeafBox& l = leaves[i];
+            nearby.enter(l.box, true);
+            Departure& departure = departures_[l.leaf];
+            const auto is_bad = [&] { return departure.worst > field_.target(); };
+            const bool needs_axis = Node::arity == 2;
+            if (states_[l.leaf] == LeafState::fresh && !is_fitted(l.leaf) &&
+                (needs_axis || !is_bad())) {
+                const Departure own = judge.at_places_of(l, nearby);
+                departure.take(own.worst, own.where);
+                departure.along = own.along;
+            }
+            if (!proved || is_bad()) return;
+            const Departure elsewhere = judge.at_sequence(l, nearby, first[i], first[i + 1]);
+            departure.take(elsewhere.worst, elsewhere.where);
+            departure.is_elsewhere = is_bad();
+        });
+    }
+
+    // Sets leaves of a constant value to what is between the bounds of the field in them. Bounds
+    // hold everywhere in the leaf: nothing is sampled.
+    void fit_to_ranges(std::span<const LeafBox> leaves, const LeafJudge<Node, Storage>& judge) {
+        in_parallel(leaves.size(), [&, nearby = NearbyField(field_)](std::size_t i) mutable {
+            const LeafBox& l = leaves[i];
+            nearby.enter(l.box, false);
+            const auto [least, most] = nearby.range();
+            const Metric middle = Metric::isotropic(std::sqrt(least * most));
+            storage_.metrics().set(l.leaf, middle);
+            Departure& departure = departures_[l.leaf];
+            departure.take(nonconformity(middle, Metric::isotropic(most)), l.box.centre());
+            if (Node::arity == 2 && departure.worst > field_.target()) {
+                departure.along = judge.along(l, nearby);
+            }
+        });
+    }
+
+    // Raises the departures of leaves that are not settled by the sources in them.
+    void sample_sources() {
+        std::vector<double> of_source(sources_.size(), 0);
+        in_parallel(sources_.size(), [&](std::size_t i) {
+            // A leaf that is cut stays as one of its parts, which is fresh.
+            LeafIndex& leaf = leaf_of_source_[i];
+            if (states_[leaf] == LeafState::settled) return;
+            leaf = tree_.find(sources_[i]);
+            of_source[i] =
+                nonconformity(value_at(tree_, field_of(storage_), sources_[i]), at_sources_[i]);
+        });
+        for (std::size_t i = 0; i < sources_.size(); ++i) {
+            departures_[leaf_of_source_[i]].take(of_source[i], sources_[i]);
+        }
+    }
+
+    const Topology<Node>& tree_;
+    Storage& storage_;
+    const GoalField& field_;
+    std::vector<Point> sources_;
+    std::vector<Metric> at_sources_;
+    std::vector<LeafIndex> leaf_of_source_;
+    std::vector<LeafState> states_;      // of the leaves
+    std::vector<Departure> departures_;  // likewise
+    std::uint64_t places_used_ = 0;
+};
+
+}  // namespace controlspace

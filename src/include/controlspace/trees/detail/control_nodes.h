@@ -1,0 +1,111 @@
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "controlspace/gradation/grade.h"
+#include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/detail/goal_field.h"
+#include "controlspace/trees/detail/in_parallel.h"
+#include "controlspace/trees/detail/leaf_graph.h"
+#include "controlspace/trees/detail/nearby_field.h"
+#include "controlspace/trees/storage.h"
+
+namespace controlspace {
+
+// What is done with the control nodes of a tree, wherever they stand: once for all storages.
+
+/// The control nodes as a graph, and which node of the storage each of the graph's is.
+struct OrderedNodes {
+    NodeGraph graph;
+    std::vector<NodeIndex> order;  ///< none: they are numbered alike
+};
+template <class Node, class Storage>
+OrderedNodes ordered_nodes(const Topology<Node>& tree, const Storage& storage,
+                           Neighbourhood neighbourhood) {
+    if constexpr (nodes_per_leaf<Storage> == 1) {
+        LeafGraph leaves = leaf_graph(tree, neighbourhood);
+        return {std::move(leaves.graph), std::move(leaves.order)};
+    } else {
+        return {vertex_graph(storage.corners(), storage.positions(), neighbourhood), {}};
+    }
+}
+
+template <class Node, class Storage>
+ControlNodes nodes_of_tree(const Topology<Node>& tree, const Storage& storage,
+                           Neighbourhood neighbourhood) {
+    OrderedNodes nodes = ordered_nodes(tree, storage, neighbourhood);
+    const std::span<const Metric> field = storage.metrics().field();
+    std::vector<Metric> metrics(field.begin(), field.end());
+    for (std::size_t i = 0; i < nodes.order.size(); ++i) metrics[i] = field[nodes.order[i]];
+    return {std::move(nodes.graph), std::move(metrics)};
+}
+
+/// Throws InputError for a wrong number.
+template <class Node, class Storage>
+void assign_nodes(const Topology<Node>& tree, Storage& storage, std::span<const Metric> metrics) {
+    NodeMetrics& own = storage.metrics();
+    require_one_each(metrics.size(), own.size());
+    own.forget_requested();
+    if constexpr (nodes_per_leaf<Storage> == 1) {
+        auto next = metrics.begin();
+        tree.for_each_leaf([&](LeafIndex leaf, const Box&) { own.set(leaf, *next++); });
+    } else {
+        for (std::size_t i = 0; i < metrics.size(); ++i) own.set(i, metrics[i]);
+    }
+    if constexpr (requires { storage.assigned(); }) storage.assigned();
+}
+
+template <class Node, class Storage>
+GradationReport grade_nodes(const Topology<Node>& tree, Storage& storage,
+                            const GradationOptions& options) {
+    OrderedNodes nodes = ordered_nodes(tree, storage, neighbourhood_of(options));
+    storage.metrics().forget_requested();
+    const GradationReport report =
+        grade(std::move(nodes.graph), {storage.metrics().field(), nodes.order}, options);
+    if constexpr (requires { storage.graded(options.ratio); }) storage.graded(options.ratio);
+    if constexpr (requires { storage.prepare(tree); }) storage.prepare(tree);
+    return report;
+}
+
+/// Intersects the metrics of a leaf's nodes with a source's.
+template <class Storage>
+void lower_nodes(Storage& storage, const LeafPlace& place, const Metric& metric) {
+    if constexpr (requires { storage.lower(place, metric); }) {
+        storage.lower(place, metric);
+    } else {
+        for (const NodeIndex node : storage.nodes_of(place.leaf)) {
+            storage.metrics().lower(node, metric);
+        }
+    }
+}
+
+/// Sets the control nodes of these leaves to the field.
+template <class Storage>
+void fit_nodes(Storage& storage, std::span<const LeafBox> leaves, const GoalField& field) {
+    std::vector<std::pair<NodeIndex, Point>> nodes;
+    nodes.reserve(nodes_per_leaf<Storage> * leaves.size());
+    for (const LeafBox& l : leaves) {
+        for (const NodeIndex node : storage.nodes_of(l.leaf)) {
+            if constexpr (nodes_per_leaf<Storage> == 1) {
+                nodes.emplace_back(node, l.box.centre());
+            } else {
+                nodes.emplace_back(node, storage.positions()[node]);
+            }
+        }
+    }
+    if constexpr (nodes_per_leaf < Storage >> 1) {
+        const auto number = [](const auto& node) { return node.first; };
+        std::ranges::sort(nodes, {}, number);
+        const auto repeated = std::ranges::unique(nodes, {}, number);
+        nodes.erase(repeated.begin(), repeated.end());
+    }
+    in_parallel(nodes.size(), [&, nearby = NearbyField(field)](std::size_t i) mutable {
+        storage.metrics().set(nodes[i].first, nearby.at(nodes[i].second));
+    });
+}
+
+}  // namespace controlspace

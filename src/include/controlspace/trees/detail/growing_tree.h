@@ -1,0 +1,179 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/space_options.h"
+#include "controlspace/trees/detail/adapt_tree.h"
+#include "controlspace/trees/detail/adjacency.h"
+#include "controlspace/trees/detail/sample_leaves.h"
+#include "controlspace/trees/detail/source_cuts.h"
+#include "controlspace/trees/detail/storage_state.h"
+#include "controlspace/trees/detail/topology_state.h"
+#include "controlspace/trees/storage.h"
+#include "controlspace/trees/topology.h"
+
+namespace controlspace {
+
+[[noreturn]] void fail_too_many_leaves();
+[[noreturn]] void fail_too_large(std::size_t max_bytes);
+/// AdaptationReport::shortfall where leaves of the deepest level are not cut.
+std::string depth_shortfall(int max_depth);
+
+/// A tree over a box whose leaves are cut, for sources or to follow a field: what MetricTree and
+/// SourceTree share. `Node` is how a box is cut, `Storage` what leaves hold (storage.h).
+template <class Node, class Storage>
+class GrowingTree {
+public:
+    void sample(std::span<const Point> x, std::span<Metric> out) const {
+        sample_leaves(topology_, field_of(storage_), x, out);
+    }
+    const Box& domain() const { return topology_.domain(); }
+    Box cell_at(const Point& x) const { return topology_.locate(x).box; }
+    Footprint footprint() const {
+        Footprint footprint;
+        topology_.describe(footprint);
+        describe_storage(storage_, footprint);
+        return footprint;
+    }
+
+    bool is_finished() const { return is_finished_; }
+
+protected:
+    /// With `balanced`, no leaf ever has a neighbour across a face that is more than one level
+    /// coarser (octrees).
+    explicit GrowingTree(const SpaceOptions& options, bool balanced)
+        : options_(options), balanced_(balanced), topology_(options.domain), storage_(options) {
+        check_storage<Storage>();
+    }
+
+    SourceCuts<Node> cuts() const { return SourceCuts<Node>(options_); }
+
+    /// Empties the tree and cuts it until it follows the field; `begin` may prepare the storage.
+    template <class Begin>
+    AdaptationReport adapt(const AdaptationGoal& goal, Begin&& begin) {
+        const GoalField field(goal, domain());
+        topology_ = Topology<Node>(domain());
+        storage_ = Storage(options_);
+        begin();
+        AdaptationReport report;
+        bool too_deep = false;
+        bool too_short = false;
+        TreeAdaptation adaptation(topology_, storage_, field, goal);
+        report.reached = adaptation.run(true, [&](const Box& box, const auto& along, auto& cut) {
+            if (is_negligible(box)) {
+                too_short = true;
+                return false;
+            }
+            const bool done = split_across(box, along, cut);
+            too_deep = too_deep || !done;
+            return done;
+        });
+        report.met = report.reached <= goal.target;
+        if (too_deep) {
+            report.shortfall = depth_shortfall(cuts().max_depth());
+        } else if (too_short) {
+            report.shortfall =
+                "the field is steep: leaves far shorter than an element are not cut: raise "
+                "target_delta";
+        }
+        return report;
+    }
+
+    /// Cuts the leaf that holds the source until it is short enough. Returns its place.
+    LeafPlace cut_for(const PointSource& source, auto&&... watched) {
+        LeafPlace place = topology_.locate(source.position);
+        while (const auto cut = cuts().cut(place, source)) {
+            split(place, *cut, nullptr, watched...);
+            place = topology_.locate_from(place, source.position);
+        }
+        return place;
+    }
+
+    /// Cuts the leaf with this box where something varies by `along` the axes, unless it is among
+    /// the smallest allowed.
+    bool split_across(const Box& box, const std::array<double, 3>& along,
+                      std::vector<LeafIndex>& cut) {
+        const LeafPlace place = topology_.locate(box.centre());
+        const Subdivision subdivision = Node::subdivision_across(place.box, along);
+        if (place.level >= cuts().max_depth() || !subdivision.is_proper()) return false;
+        split(place, subdivision, &cut);
+        return true;
+    }
+
+    /// Appends to `cut`, if given, the leaf and all neighbours that had to be split before it;
+    /// `watched` are TreeChanges, or none.
+    void split(const LeafPlace& place, const Subdivision& subdivision, std::vector<LeafIndex>* cut,
+               auto&&... watched) {
+        make_room_for(1);
+        if (balanced_) refine_coarser_neighbours(place, cut, watched...);
+        const auto first_new = static_cast<LeafIndex>(topology_.leaves());
+        topology_.split(place, subdivision);
+        topology_.fit_jumps_roughly();
+        (watched.before_split(storage_, subdivision, place.leaf), ...);
+        storage_.split(subdivision, place.leaf, first_new);
+        if (cut != nullptr) cut->push_back(place.leaf);
+    }
+
+    /// Throws InputError where the tree is not to have so many inner nodes more.
+    void make_room_for(std::size_t cuts) {
+        if (topology_.is_full(cuts)) fail_too_many_leaves();
+        const std::size_t leaves = topology_.leaves() + cuts * (Node::arity - 1);
+        if (leaves > next_check_) require_memory(leaves);
+    }
+
+    /// Stops a tree of so many leaves that outgrows the cap, long before the system stops the
+    /// program.
+    void require_memory(std::size_t leaves, Neighbourhood neighbourhood = Neighbourhood::faces) {
+        // Gradation copies the nodes and links them: over faces 145 bytes for a leaf, 290 for its
+        // vertices; with all neighbours up to 640.
+        const std::size_t gradation_bytes_per_leaf =
+            neighbourhood == Neighbourhood::all ? 700 : 300;
+        const std::size_t bytes = footprint().bytes_total() + leaves * gradation_bytes_per_leaf;
+        if (bytes > options_.max_bytes) fail_too_large(options_.max_bytes);
+        next_check_ = leaves + leaves / 16;
+    }
+
+    /// Gives back what only growing needs, and makes what only answers need.
+    void settle() {
+        topology_.shrink_to_fit();
+        topology_.fit_jumps();
+        shrink_storage(storage_);
+        if constexpr (requires { storage_.prepare(topology_); }) storage_.prepare(topology_);
+        is_finished_ = true;
+    }
+
+    SpaceOptions options_;
+    bool balanced_;
+    Topology<Node> topology_;
+    Storage storage_;
+    bool is_finished_ = false;  // nothing has grown since `settle`
+
+private:
+    // Whether the box is far shorter than an element. Fields may be steep: the intersection of
+    // tensors depends on which is the smallest.
+    bool is_negligible(const Box& box) const {
+        constexpr double share_of_element = 1.0 / 16;
+        const Metric m = value_at(topology_, field_of(storage_), box.centre());
+        const auto lengths = metric_edge_lengths(m, box.edges());
+        return std::max({lengths[0], lengths[1], lengths[2]}) < share_of_element;
+    }
+
+    // Brings all face neighbours to the leaf's own level at least, so that it may be split.
+    void refine_coarser_neighbours(const LeafPlace& place, std::vector<LeafIndex>* cut,
+                                   auto&&... watched) {
+        for (int face = 0; face < 6; ++face) {
+            LeafPlace neighbour;
+            if (!locate_across(topology_, place.box, face, place.box.centre(), neighbour)) continue;
+            if (neighbour.level >= place.level) continue;
+            split(neighbour, Node::even_subdivision(neighbour.box), cut, watched...);
+        }
+    }
+
+    std::size_t next_check_ = 0;  // number of leaves at which memory is checked again
+};
+
+}  // namespace controlspace

@@ -1,0 +1,169 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "controlspace/geometry/detail/place_sequence.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/trees/detail/leaf_places.h"
+#include "controlspace/trees/detail/nearby_field.h"
+#include "controlspace/trees/detail/sample_leaves.h"
+#include "controlspace/trees/topology.h"
+
+namespace controlspace {
+
+/// How a leaf compares with the field.
+struct Departure {
+    double worst = 0;             ///< δ, or a bound: lower above the target, upper below 3/4 of it
+    Point where = Point::Zero();  ///< the place of it
+    std::array<double, 3> along{};  ///< how much speaks for a cut across each axis
+    bool is_elsewhere = false;      ///< above the target only at a place that was not fitted to
+
+    void take(double delta, const Point& x) {
+        if (!(delta > worst)) return;
+        worst = delta;
+        where = x;
+    }
+};
+
+/// Compares the leaves of a tree with the field of a goal.
+template <class Node, class Storage>
+class LeafJudge {
+public:
+    LeafJudge(const Topology<Node>& tree, const Storage& storage, double target)
+        : tree_(tree), storage_(storage), target_(target) {}
+
+    /// At the places of the leaf; the others are skipped where some of them show that it has to be
+    /// cut, and how.
+    Departure at_places_of(const LeafBox& of, NearbyField& nearby) const {
+        Departure departure;
+        LogRatios log_ratio{};
+        for (const Range& range : ranges()) {
+            compare_at(of, nearby, range, departure, log_ratio);
+            if (departure.worst > target_) break;
+        }
+        if constexpr (Node::arity == 2) departure.along = sums_along(log_ratio);
+        return departure;
+    }
+
+    /// How much speaks for a cut across each axis.
+    std::array<double, 3> along(const LeafBox& of, NearbyField& nearby) const {
+        Departure departure;
+        LogRatios log_ratio{};
+        compare_at(of, nearby, ranges().front(), departure, log_ratio);
+        return sums_along(log_ratio);
+    }
+
+    /// At places number `first` to `end - 1` of the sequence in the box.
+    Departure at_sequence(const LeafBox& of, NearbyField& nearby, std::uint64_t first,
+                          std::uint64_t end) const {
+        std::array<Point, LeafPlaces::all> x;
+        Departure departure;
+        while (first < end) {
+            const std::size_t n = std::min<std::uint64_t>(x.size(), end - first);
+            for (std::size_t i = 0; i < n; ++i) x[i] = place_in(of.box, first++);
+            compare_with(of, nearby, std::span(x).first(n), departure, {});
+        }
+        return departure;
+    }
+
+private:
+    using LogRatios = std::array<double, LeafPlaces::all>;
+    struct Range {
+        std::size_t from, to;
+    };
+
+    // Of LeafPlaces, those first that show how to cut.
+    static constexpr auto ranges() {
+        using P = LeafPlaces;
+        if constexpr (Storage::cut_by == CutBy::corners) {
+            return std::array{Range{P::corners, P::faces}, Range{P::faces, P::edges}};
+        } else if constexpr (Storage::cut_by == CutBy::edges) {
+            return std::array{Range{P::edges, P::all}, Range{P::centre, P::edges}};
+        } else if constexpr (Storage::cut_by == CutBy::faces) {
+            return std::array{Range{P::centre, P::edges}, Range{P::corners, P::centre},
+                              Range{P::edges, P::all}};
+        } else {
+            return std::array{Range{P::corners, P::faces}, Range{P::faces, P::all}};
+        }
+    }
+
+    void compare_at(const LeafBox& of, NearbyField& nearby, const Range& range,
+                    Departure& departure, LogRatios& log_ratio) const {
+        std::array<Point, LeafPlaces::all> x;
+        const std::size_t n = range.to - range.from;
+        for (std::size_t i = 0; i < n; ++i) x[i] = leaf_places().in(of.box, range.from + i);
+        compare_with(
+            of, nearby, std::span(x).first(n), departure,
+            Node::arity == 2 ? std::span(log_ratio).subspan(range.from) : std::span<double>());
+    }
+
+    // Writes, if there is room, the logarithms of how much longer the leaf's lengths are.
+    void compare_with(const LeafBox& of, NearbyField& nearby, std::span<const Point> x,
+                      Departure& departure, std::span<double> log_ratio) const {
+        std::array<Metric, LeafPlaces::all> own, field;
+        values_in(of.leaf, x, own);
+        const double factor = nearby.evaluate_roughly(x, std::span(field).first(x.size()));
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            compare(own[i], field[i], factor, x[i], nearby, departure);
+            if (!log_ratio.empty()) {
+                log_ratio[i] = std::log(mean_length(own[i]) / mean_length(field[i]));
+            }
+        }
+    }
+
+    void values_in(LeafIndex leaf, std::span<const Point> x, std::span<Metric> out) const {
+        std::array<LeafIndex, LeafPlaces::all> leaves;
+        leaves.fill(leaf);
+        field_of(storage_).values_in(tree_, std::span(leaves).first(x.size()), x, out);
+    }
+
+    // `longest` is the field at x, or longer by less than the factor. What may be near to the
+    // target is evaluated exactly.
+    void compare(const Metric& own, const Metric& longest, double factor, const Point& x,
+                 NearbyField& nearby, Departure& departure) const {
+        const double from_longest = nonconformity(own, longest);
+        if (factor == 1) return departure.take(from_longest, x);
+        const Metric shortest = (1 / factor) * longest;
+        const double from_shortest = nonconformity(own, shortest);
+        const double most = std::max(from_longest, from_shortest);
+        if (most <= 0.75 * target_) return departure.take(most, x);
+        const double least = std::min(from_longest, from_shortest);
+        const bool is_outside = own.xx > longest.xx || own.xx < shortest.xx;
+        if (is_outside && least > target_) return departure.take(least, x);
+        Metric exact;
+        nearby.evaluate({&x, 1}, {&exact, 1});
+        departure.take(nonconformity(own, exact), x);
+    }
+
+    static std::array<double, 3> sums_along(const LogRatios& departure) {
+        std::array<double, 3> along{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            if constexpr (Storage::cut_by == CutBy::corners) {
+                for (std::size_t c = 0; c < 8; ++c) {
+                    if ((c >> a & 1) != 0) continue;
+                    along[a] += std::abs(departure[c | std::size_t{1} << a] - departure[c]);
+                }
+            } else if constexpr (Storage::cut_by == CutBy::faces) {
+                along[a] = std::abs(departure[LeafPlaces::low_face(a)]) +
+                           std::abs(departure[LeafPlaces::high_face(a)]);
+            } else if constexpr (Storage::cut_by == CutBy::edges) {
+                for (std::size_t i = LeafPlaces::edges; i < LeafPlaces::all; ++i) {
+                    if (leaf_places().at[i][static_cast<Axis>(a)] == 0.5) {
+                        along[a] += std::abs(departure[i]);
+                    }
+                }
+            }
+        }
+        return along;
+    }
+
+    const Topology<Node>& tree_;
+    const Storage& storage_;
+    double target_;
+};
+
+}  // namespace controlspace

@@ -1,0 +1,171 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "controlspace/gradation/detail/regrade.h"
+#include "controlspace/space/detail/past_gradation.h"
+#include "controlspace/trees/detail/control_nodes.h"
+#include "controlspace/trees/detail/growing_tree.h"
+#include "controlspace/trees/detail/leaf_growth.h"
+#include "controlspace/trees/detail/met_sources.h"
+#include "controlspace/trees/detail/packed_tree.h"
+#include "controlspace/trees/detail/published_bytes.h"
+#include "controlspace/trees/detail/tree_changes.h"
+
+namespace controlspace {
+
+/// A tree whose control nodes carry metrics, for SharedBuilder: the cut and the storage are
+/// independent of each other, insertion (paper §3.1) is the same for all.
+template <class Node, class Storage>
+class MetricTree : public GrowingTree<Node, Storage> {
+    using Base = GrowingTree<Node, Storage>;
+    using Base::is_finished_, Base::options_, Base::storage_, Base::topology_;
+
+public:
+    explicit MetricTree(const SpaceOptions& options, bool balanced = false)
+        : Base(options, balanced) {}
+
+    InsertionReport insert(std::span<const PointSource> sources) {
+        // Copying everything would be out of proportion to a few sources more.
+        is_finished_ = options_.takes_later_sources;
+        InsertionReport report;
+        // A leaf is its own metric alone: leaves grow at the same time.
+        if constexpr (Storage::order == 0 && !HasData<Storage>) {
+            if (!Base::balanced_ && !metrics().keeps_requested()) report = insert_by_leaf(sources);
+        }
+        insert_in_turn(sources, report);
+        if (!is_finished_ && sources.size() > topology_.leaves() / 16) finish();
+        return report;
+    }
+
+    ControlNodes control_nodes(Neighbourhood neighbourhood) const {
+        return nodes_of_tree(topology_, storage_, neighbourhood);
+    }
+    void assign(std::span<const Metric> metrics) {
+        assign_nodes(topology_, storage_, metrics);
+        past_.reset();
+    }
+
+    GradationReport grade(const GradationOptions& options) {
+        require_valid(options);
+        if (options.neighbourhood == Neighbourhood::all) {
+            Base::require_memory(topology_.leaves(), options.neighbourhood);
+        }
+        topology_.fit_jumps();
+        return options_.takes_later_sources ? grade_beside_requested(options)
+                                            : grade_nodes(topology_, storage_, options);
+    }
+
+    AdaptationReport adapt(const AdaptationGoal& goal) {
+        const AdaptationReport report = Base::adapt(goal, [&] { past_.reset(); });
+        finish();
+        return report;
+    }
+
+    void finish() { Base::settle(); }
+
+    Footprint footprint() const {
+        Footprint footprint = Base::footprint();
+        footprint.bytes_published =
+            published_bytes({Node::arity == 8, nodes_per_leaf<Storage> > 1, topology_.leaves(),
+                             topology_.inner_nodes(), footprint.control_nodes});
+        return footprint;
+    }
+
+    std::unique_ptr<ControlSpace> pack(Precision precision) const {
+        return pack_tree(topology_, storage_, precision);
+    }
+
+    void save(StateWriter& state) const {
+        controlspace::save(topology_, state);
+        save_storage(storage_, metrics(), state);
+        if (!options_.takes_later_sources) return;
+        changes_.save(state);
+        exchange_past(past_, state);
+    }
+    void load(const StateReader& state) {
+        is_finished_ = true;
+        topology_ = load_topology<Node>(Base::domain(), state);
+        load_storage(storage_, topology_, state);
+        // A compact form has no changes.
+        if (!options_.takes_later_sources || state.has("compact.precision")) return;
+        changes_.load(state, topology_.leaves(), metrics().size());
+        exchange_past(past_, state);
+    }
+
+private:
+    NodeMetrics& metrics() { return storage_.metrics(); }
+    const NodeMetrics& metrics() const { return storage_.metrics(); }
+
+    InsertionReport insert_by_leaf(std::span<const PointSource> sources) {
+        InsertionReport report;
+        const SourceCuts<Node> cuts = Base::cuts();
+        LeafGrowth<Node> growth(cuts, options_.tolerance);
+        while (report.sources < sources.size()) {
+            const auto batch = growth.next_batch(sources.subspan(report.sources));
+            const std::size_t valid = growth.grow(topology_, metrics().field(), batch);
+            if (valid == 0) require_valid(batch.front(), report.sources, Base::domain());
+            Base::make_room_for(growth.cuts_made());
+            topology_.grow(growth.cuts_made());
+            metrics().grow(growth.cuts_made() * (Node::arity - 1));
+            growth.enter(topology_, metrics().field());
+            topology_.fit_jumps_roughly();
+            report.sources += valid;
+            report.inserted += growth.inserted();
+        }
+        return report;
+    }
+
+    // One after the other, those left after the report's.
+    void insert_in_turn(std::span<const PointSource> sources, InsertionReport& report) {
+        MetSources met;
+        while (report.sources < sources.size()) {
+            const auto part = met.next_part(sources.subspan(report.sources));
+            met.find(topology_, storage_, options_.tolerance, part);
+            for (std::size_t k = 0; k < part.size(); ++k, ++report.sources) {
+                if (met.is_met(k)) continue;
+                require_valid(part[k], report.sources, Base::domain());
+                if (insert_valid(part[k]) == Insertion::inserted) ++report.inserted;
+            }
+        }
+    }
+
+    Insertion insert_valid(const PointSource& source) {
+        const Metric held = value_at(topology_, requested_of(storage_), source.position);
+        if (!calls_for_change(source.metric, held, options_.tolerance)) {
+            return Insertion::already_met;
+        }
+        if (metrics().keeps_requested()) {
+            const LeafPlace place = Base::cut_for(source, changes_);
+            lower_nodes(storage_, place, source.metric);
+            changes_.lower(storage_, place);
+        } else {
+            lower_nodes(storage_, Base::cut_for(source), source.metric);
+        }
+        return Insertion::inserted;
+    }
+
+    // Grades what the sources request, which stays beside the field; where little has changed, that
+    // alone.
+    GradationReport grade_beside_requested(const GradationOptions& options) {
+        GradationReport report;
+        if (may_regrade(past_, options) && metrics().requests_isotropic() &&
+            !are_many(changes_.count(topology_.leaves()), metrics().size())) {
+            report = changes_.regrade(topology_, storage_, *past_);
+        } else {
+            std::vector<Metric> requested = metrics().release_requested();
+            report = grade_nodes(topology_, storage_, options);
+            metrics().keep_requested(std::move(requested));
+        }
+        changes_.begin(topology_.leaves(), metrics().size());
+        past_ = {options, report.largest_ratio_left};
+        return report;
+    }
+
+    // Since the last gradation, where sources may come after it.
+    TreeChanges<Storage> changes_;
+    std::optional<PastGradation> past_;
+};
+
+}  // namespace controlspace

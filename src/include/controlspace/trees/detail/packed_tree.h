@@ -1,0 +1,127 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "controlspace/metric/stored_metric.h"
+#include "controlspace/space/control_nodes.h"
+#include "controlspace/space/detail/saved.h"
+#include "controlspace/trees/detail/leaf_graph.h"
+#include "controlspace/trees/detail/sample_leaves.h"
+#include "controlspace/trees/detail/storage_state.h"
+#include "controlspace/trees/detail/topology_state.h"
+
+namespace controlspace {
+
+// Compact forms of trees, which can only be read (BuildOptions::precision): inner nodes and leaves
+// lie depth first, and only what reading needs is kept. With doubles they answer as the tree does,
+// to the bit. They are saved as the tree is, with nodes and leaves in their order.
+
+/// The metrics with these numbers, in their order. Throws InputError where floats cannot hold one.
+template <class Number>
+std::vector<StoredMetric<Number>> stored_metrics(std::span<const Metric> metrics,
+                                                 std::span<const NodeIndex> numbers);
+
+/// pack(Number()) for the type of numbers that metrics are stored in.
+template <class Pack>
+std::unique_ptr<ControlSpace> with_number(Precision precision, Pack&& pack) {
+    return precision == Precision::floats ? pack(float()) : pack(double());
+}
+
+/// What the leaves of a compact form hold, of any storage with one node a leaf: its data, and the
+/// metrics in numbers of type `Number`.
+template <class Storage, class Number>
+class PackedValues {
+public:
+    /// `former` are the former numbers of the leaves.
+    PackedValues(const Storage& storage, std::span<const LeafIndex> former)
+        : storage_(storage), metrics_(stored_metrics<Number>(storage.metrics().field(), former)) {
+        storage_.metrics() = NodeMetrics(0, Metric());
+        for_each_array(storage_, [&](std::string_view, auto& array) {
+            auto ordered = std::remove_cvref_t<decltype(array)>();
+            ordered.reserve(former.size());
+            for (const LeafIndex leaf : former) ordered.push_back(array[leaf]);
+            array = std::move(ordered);
+        });
+    }
+
+    void prefetch(LeafIndex leaf) const { field().prefetch(leaf); }
+    template <class Node>
+    void values_in(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
+                   std::span<const Point> x, std::span<Metric> out) const {
+        field().values_in(tree, leaves, x, out);
+    }
+    template <class Node>
+    ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
+        return {leaf_graph(tree, neighbourhood).graph, {metrics_.begin(), metrics_.end()}};
+    }
+    void describe(Footprint& footprint) const {
+        describe_storage(storage_, footprint);
+        footprint.control_nodes = metrics_.size();
+        footprint.bytes_payload += metrics_.capacity() * sizeof(StoredMetric<Number>);
+    }
+    void save(StateWriter& state) const {
+        save_storage(storage_, NodeMetrics({metrics_.begin(), metrics_.end()}), state);
+    }
+
+private:
+    NodeField<Storage, StoredMetric<Number>> field() const { return {storage_, {metrics_}}; }
+
+    Storage storage_;  // without metrics
+    std::vector<StoredMetric<Number>> metrics_;
+};
+
+/// A tree whose leaves, numbered depth first, hold `Values`: see PackedValues.
+template <class Node, class Values>
+class PackedTree final : public ControlSpace, public HasControlNodes, public Saved {
+public:
+    PackedTree(Topology<Node> topology, Values values)
+        : topology_(std::move(topology)), values_(std::move(values)) {}
+
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+        sample_leaves(topology_, values_, x, out);
+    }
+    ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
+        return values_.control_nodes(topology_, neighbourhood);
+    }
+    Box domain() const override { return topology_.domain(); }
+    std::optional<Box> cell_at(const Point& x) const override { return topology_.locate(x).box; }
+    Footprint footprint() const override {
+        Footprint footprint;
+        topology_.describe(footprint);
+        values_.describe(footprint);
+        return footprint;
+    }
+    void save(StateWriter& state) const override {
+        controlspace::save(topology_, state);
+        values_.save(state);
+    }
+
+private:
+    Topology<Node> topology_;
+    Values values_;
+};
+
+/// The compact form of a tree.
+template <class Node, class Storage>
+std::unique_ptr<ControlSpace> pack_tree(const Topology<Node>& tree, const Storage& storage,
+                                        Precision precision) {
+    if constexpr (requires { storage.pack(tree, precision); }) {
+        return storage.pack(tree, precision);
+    } else {
+        static_assert(nodes_per_leaf<Storage> == 1,
+                      "a storage with eight nodes a leaf needs `pack(tree, precision)`");
+        std::vector<LeafIndex> former;
+        Topology<Node> ordered = tree.depth_first(former);
+        return with_number(precision, [&]<class Number>(Number) -> std::unique_ptr<ControlSpace> {
+            using Packed = PackedValues<Storage, Number>;
+            return std::make_unique<PackedTree<Node, Packed>>(std::move(ordered),
+                                                              Packed(storage, former));
+        });
+    }
+}
+
+}  // namespace controlspace

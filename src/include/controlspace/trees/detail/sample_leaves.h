@@ -1,0 +1,77 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "controlspace/trees/storage.h"
+#include "controlspace/trees/topology.h"
+
+namespace controlspace {
+
+/// The field that a storage makes of some metrics of its nodes: values_in(tree, leaves, x, out).
+template <class Storage, class M>
+struct NodeField {
+    const Storage& storage;
+    NodeView<M> nodes;
+
+    [[gnu::always_inline]] void prefetch(LeafIndex leaf) const {
+        if constexpr (requires { storage.prefetch(leaf); }) storage.prefetch(leaf);
+    }
+    template <class Node>
+    void values_in(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
+                   std::span<const Point> x, std::span<Metric> out) const {
+        if constexpr (requires { storage.values_in(tree, leaves, x, nodes, out); }) {
+            storage.values_in(tree, leaves, x, nodes, out);
+        } else {
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                out[i] = storage.value_in(tree, leaves[i], x[i], nodes);
+            }
+        }
+    }
+};
+
+/// The field of a storage, whether it holds metrics of nodes or sources.
+template <class Storage>
+decltype(auto) field_of(const Storage& storage) {
+    if constexpr (requires { storage.metrics(); }) {
+        return NodeField<Storage, Metric>{storage, storage.metrics().values()};
+    } else {
+        return (storage);
+    }
+}
+/// What the sources alone request.
+template <class Storage>
+NodeField<Storage, Metric> requested_of(const Storage& storage) {
+    return {storage, storage.metrics().requested_values()};
+}
+
+/// Metrics at `x`: leaves are found for many points side by side, then read.
+template <class Node, class Field>
+void sample_leaves(const Topology<Node>& tree, const Field& field, std::span<const Point> x,
+                   std::span<Metric> out) {
+    std::array<LeafIndex, Topology<Node>::most_found> leaves;
+    for (std::size_t first = 0; first < x.size(); first += leaves.size()) {
+        const auto part = x.subspan(first, std::min(leaves.size(), x.size() - first));
+        tree.find(part, leaves);
+        if constexpr (requires { field.prefetch(leaves[0]); }) {
+            for (std::size_t i = 0; i < part.size(); ++i) field.prefetch(leaves[i]);
+        }
+        field.values_in(tree, std::span(leaves).first(part.size()), part,
+                        out.subspan(first, part.size()));
+    }
+}
+
+/// The metric at one point, of a leaf if that is known.
+template <class Node, class Field>
+Metric value_in(const Topology<Node>& tree, const Field& field, LeafIndex leaf, const Point& x) {
+    Metric m;
+    field.values_in(tree, {&leaf, 1}, {&x, 1}, {&m, 1});
+    return m;
+}
+template <class Node, class Field>
+Metric value_at(const Topology<Node>& tree, const Field& field, const Point& x) {
+    return value_in(tree, field, tree.find(x), x);
+}
+
+}  // namespace controlspace

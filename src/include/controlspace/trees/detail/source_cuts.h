@@ -1,0 +1,49 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include "controlspace/sources/point_source.h"
+#include "controlspace/space/space_options.h"
+#include "controlspace/space/split_rule.h"
+#include "controlspace/trees/topology.h"
+
+namespace controlspace {
+
+/// How a tree's leaves are cut for sources (paper §3.1, steps 4 and 5).
+template <class Node>
+class SourceCuts {
+public:
+    /// `options` must outlive it.
+    explicit SourceCuts(const SpaceOptions& options) : options_(options) {}
+
+    /// The cut of the leaf that holds the source; none where the leaf is short
+    /// enough, or among the smallest allowed.
+    std::optional<Subdivision> cut(const LeafPlace& place, const PointSource& source) const {
+        if (place.level >= max_depth() || !is_too_long(source.metric, place.box)) return {};
+        const Subdivision subdivision = subdivide(place.box, source);
+        if (!subdivision.is_proper()) return {};
+        return subdivision;
+    }
+
+    int max_depth() const { return Node::is_octant ? options_.octree_depth : options_.kd_depth; }
+
+    /// Whether any edge of `box` is longer than l_min in the metric.
+    bool is_too_long(const Metric& metric, const Box& box) const {
+        const auto lengths = metric_edge_lengths(metric, box.edges());
+        return std::max({lengths[0], lengths[1], lengths[2]}) > options_.l_min;
+    }
+
+private:
+    Subdivision subdivide(const Box& box, const PointSource& source) const {
+        if constexpr (Node::is_octant) {
+            return octants(box);
+        } else {
+            return controlspace::cut(options_.split, box, source, options_.l_min);
+        }
+    }
+
+    const SpaceOptions& options_;
+};
+
+}  // namespace controlspace

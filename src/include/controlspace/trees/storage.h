@@ -1,0 +1,144 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <tuple>
+
+#include "controlspace/space/control_space.h"
+#include "controlspace/space/space_options.h"
+#include "controlspace/trees/cut.h"
+#include "controlspace/trees/node_metrics.h"
+#include "controlspace/trees/topology.h"
+
+namespace controlspace {
+
+// A storage defines where the control nodes of a tree are, and how the metric between them is
+// interpolated. It is data and four functions. Insertion (paper §3.1), gradation (§3.2),
+// adaptation, compact forms, files and footprints are made of them (tree_row.h).
+//
+//   metrics()                            NodeMetrics of the control nodes
+//   nodes_of(leaf)                       numbers of the control nodes of a leaf: std::array of one,
+//                                        which is the leaf's own number, or of eight
+//   split(subdivision, leaf, first_new)  the effect of a cut: child 0 keeps the leaf's number,
+//                                        children 1, 2, ... get first_new, first_new + 1, ...; the
+//                                        field gets nowhere longer
+//   value_in(tree, leaf, x, nodes)       the metric at x, made of `nodes` (NodeView). The leaf
+//                                        holds x, or the point of the domain that is nearest to x,
+//                                        whose metric it is then. Or, for many at once,
+//   values_in(tree, leaves, x, nodes, out)
+//
+// and a constructor from SpaceOptions, for a tree of one leaf with largest_metric(domain). A single
+// node of a leaf stands at its centre; for eight, corners() and positions() give those of all
+// leaves and all nodes. Constants:
+//
+//   order   of interpolation: 0 constant in a leaf, 1 linear, 2 quadratic
+//   cut_by  how the error of the interpolation depends on the place in a leaf (CutBy)
+//   follows_neighbours  true where the value in a leaf depends on its neighbours' metrics;
+//                       otherwise it may be left out
+//
+// Members beside the NodeMetrics are listed in
+//
+//   static void data(auto& self, auto&& visit) { visit("mine.slopes", self.slopes_); ... }
+//
+// with a name in files each: arrays with an entry for each leaf (std::vector of double, Point, Box,
+// Metric, std::uint32_t or std::array of one of them), and numbers. Optional functions:
+//
+//   fit(leaf, field)       sets the node and the data of a leaf (LeafBox) to a field
+//                          (ControlSpace), for adaptation; called for several leaves at the same
+//                          time. Without it the nodes are set to the field.
+//   lower(place, metric)   intersects the metrics of a leaf with a source's, where that is more
+//   than
+//                          NodeMetrics::lower: at the source, the field must not be longer after it
+//   assigned()             metrics were set from outside
+//   graded(ratio)          metrics were graded with this ratio, or fitted to a field of it
+//   prefetch(leaf)         prefetches what value_in reads first
+//   ceiling(leaf, x)       upper bound of the requested isotropic length at x, now and after all
+//                          later insertions; infinity where there is none
+//   prepare(tree)          called before queries, after the last change of the tree or the metrics
+//   pack(tree, precision)  the compact form. Required for eight nodes a leaf.
+//   loaded(tree, state)    checks what was loaded, and makes what is not in files. Required where
+//   an
+//                          array has not an entry for each leaf.
+//   describe(footprint), shrink_to_fit()
+//                          where not all memory is in metrics() and data()
+
+/// Number of control nodes of a leaf.
+template <class Storage>
+inline constexpr std::size_t nodes_per_leaf =
+    std::tuple_size_v<std::remove_cvref_t<decltype(std::declval<const Storage&>().nodes_of(0))>>;
+
+/// Whether a storage lists data beside its metrics.
+template <class Storage>
+concept HasData = requires(Storage& s) {
+    Storage::data(s, [](std::string_view, auto&) {});
+};
+
+template <class Storage>
+consteval bool follows_neighbours() {
+    if constexpr (requires { Storage::follows_neighbours; }) return Storage::follows_neighbours;
+    return false;
+}
+
+/// Compiles for a storage, of metrics or of sources; otherwise says what is missing.
+template <class Storage>
+consteval void check_storage() {
+    static_assert(
+        requires {
+            { Storage::order } -> std::convertible_to<int>;
+        },
+        "a storage needs a constant `int order` of interpolation");
+    static_assert(
+        requires {
+            { Storage::cut_by } -> std::convertible_to<CutBy>;
+        },
+        "a storage needs a constant `CutBy cut_by`");
+    static_assert(
+        requires(const SpaceOptions& options) { Storage(options); },
+        "a storage needs a constructor from `const SpaceOptions&`");
+    static_assert(
+        requires(Storage & s, const Subdivision& cut, LeafIndex leaf) { s.split(cut, leaf, leaf); },
+        "a storage needs `split(const Subdivision&, LeafIndex leaf, LeafIndex first_new)`");
+}
+
+/// The same for a storage of metrics at control nodes of a tree with inner nodes `Node`.
+template <class Node, class Storage>
+consteval void check_node_storage() {
+    check_storage<Storage>();
+    static_assert(
+        requires(Storage & s, const Storage& constant) {
+            { s.metrics() } -> std::same_as<NodeMetrics&>;
+            { constant.metrics() } -> std::same_as<const NodeMetrics&>;
+        },
+        "a storage needs `NodeMetrics& metrics()`, and the same for a constant one");
+    static_assert(
+        requires(const Storage& s) { s.nodes_of(LeafIndex{}); },
+        "a storage needs `nodes_of(LeafIndex)`: the numbers of a leaf's control nodes");
+    static_assert(
+        requires(const Storage& s, const Topology<Node>& tree, LeafIndex leaf, const Point& x,
+                 NodeView<Metric> nodes) {
+            { s.value_in(tree, leaf, x, nodes) } -> std::convertible_to<Metric>;
+        } || requires(const Storage& s, const Topology<Node>& tree,
+                      std::span<const LeafIndex> leaves, std::span<const Point> x,
+                      NodeView<Metric> nodes,
+                      std::span<Metric> out) { s.values_in(tree, leaves, x, nodes, out); },
+        "a storage needs `Metric value_in(tree, leaf, x, nodes)` or `values_in(tree, leaves, x, "
+        "nodes, out)`");
+    static_assert(HasData<Storage> || sizeof(Storage) == sizeof(NodeMetrics),
+                  "a storage with members beside its NodeMetrics needs `static void data(auto& "
+                  "self, auto&& visit)`, which lists them");
+    if constexpr (requires(const Storage& s) { s.nodes_of(LeafIndex{}); }) {
+        static_assert(nodes_per_leaf<Storage> == 1 || nodes_per_leaf<Storage> == 8,
+                      "a leaf has one control node, or eight");
+        static_assert(
+            nodes_per_leaf<Storage> == 1 ||
+                requires(const Storage& s) {
+                    s.corners();
+                    s.positions();
+                },
+            "a storage with eight nodes a leaf needs `corners()` and `positions()`");
+    }
+}
+
+}  // namespace controlspace

@@ -1,0 +1,76 @@
+#include "controlspace/trees/detail/nearby_field.h"
+
+#include "cones/cone_field.h"
+#include "cones/nearby_cones.h"
+
+namespace controlspace {
+
+struct NearbyField::Search {
+    const GoalField& field;
+    Box box = {};
+    ConeField::Memory memory = {};
+    NearbyCones gathered = {}, cones = {};
+    bool is_gathered = false;
+    bool are_few = false;
+
+    void gather() {
+        if (is_gathered) return;
+        is_gathered = true;
+        are_few = field.cones().gather(box, gathered, memory);
+        if (are_few) cones.narrow(gathered, box);
+    }
+    void by_memory(std::span<const Point> x, std::span<Metric> out) {
+        field.cones().evaluate(x, out, memory);
+        field.add_continuous(x, out);
+    }
+    void by_few(std::span<const Point> x, std::span<Metric> out) const {
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            out[i] = Metric::isotropic(cones.smallest_length(x[i]));
+        }
+        field.add_continuous(x, out);
+    }
+};
+
+NearbyField::NearbyField(const GoalField& field) : search_(new Search{.field = field}) {}
+NearbyField::NearbyField(const NearbyField& other) : search_(new Search(*other.search_)) {}
+NearbyField::~NearbyField() = default;
+
+void NearbyField::enter(const Box& box, bool at_many_points) {
+    search_->box = box;
+    search_->memory.hint = 0;
+    search_->is_gathered = !at_many_points;
+    search_->are_few = false;
+}
+
+void NearbyField::evaluate(std::span<const Point> x, std::span<Metric> out) {
+    search_->gather();
+    if (search_->are_few) {
+        search_->by_few(x, out);
+    } else {
+        search_->by_memory(x, out);
+    }
+}
+
+double NearbyField::evaluate_roughly(std::span<const Point> x, std::span<Metric> out) {
+    search_->gather();
+    const GoalField& field = search_->field;
+    if (search_->are_few || !field.has_ranges()) {
+        evaluate(x, out);
+        return 1;
+    }
+    field.cones().evaluate_roughly(x, field.negligible(), out, search_->memory);
+    return 1 + field.negligible();
+}
+
+Metric NearbyField::at(const Point& x) {
+    Metric m;
+    search_->by_memory({&x, 1}, {&m, 1});
+    return m;
+}
+
+NearbyField::Range NearbyField::range() {
+    const auto [least, most] = search_->field.cones().range_in(search_->box, search_->memory);
+    return {least, most};
+}
+
+}  // namespace controlspace

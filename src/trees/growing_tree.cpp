@@ -1,0 +1,26 @@
+#include "controlspace/trees/detail/growing_tree.h"
+
+#include <fmt/format.h>
+
+#include "controlspace/error.h"
+
+namespace controlspace {
+
+void fail_too_many_leaves() {
+    throw InputError("a tree holds 2^30 leaves at most: raise l_min or lower the depth");
+}
+
+void fail_too_large(std::size_t max_bytes) {
+    constexpr double gib = 1024.0 * 1024 * 1024;
+    throw InputError(
+        fmt::format("the tree would take more than {:.3g} GiB, gradation included: raise tau "
+                    "(l_min) or target_delta, or max_memory",
+                    static_cast<double>(max_bytes) / gib));
+}
+
+std::string depth_shortfall(int max_depth) {
+    return fmt::format("leaves of level {} are not cut: raise target_delta or the depth",
+                       max_depth);
+}
+
+}  // namespace controlspace
