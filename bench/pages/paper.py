@@ -100,7 +100,7 @@ class Cell(namedtuple("Cell", "row paper")):
         return getattr(self.paper, table.measure)
 
     def published_nodes(self):
-        """Control nodes in the paper's size, if its tree has the elements of ours: its Table 1
+        """Control nodes in the paper's size, if its tree has the nodes of ours: its Table 1
         counts 104 bytes for each."""
         return self.row["control_nodes"] + (self.paper.size_MB - self.row["size_MB"]) * 1e6 / 104
 

@@ -45,7 +45,7 @@ class Row:
         # is not the default of the rest.
         self.label, self.group, self.work, self.method = (
             json_row["labels"][key] for key in ("structure", "setting", "work", "method"))
-        self.measures = None if self.error else checked(dict(items[split + 1:]))
+        self.measures = None if self.error else checked(dict(items[split + 1:]), self.setting)
 
     def key_with(self, **changes):
         """What tells the case, changed so, from others; a setting that a program does not know yet
@@ -85,7 +85,17 @@ class Results:
                 f"{'' if self.complete else ', not complete'}: `{self.head['command_line']}`")
 
 
-def checked(m):
+def size_in_table_1(setting, m):
+    """Bytes as the paper's Table 1 counts them: 136 for a leaf, 108 (kd-tree) or 216 (octree) for an
+    inner node, 104 for a kd-tree as a whole and for each vertex; no metric of a leaf."""
+    if not m["tree_nodes"]:
+        return 0
+    inner, vertices = (216, "K_oV") if setting["structure"].startswith("K_o") else (108, "K_V")
+    return (136 * m["cells"] + inner * (m["tree_nodes"] - m["cells"]) + 104 * (inner == 108)
+            + 104 * m["control_nodes"] * (setting["structure"] == vertices))
+
+
+def checked(m, setting):
     """The measures of a row, with those that follow from them under the names of the paper's."""
     for key in ERRORS:
         m[key] = math.inf if m[key] is None else m[key]
@@ -95,7 +105,7 @@ def checked(m):
     for key in (f"{time}_samples" for time in TIMES):
         if not m[key] or not all(isinstance(x, (int, float)) for x in m[key]):
             raise ValueError(f"{key} is no list of numbers")
-    return m | {"size_MB": (m["bytes_published_accounting"] or 0) / 1e6,
+    return m | {"size_MB": size_in_table_1(setting, m) / 1e6,
                 "memory_MB": m["bytes_total"] / 1e6, "metrics_MB": m["bytes_payload"] / 1e6,
                 **{key: m[time] * unit for key, (time, unit) in PAPER_TIMES.items()}}
 

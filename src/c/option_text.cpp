@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "controlspace/error.h"
@@ -74,6 +75,7 @@ void set_option(SpaceOptions& options, std::string_view name, std::string_view v
 SpaceOptions options_from_text(const Box& domain, std::string_view text) {
     SpaceOptions options{.domain = domain};
     constexpr std::string_view blanks = " \t\n,";
+    std::set<std::string_view> given;
     while (true) {
         const std::size_t begin = text.find_first_not_of(blanks);
         if (begin == std::string_view::npos) return options;
@@ -83,7 +85,11 @@ SpaceOptions options_from_text(const Box& domain, std::string_view text) {
         if (sign == std::string_view::npos) {
             throw InputError(fmt::format("option {} has no value: write name=value", quote(word)));
         }
-        set_option(options, word.substr(0, sign), word.substr(sign + 1));
+        const std::string_view name = word.substr(0, sign);
+        if (!given.insert(name).second) {
+            throw InputError(fmt::format("option {} is given twice: give it once", quote(name)));
+        }
+        set_option(options, name, word.substr(sign + 1));
         text.remove_prefix(end);
     }
 }

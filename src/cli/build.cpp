@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/filled_space.h"
+#include "cli/input_study.h"
 #include "cli/options.h"
 #include "cli/progress.h"
 #include "cli/standard_output.h"
@@ -27,6 +28,7 @@ int build(const Build& job) {
         throw InputError(
             fmt::format("cannot save to {}: name a file that ends in .ctrl", output.string()));
     }
+    require_no_input(output, {job.input});
     FilledSpace filled;
     {
         StepProgress progress(job.quiet, output);
@@ -43,7 +45,7 @@ int build(const Build& job) {
                       output.string(), filled.structure, footprint.control_nodes,
                       static_cast<double>(footprint.bytes_total()) / 1e6,
                       static_cast<double>(std::filesystem::file_size(output)) / 1e6));
-    return 0;
+    return report_remark(filled);
 }
 
 }  // namespace

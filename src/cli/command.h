@@ -11,7 +11,8 @@ class Options;
 /// status, and throws InputError for what cannot be done.
 using Action = std::function<int(const std::string& command_line)>;
 
-/// Exit status where some cases failed: results are written, and their rows say why.
+/// Exit status where some cases failed or missed a requested target: results are written, and say
+/// why.
 inline constexpr int some_failed = 3;
 
 // Each adds the options of one command, and returns its work. The options must live until then.

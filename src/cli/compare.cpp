@@ -8,46 +8,34 @@
 #include "cli/command.h"
 #include "cli/formats.h"
 #include "cli/options.h"
+#include "cli/paper_reference.h"
 #include "cli/run_study.h"
 #include "cli/signals.h"
 #include "cli/standard_output.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
-#include "study/embedded.h"
 #include "study/forecast.h"
 
 namespace controlspace {
 namespace {
 
 struct Compare {
-    std::filesystem::path study_file;  ///< empty: the built-in study
+    std::filesystem::path study_file;  ///< empty: one run, on the sphere
     WordsByKey given;                  ///< they override the study file in all of its runs
     bool as_published = false;
-    std::filesystem::path resume;  ///< folder of an interrupted run to go on with, or empty
-    bool dry_run = false;          ///< say what would be run
+    std::filesystem::path resume;  ///< folder of an interrupted run to continue, or empty
+    bool dry_run = false;          ///< list the cases instead of running them
     bool quiet = false;
 };
 
-/// Without a study file: the paper's sphere in both modes, unless the command line says what
-/// concerns a mode or the sources.
-Study starting_point(const Compare& job) {
+/// The study that the options request. Throws InputError.
+Study study_of(const Compare& job) {
     const std::filesystem::path& file = job.study_file;
     if (file.has_extension() && file.extension() != ".toml") {
         throw InputError(fmt::format(
             "{0} is no study file (.toml): sources are given by --sources {0}", file.string()));
     }
-    if (!file.empty()) return read_study(file);
-    bool one_mode = job.as_published;
-    for (const auto& [key, words] : given_settings(job.given)) {
-        one_mode |= key == "sources" || key == "field" || key == "law" || key == "schedule" ||
-                    key == "reference";
-    }
-    return one_mode ? Study{} : parse_study(quick_study_text(), "built-in study");
-}
-
-/// The study that the options ask for. Throws InputError.
-Study study_of(const Compare& job) {
-    Study study = starting_point(job);
+    Study study = file.empty() ? Study{} : read_study(file, program_parameters());
     const GivenSettings given = given_settings(job.given);
     apply(given, study);
     if (job.as_published) {
@@ -62,29 +50,25 @@ Study study_of(const Compare& job) {
 
 int compare(const Compare& job, const std::string& command_line) {
     if (job.dry_run) {
-        const PreparedStudy prepared(study_of(job), {structures()}, file_readers());
+        const PreparedStudy prepared(study_of(job), program_rows(), file_readers());
         print(forecast_text(prepared, forecast(prepared)));
         return 0;
     }
     Interruption interruption;
     const FinishedStudy finished =
         run_study(study_of(job), {command_line, job.quiet, job.resume}, interruption);
-    print(tables_text(finished.rows, {structures()}, /*markdown=*/false));
+    print(tables_text(finished.rows, program_rows(), /*markdown=*/false));
     print(fmt::format("\nResults: {}\n", finished.folder.string()));
-    const bool all_measured = std::all_of(finished.rows.begin(), finished.rows.end(),
-                                          [](const Row& row) { return row.error.empty(); });
-    return all_measured ? 0 : some_failed;
+    return std::ranges::all_of(finished.rows, &Row::is_as_requested) ? 0 : some_failed;
 }
 
 }  // namespace
 
 Action add_compare(Options& options) {
     const auto job = std::make_shared<Compare>();
-    options.add(
-        {"STUDY", "FILE.toml",
-         "Study file (.toml); left out: the paper's sphere at rho = tau = 1, in both modes, "
-         "or one run if sources, field, law, schedule or reference are given"},
-        job->study_file);
+    options.add({"STUDY", "FILE.toml",
+                 "Study file (.toml); left out: the settings below, on the sources of a sphere"},
+                job->study_file);
     const std::string group = "Settings of cases (lists with commas; all combinations are run)";
     options.add_case_parameters(Run{}, group, job->given);
     options.add({"--as-published", " ",

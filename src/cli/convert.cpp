@@ -24,6 +24,7 @@ Action add_convert(Options& options) {
                 job->output);
     add_reading_options(options, job->given);
     return [job](const std::string&) {
+        require_no_input(job->output, {job->input});
         write_sources(job->output, sources_of_input(job->input, given_settings(job->given)));
         return 0;
     };

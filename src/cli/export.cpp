@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "cli/command.h"
+#include "cli/input_study.h"
 #include "cli/standard_output.h"
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
@@ -60,16 +61,17 @@ const FieldFormat& chosen_format(const ExportJob& job, const Options& options) {
 
 int export_field(const ExportJob& job, const Options& options, const std::string& command_line) {
     const FieldFormat& format = chosen_format(job, options);
+    require_no_input(job.output, {job.input});
     std::string what;
+    FilledSpace filled;
     {
         StepProgress progress(job.quiet, job.output);
-        const FilledSpace filled =
-            filled_space(job.input, given_settings(job.given), progress.observer());
+        filled = filled_space(job.input, given_settings(job.given), progress.observer());
         progress.started("sampling and writing");
         what = format.write({job.input, job.output, command_line, filled, progress});
     }
     print(what);
-    return 0;
+    return report_remark(filled);
 }
 
 }  // namespace

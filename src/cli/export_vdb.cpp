@@ -66,8 +66,7 @@ std::string export_vdb(const Export& e, VdbOptions vdb) {
     const double finest = origin ? origin->workload.finest_length : report.finest;
     if (report.voxel > finest) {
         spdlog::warn(
-            "voxels of {:.4g} are larger than the smallest length asked for, {:.4g}: give --voxel "
-            "to see all of it",
+            "voxels of {:.4g} are larger than the smallest requested length, {:.4g}: give --voxel",
             report.voxel, finest);
     }
     return text;

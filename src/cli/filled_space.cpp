@@ -1,11 +1,15 @@
 #include "cli/filled_space.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <utility>
 
+#include "cli/command.h"
 #include "cli/formats.h"
 #include "cli/input_study.h"
+#include "cli/paper_reference.h"
+#include "cli/standard_output.h"
 #include "cli/threads.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
@@ -31,18 +35,32 @@ FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings
         filled.builder = std::move(saved.builder);
         filled.space = std::move(saved.space);
         filled.structure = std::move(saved.recipe.structure);
+        filled.remark = filled.space->footprint().remark;
         return filled;
     }
     Study study = study_of_input(input, given);
     filled.threads = limit_threads(study.threads);
     const Case c = only_case(study);
     Workload workload = make_workload(study, c.sources, file_readers());
-    Filled made = make_and_fill(study, c, {structures()}, workload, observer);
+    Filled made = make_and_fill(study, c, program_rows(), workload, observer);
     filled.space = made.build(c);
     filled.builder = std::move(made.builder);
     filled.structure = c.structure;
+    filled.remark = remark_on(made.creation, filled.space->footprint());
+    filled.missed_target = !made.creation.shortfall.empty();
     filled.origin = Origin{std::move(study), c, std::move(workload)};
     return filled;
+}
+
+int report_remark(const FilledSpace& filled) {
+    if (filled.missed_target) {
+        spdlog::warn("{}: {}", filled.structure, filled.remark);
+        return some_failed;
+    }
+    if (!filled.remark.empty()) {
+        print_error(fmt::format("{}: {}\n", filled.structure, filled.remark));
+    }
+    return 0;
 }
 
 }  // namespace controlspace

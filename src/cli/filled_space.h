@@ -14,7 +14,7 @@
 
 namespace controlspace {
 
-/// What a structure was made for.
+/// The case that a structure was made for.
 struct Origin {
     Study study;
     Case c;
@@ -25,6 +25,8 @@ struct FilledSpace {
     std::unique_ptr<ControlSpaceBuilder> builder;  ///< none of a compact form that was loaded
     std::unique_ptr<ControlSpace> space;
     std::string structure;                         ///< id in the catalogue
+    std::string remark;                            ///< as remark_on
+    bool missed_target = false;                    ///< with the reason in the remark
     std::optional<Origin> origin;                  ///< none of a control space that was loaded
     std::unique_ptr<tbb::global_control> threads;  ///< the study's limit, as long as this lives
 };
@@ -36,11 +38,14 @@ bool is_control_space(const std::filesystem::path& input);
 /// saved.
 void require_no_settings(const std::filesystem::path& space, const GivenSettings& given);
 
-/// The one structure that `input` (as study_of_input has it) and the settings ask for, made and
-/// graded; or, of a .ctrl, loaded. Throws InputError, also where a .ctrl is given with settings: it
-/// is as it is.
-/// `observer` is told of the steps.
+/// The one structure of `input` (see study_of_input) and the settings, made and graded; or loaded
+/// from a .ctrl. Throws InputError, also for a .ctrl with settings. `observer` is notified of the
+/// steps.
 FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings& given,
                          const StudyObserver& observer);
+
+/// Writes the remark on the structure to standard error. Returns the exit status: some_failed where
+/// the requested target was missed.
+int report_remark(const FilledSpace& filled);
 
 }  // namespace controlspace

@@ -13,9 +13,9 @@ namespace {
 
 using Sources = std::vector<PointSource>;
 
-/// A format of files of sources that an external library reads. These libraries trust what a file
-/// says, and may crash or take all memory where it is damaged: the only protection against that is
-/// reading in a child process first. Our own readers (read_sources) check files and need none.
+/// A format of files of sources that an external library reads. These libraries trust the contents
+/// of a file, and may crash or exhaust the memory if it is damaged; therefore it is first read in a
+/// child process. Our own readers (read_sources) check files.
 struct SourceFormat {
     const char* ending;
     const char* module;  ///< that reads it

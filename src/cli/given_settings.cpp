@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "cli/paper_reference.h"
+
 namespace controlspace {
 
 Values values_of(ValueType type, const std::vector<std::string>& words) {
@@ -32,9 +34,9 @@ void apply(const GivenSettings& given, Study& study) {
     for (Run& run : study.runs) {
         if_given(given, structures_key, ValueType::text,
                  [&](const Values& values) { run.set_structures(values); });
-        for (const CaseParameter& p : case_parameters()) {
+        for (const CaseParameter& p : program_parameters()) {
             if_given(given, p.key, p.access.type,
-                     [&](const Values& values) { run.set(p, values); });
+                     [&](const Values& values) { run.set(p, values, program_parameters()); });
         }
     }
 }

@@ -13,8 +13,8 @@ namespace controlspace {
 /// Settings of the command line by key, as they were written.
 using GivenSettings = std::vector<std::pair<std::string, std::vector<std::string>>>;
 
-/// Words of the command line as a setting of `type` takes them; a word that is no number stays a
-/// text, for the setting to refuse.
+/// Words of the command line as values of `type`; a word that is no number remains a text, which
+/// the setting refuses.
 Values values_of(ValueType type, const std::vector<std::string>& words);
 
 /// "--time-limit" for the key time_limit.

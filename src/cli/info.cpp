@@ -25,27 +25,27 @@ namespace {
 std::string lengths_text(const LengthSummary& s) {
     return fmt::format(
         "  isotropic    {} of them\n"
-        "  sizes        {:.6g} to {:.6g}, {:.6g} in the mean\n"
-        "  anisotropy   {:.4g} at most\n",
+        "  lengths      {:.6g} to {:.6g}, mean {:.6g}\n"
+        "  anisotropy   {:.4g} (largest)\n",
         s.isotropic, s.finest, s.coarsest, s.mean, s.anisotropy);
 }
 
 std::string sources_info(const SourceSummary& s) {
     std::string text =
-        fmt::format("  sources      {}, all of them positive definite\n  extent       {}\n{}",
-                    s.count, to_string(s.extent), lengths_text(s));
+        fmt::format("  sources      {}, all positive definite\n  extent       {}\n{}", s.count,
+                    to_string(s.extent), lengths_text(s));
     text += fmt::format(
-        "  gradation    {:.4g} at most, between a source and the six nearest (g_r of the cone "
-        "law)\n",
+        "  gradation    {:.4g} (largest g_r of the cone law, over the six nearest of each "
+        "source)\n",
         s.gradation);
     if (s.contradictory > 0) {
-        text += fmt::format("  same places  {} sources lie where another asks for something else\n",
+        text += fmt::format("  conflicts    {} sources share their position with a different one\n",
                             s.contradictory);
     }
     return text;
 }
 
-/// Where some tensors are wrong, others may be read wrongly: their range tells.
+/// Where some tensors are invalid, others may be misread: their range shows it.
 std::string indefinite_info(const IndefiniteTensors& tensors) {
     constexpr std::size_t shown = 5;
     const auto& wrong = tensors.indefinite();
@@ -73,7 +73,8 @@ std::string options_text(const CatalogueEntry& entry, const SpaceOptions& o) {
     if (entry.has<SplitRules>()) add("split", name_of(o.split));
     if (is_tree || entry.has<VoxelLevels>() || o.voxel == 0) add("tau", o.l_min);
     add("epsilon", o.tolerance);
-    if (is_tree) add("depth at most", entry.has<SplitRules>() ? o.kd_depth : o.octree_depth);
+    if (is_tree) add("maximum depth", entry.has<SplitRules>() ? o.kd_depth : o.octree_depth);
+    if (entry.order == 2) add("interpolation", name_of(o.quadratic_form));
     if (entry.has<KeptSources>()) add("g_r", o.ratio);
     if (entry.has<VoxelSize>() && o.voxel > 0) add("voxel", o.voxel);
     if (entry.has<VoxelLevels>()) add("voxel_factor", o.voxel_factor);
@@ -90,27 +91,30 @@ std::string space_info(const std::filesystem::path& file) {
     const Footprint footprint = saved.space->footprint();
     std::string text = fmt::format("  structure    {}: {}\n", entry.id, entry.description);
     if (recipe.precision) {
-        text += fmt::format("  frozen       in {}: it is only read\n",
+        text += fmt::format("  compact      {}: read-only\n",
                             *recipe.precision == Precision::floats ? "floats" : "doubles");
     }
     text += fmt::format("  saved by     {}\n  domain       {}\n  options      {}\n", saved.saved_by,
                         to_string(saved.space->domain()), options_text(entry, recipe.options));
-    text += fmt::format("  elements     {}", footprint.elements);
     if (footprint.leaves > 0) {
-        text += fmt::format(", {} of them leaves, in {} levels", footprint.leaves, footprint.depth);
+        text += fmt::format("  cells        {} leaves of {} tree nodes, at levels of up to {}",
+                            footprint.leaves, footprint.elements, footprint.depth - 1);
+    } else {
+        text += fmt::format("  cells        {}", footprint.elements);
     }
     if (!footprint.remark.empty()) text += "; " + footprint.remark;
     text += fmt::format(
-        "\n  memory       {:.3g} MB: {:.3g} of metrics, {:.3g} to find them, {:.3g} beside; {:.3g} "
-        "MB in the file\n",
+        "\n  memory       {:.3g} MB: metrics {:.3g}, topology {:.3g}, auxiliary {:.3g}; {:.3g} MB "
+        "in the "
+        "file\n",
         mb(footprint.bytes_total()), mb(footprint.bytes_payload), mb(footprint.bytes_topology),
         mb(footprint.bytes_auxiliary), mb(std::filesystem::file_size(file)));
     const auto nodes = control_nodes(*saved.space, Neighbourhood::faces);
     if (!nodes) return text;
     const LengthSummary lengths = summarise_lengths(nodes->metrics);
-    text += fmt::format("  nodes        {} that carry metrics\n", lengths.count);
+    text += fmt::format("  nodes        {} control nodes\n", lengths.count);
     return text + lengths_text(lengths) +
-           fmt::format("  gradation    {:.4g} at most, between neighbours (g_r of the cone law)\n",
+           fmt::format("  gradation    {:.4g} (largest g_r of the cone law, over neighbours)\n",
                        largest_gradation(nodes->graph, nodes->metrics, GradationLaw::cone));
 }
 

@@ -6,6 +6,7 @@
 
 #include "cli/formats.h"
 #include "cli/options.h"
+#include "cli/paper_reference.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
 
@@ -14,7 +15,7 @@ namespace controlspace {
 Study study_of_input(const std::filesystem::path& input, const GivenSettings& given) {
     Study study;
     if (input.extension() == ".toml") {
-        study = read_study(input);
+        study = read_study(input, program_parameters());
     } else {
         study.runs.front() = one_structure();
         if (!input.empty()) {
@@ -27,11 +28,11 @@ Study study_of_input(const std::filesystem::path& input, const GivenSettings& gi
 }
 
 Case only_case(const Study& study) {
-    const std::vector<Case> cases = expand(study, {structures()});
+    const std::vector<Case> cases = expand(study, program_rows());
     if (cases.size() > 1) {
         throw InputError(fmt::format(
-            "{} cases, the first two {} ({}) and {} ({}): only one can be taken, choose by "
-            "--structures, --splits, --tau and so on",
+            "{} cases, the first two {} ({}) and {} ({}): choose one by --structures, --splits, "
+            "--tau and so on",
             cases.size(), structure_label(cases[0]), setting_label(cases[0]),
             structure_label(cases[1]), setting_label(cases[1])));
     }
@@ -41,7 +42,17 @@ Case only_case(const Study& study) {
 
 void require_set_voxels(const Case& c) {
     if (!c.equal_delta && !c.equal_memory) return;
-    throw InputError("equal_delta and equal_memory are for compare: give voxel as it found it");
+    throw InputError("equal_delta and equal_memory are for compare: give the voxel that it found");
+}
+
+void require_no_input(const std::filesystem::path& output,
+                      const std::vector<std::filesystem::path>& inputs) {
+    for (const std::filesystem::path& input : inputs) {
+        std::error_code none;  // terminals and pipes are read and written alike
+        if (!std::filesystem::is_regular_file(output, none)) continue;
+        if (!std::filesystem::equivalent(output, input, none)) continue;
+        throw InputError(fmt::format("{} is read: name another output", output.string()));
+    }
 }
 
 std::vector<PointSource> sources_of_input(const std::filesystem::path& file,

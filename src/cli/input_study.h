@@ -9,20 +9,24 @@
 
 namespace controlspace {
 
-/// The study that `input`, a study file (.toml) or a file of sources, and the settings given ask
-/// for. Without a study file: the structure K_oL, and the cut s_L for kd-trees; without a file at
-/// all: on the paper's sphere. Throws InputError.
+/// The study of `input`, a study file (.toml) or a file of sources, with the settings given.
+/// Without a study file: the structure K_oL, and the cut s_L for kd-trees; without a file at all:
+/// on the paper's sphere. Throws InputError.
 Study study_of_input(const std::filesystem::path& input, const GivenSettings& given);
 
 /// The one case of a study that makes one structure. Throws InputError where it has more.
 Case only_case(const Study& study);
 
-/// The sources of a file of any format that the program reads; `given` are settings of a study,
-/// which say how. Throws InputError.
+/// The sources of a file of any supported format; `given` are settings of a study for reading.
+/// Throws InputError.
 std::vector<PointSource> sources_of_input(const std::filesystem::path& file,
                                           const GivenSettings& given);
 
-/// Throws InputError where voxels are to be found by trial, which `compare` alone does.
+/// Throws InputError if `output` is one of the files that are read.
+void require_no_input(const std::filesystem::path& output,
+                      const std::vector<std::filesystem::path>& inputs);
+
+/// Throws InputError where voxels are to be chosen by trial, which only `compare` does.
 void require_set_voxels(const Case& c);
 
 }  // namespace controlspace

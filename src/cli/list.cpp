@@ -1,10 +1,11 @@
-// The command `list`: structures, and the other names that options take.
+// The command `list`: structures, and other values of options.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "cli/command.h"
 #include "cli/given_settings.h"
+#include "cli/paper_reference.h"
 #include "cli/standard_output.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/study/parameter.h"
@@ -27,7 +28,7 @@ std::string list_text() {
     for (const CatalogueEntry& entry : structures())
         entries.push_back({entry.id, entry.description});
     std::string text = section("Structures (--structures)", entries);
-    for (const CaseParameter& p : case_parameters()) {
+    for (const CaseParameter& p : program_parameters()) {
         if (p.access.choices.empty()) continue;
         text += section(fmt::format("\n{} ({})", p.help.substr(0, p.help.find_first_of(":;")),
                                     option_name(p.key)),

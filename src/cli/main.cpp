@@ -37,7 +37,7 @@ constexpr CommandRow commands[] = {
      "Write the field of one structure to a file, for Blender, Houdini, ParaView or a mesher",
      add_export},
     {"mesh", "Make meshes with structures as size fields, and measure their conformity", add_mesh},
-    {"list", "List the structures and the other names that options take", add_list},
+    {"list", "List the structures and other values of options", add_list},
 };
 
 constexpr const char* statuses =
@@ -45,10 +45,10 @@ constexpr const char* statuses =
     "  0    success\n"
     "  1    the program or the system failed\n"
     "  2    the input cannot be used\n"
-    "  3    some cases failed: results are written, and their rows say why\n"
+    "  3    some cases failed, or missed the requested target: results are written, and say why\n"
     "  130  interrupted by Ctrl-C";
 
-/// CLI11 would say of another word only that a command is missing.
+/// For another word, CLI11 reports only that a command is missing.
 void require_command(const std::string& word) {
     std::vector<std::string> names;
     for (const CommandRow& row : commands) names.emplace_back(row.name);
@@ -99,7 +99,9 @@ int run(int argc, const char* const* argv) {
         print(std::string(version.what()) + "\n");
         return 0;
     } catch (const CLI::ParseError& error) {
-        throw InputError(fmt::format("{} (see controlspace --help)", error.what()));
+        const auto given = app.get_subcommands();
+        throw InputError(fmt::format("{} (see controlspace {}--help)", error.what(),
+                                     given.empty() ? "" : given.front()->get_name() + " "));
     }
     for (std::size_t i = 0; i < actions.size(); ++i) {
         if (app.got_subcommand(commands[i].name)) return actions[i](command_line_text(argc, argv));

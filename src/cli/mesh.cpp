@@ -1,5 +1,6 @@
 // The command `mesh`: makes meshes with structures as size fields.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "cli/mesh_field.h"
 #include "cli/mesh_folder.h"
 #include "cli/options.h"
+#include "cli/paper_reference.h"
 #include "cli/standard_output.h"
 #include "cli/threads.h"
 #include "controlspace/baselines/catalogue.h"
@@ -37,15 +39,15 @@ struct Reference {
     Workload workload;
     std::shared_ptr<const ControlSpace> field;
     Probes probes;
-    Mesher mesher = Mesher::delaunay;  ///< the choice of `auto` taken
+    Mesher mesher = Mesher::delaunay;  ///< the choice for `auto`
 };
 
-Reference make_shared_reference(const Study& study, const Case& c, Mesher asked) {
+Reference make_shared_reference(const Study& study, const Case& c, Mesher requested) {
     Reference reference{c, make_workload(study, c.sources, file_readers()), nullptr, {}};
     reference.field = make_reference(study, c, reference.workload);
     reference.probes =
         make_probes(*reference.field, cell_centres(reference.workload.domain, study.probe_grid));
-    reference.mesher = chosen_mesher(asked, reference.probes.reference);
+    reference.mesher = chosen_mesher(requested, reference.probes.reference);
     return reference;
 }
 
@@ -56,7 +58,7 @@ public:
         : study_(study),
           folder_(folder),
           interruption_(interruption),
-          cases_(expand(study, {structures()})) {}
+          cases_(expand(study, program_rows())) {}
 
     void run() {
         require_runnable();
@@ -110,8 +112,11 @@ private:
         std::unique_ptr<ControlSpace> space;
         const auto make = [&](MeshRow& made) -> const ControlSpace& {
             load_module_of(c.structure);  // before its creation is timed
-            const Filled filled = make_and_fill(study_, c, {structures()}, reference.workload);
+            const Filled filled = make_and_fill(study_, c, program_rows(), reference.workload);
             space = filled.build(c);
+            if (!filled.creation.shortfall.empty()) {
+                spdlog::warn("{}: {}", mesh_label(made), filled.creation.shortfall);
+            }
             made.creation_s =
                 filled.creation.insert_s.front() + filled.creation.gradation_s.front();
             const Accuracy delta_r = accuracy(*space, reference.probes);
@@ -146,7 +151,7 @@ void mesh_saved(const std::filesystem::path& file, const ControlSpace& space, in
     folder.end();
 }
 
-/// What is said of the making of a control space that was made already.
+/// Settings of making, which do not apply to a control space that was saved.
 GivenSettings without_settings_of_meshing(const GivenSettings& given) {
     GivenSettings left = given;
     std::erase_if(left, [&](const auto& setting) {
@@ -175,8 +180,8 @@ int mesh(const MeshJob& job, const std::string& command_line) {
     MeshFolder folder(study, std::move(settings), command_line, job.quiet);
     {
         const Interruption::Watch watch(interruption, nullptr, [&] {
-            print_error(fmt::format("controlspace: interrupted: {} meshes are in {}\n",
-                                    folder.rows().size(), folder.path().string()));
+            print_error(fmt::format("controlspace: interrupted: meshes in {}: {}\n",
+                                    folder.path().string(), folder.rows().size()));
         });
         if (saved) {
             mesh_saved(job.input, *saved, study.probe_grid, folder, interruption);

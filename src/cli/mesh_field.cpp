@@ -21,7 +21,7 @@ bool is_anisotropic(const Metric& m) {
     return !is_isotropic(m) && lengths_differ(eigen_frame(m).lengths);
 }
 
-/// What MMG's first mesh is made for: it is far from what is asked, and coarse.
+/// The field of MMG's first mesh: coarse, far from the requested one.
 auto coarse_field(const Box& domain) {
     const double edge = domain.edges().maxCoeff() / 10;
     return FormulaField([edge](const Point&) { return Metric::isotropic(edge); });
@@ -46,8 +46,8 @@ GmshRun start_mesh(const Box& domain, const ControlSpace& field, const MeshSetti
 
 }  // namespace
 
-Mesher chosen_mesher(Mesher asked, std::span<const Metric> metrics) {
-    if (asked != Mesher::automatic) return asked;
+Mesher chosen_mesher(Mesher requested, std::span<const Metric> metrics) {
+    if (requested != Mesher::automatic) return requested;
     const bool anisotropic = std::any_of(metrics.begin(), metrics.end(), is_anisotropic);
     return anisotropic ? Mesher::mmg : Mesher::delaunay;
 }

@@ -12,14 +12,14 @@
 
 namespace controlspace {
 
-/// The mesher asked for; of `auto`, the one for a field that holds `metrics`.
-Mesher chosen_mesher(Mesher asked, std::span<const Metric> metrics);
+/// The requested mesher; for `auto`, the one that suits a field of `metrics`.
+Mesher chosen_mesher(Mesher requested, std::span<const Metric> metrics);
 
-/// How MMG is run; its own files go into `folder`.
+/// Options of MMG; its own files are written to `folder`.
 MmgOptions mmg_options(const MeshSettings& settings, const std::filesystem::path& folder);
 
-/// Meshes the box by the row's mesher, and enters into the row what that took. What the mesher
-/// throws passes through.
+/// Meshes the box by the row's mesher, and enters times and memory into the row. Exceptions of the
+/// mesher pass through.
 TetMesh make_mesh(const Box& domain, const ControlSpace& field, const MeshSettings& settings,
                   const std::filesystem::path& folder, MeshRow& row);
 

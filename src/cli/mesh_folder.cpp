@@ -49,7 +49,7 @@ void MeshFolder::add(MeshRow row, const Box& domain, const ControlSpace& referen
         const auto whole = interruption.postpone();
         write_mesh(path_ / name, mesh, meshed, settings_);
     } catch (const std::bad_alloc&) {
-        row.error = "out of memory: ask for larger lengths";
+        row.error = "out of memory: request larger lengths";
     } catch (const std::exception& error) {
         row.error = error.what();
     }

@@ -26,8 +26,8 @@ public:
     /// Makes the folder. Throws InputError.
     void begin();
     /// Meshes the box by the row's mesher, measures how the mesh conforms to `reference`, and
-    /// writes both. `field` gives what is meshed, which must live as long as it does, and may enter
-    /// into the row what it took. What goes wrong goes into the row.
+    /// writes both. `field` returns the field to be meshed, which must live as long as itself, and
+    /// may enter the times into the row. Errors are entered into the row.
     void add(MeshRow row, const Box& domain, const ControlSpace& reference,
              const std::function<const ControlSpace&(MeshRow&)>& field, Interruption& interruption);
     /// Writes the summary.

@@ -5,6 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/paper_reference.h"
+
 namespace controlspace {
 namespace {
 
@@ -31,17 +33,13 @@ void Options::add(const OptionText& text, bool& value) {
     if (!text.group.empty()) flag->group(text.group);
 }
 
-void Options::add(const OptionText& text, double& value) {
+template <class Value>
+void Options::add(const OptionText& text, Value& value) {
     describe(*command_->add_option(text.name, value, text.help), text);
 }
-
-void Options::add(const OptionText& text, int& value) {
-    describe(*command_->add_option(text.name, value, text.help), text);
-}
-
-void Options::add(const OptionText& text, std::filesystem::path& value) {
-    describe(*command_->add_option(text.name, value, text.help), text);
-}
+template void Options::add(const OptionText&, double&);
+template void Options::add(const OptionText&, int&);
+template void Options::add(const OptionText&, std::filesystem::path&);
 
 void Options::add(const OptionText& text, std::vector<std::string>& values, std::size_t at_most) {
     CLI::Option* option = command_->add_option(text.name, values, text.help);
@@ -84,7 +82,7 @@ void Options::add_case_parameters(const Run& defaults, const std::string& group,
                           "", {}, group),
                   ValueType::text, 0, defaults.structures(), given[structures_key]);
     std::vector<const CaseParameter*> forms;  // in several forms of one value
-    for (const CaseParameter& p : case_parameters()) {
+    for (const CaseParameter& p : program_parameters()) {
         if (std::ranges::count(uses, p.use) == 0 || p.key == without) continue;
         add_parameter(text_of(p.key, p.help, p.unit, p.access.choices, group), p.access.type, 0,
                       defaults.values(p), given[p.key]);

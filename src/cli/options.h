@@ -38,9 +38,8 @@ public:
     explicit Options(CLI::App& command) : command_(&command) {}
 
     void add(const OptionText& text, bool& value);
-    void add(const OptionText& text, double& value);
-    void add(const OptionText& text, int& value);
-    void add(const OptionText& text, std::filesystem::path& value);
+    template <class Value>  // double, int, path
+    void add(const OptionText& text, Value& value);
     /// From 1 to `at_most` words; 0: any number, separated by commas.
     void add(const OptionText& text, std::vector<std::string>& values, std::size_t at_most);
 
@@ -98,7 +97,7 @@ void add_making_options(Options& options, WordsByKey& given, std::string_view an
 /// The structure of commands that make one, where none is given: K_oL, with the split s_L.
 Run one_structure();
 
-/// The settings of a study that say how files of sources are read.
+/// The settings of a study for reading files of sources.
 void add_reading_options(Options& options, WordsByKey& given);
 
 }  // namespace controlspace

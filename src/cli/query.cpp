@@ -1,10 +1,13 @@
 // The command `query`: writes the metrics of one structure at given points.
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <memory>
 #include <vector>
 
 #include "cli/command.h"
 #include "cli/filled_space.h"
+#include "cli/input_study.h"
 #include "cli/options.h"
 #include "cli/progress.h"
 #include "io/text/csv.h"
@@ -19,19 +22,24 @@ struct Query {
 };
 
 int query(const Query& job) {
+    require_no_input(job.output, {job.input, job.points});
+    if (is_control_space(job.output)) {
+        throw InputError(
+            fmt::format("{}: metrics are written as .csv: name such a file", job.output.string()));
+    }
     const std::vector<Point> points = read_csv_points(job.points);
     std::vector<Metric> metrics(points.size());
+    FilledSpace filled;
     {
         StepProgress progress(job.quiet, job.output);
-        const FilledSpace filled =
-            filled_space(job.input, given_settings(job.given), progress.observer());
+        filled = filled_space(job.input, given_settings(job.given), progress.observer());
         progress.started("sampling");
         filled.space->sample(points, metrics);
     }
     std::vector<PointSource> answers(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) answers[i] = {points[i], metrics[i]};
     write_csv_sources(job.output, answers);
-    return 0;
+    return report_remark(filled);
 }
 
 }  // namespace

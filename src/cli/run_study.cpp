@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cli/formats.h"
+#include "cli/paper_reference.h"
 #include "cli/progress.h"
 #include "cli/standard_output.h"
 #include "cli/threads.h"
@@ -15,6 +16,7 @@
 #include "controlspace/error.h"
 #include "controlspace/study/run.h"
 #include "modules/load.h"
+#include "study/text_table.h"
 
 namespace controlspace {
 namespace {
@@ -36,8 +38,8 @@ void run_into(ResultsFolder& folder, PreparedStudy prepared, Progress& progress,
         const auto whole = interruption.postpone();
         folder.add(row);
         progress.case_finished(row);
-        if (!row.error.empty()) {
-            spdlog::warn("{}: {}", structure_label(row.setting), row.error);
+        if (!row.is_as_requested()) {
+            spdlog::warn("{}: {}{}", structure_label(row.setting), row.error, row.text("remark"));
         }
     };
     std::move(prepared).run(observer);
@@ -62,7 +64,7 @@ std::pair<Provenance, std::vector<Row>> go_on_from(const std::filesystem::path& 
 
 FinishedStudy run_study(const Study& study, const RunOptions& options, Interruption& interruption) {
     const auto threads = limit_threads(study.threads);
-    const StudyRows rows{structures()};
+    const StudyRows rows = program_rows();
     const bool resumes = !options.resume.empty();
     Provenance provenance = current_provenance();
     provenance.command_line = options.command_line;
@@ -82,10 +84,12 @@ FinishedStudy run_study(const Study& study, const RunOptions& options, Interrupt
         [&] {
             progress.finish();
             folder.finish(false);
-            print_error(fmt::format(
-                "controlspace: interrupted: {} of {} cases are in {}; to go on, run the same "
-                "command with --resume {} in place of --output\n",
-                folder.rows().size(), all, folder.path().string(), folder.path().string()));
+            print_error(
+                fmt::format("controlspace: interrupted: {} of {} done, in {}; to continue, run the "
+                            "same command with "
+                            "--resume {} in place of --output\n",
+                            folder.rows().size(), counted(all, "case"), folder.path().string(),
+                            folder.path().string()));
         });
     run_into(folder, std::move(prepared), progress, interruption);
     return {{folder.rows().begin(), folder.rows().end()}, folder.path()};

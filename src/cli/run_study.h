@@ -18,7 +18,7 @@ struct FinishedStudy {
 struct RunOptions {
     std::string command_line;
     bool quiet = false;
-    std::filesystem::path resume;  ///< folder of an interrupted run to go on with, or empty
+    std::filesystem::path resume;  ///< folder of an interrupted run to continue, or empty
 };
 
 /// Runs `study` on all structures that it names, with progress on standard error unless quiet, and

@@ -31,6 +31,7 @@ template <class Capability>
 bool has(const CatalogueEntry& entry, const Case&) {
     return entry.has<Capability>();
 }
+bool is_quadratic(const CatalogueEntry& entry, const Case&) { return entry.order == 2; }
 bool is_octree(const CatalogueEntry& entry, const Case&) {
     return entry.has<SourceLeaves>() && !entry.has<SplitRules>();
 }
@@ -66,6 +67,18 @@ Access<Case> ratio_from(double (*convert)(double)) {
         c.g_r = convert(check(values.front().number()));
     };
     access.get = [](const Case&) { return Values{}; };
+    return access;
+}
+
+Access<Case> reference_of(std::span<const ReferenceKind* const> kinds) {
+    Access<Case> access;
+    access.type = ValueType::text;
+    for (const ReferenceKind* kind : kinds) access.choices.push_back({kind->name, kind->meaning});
+    access.set = [kinds, choices = access.choices](Case& c, const Values& values) {
+        require_choice(values.front().text(), choices);
+        c.reference = *std::ranges::find(kinds, values.front().text(), &ReferenceKind::name);
+    };
+    access.get = [](const Case& c) { return Values{c.reference->name}; };
     return access;
 }
 
@@ -126,7 +139,9 @@ CaseParameter structure(const char* key, const char* unit, const char* help, Acc
             result_key};
 }
 
-std::vector<CaseParameter> all_rows() {
+}  // namespace
+
+std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* const> references) {
     using S = SourcesChoice;
     std::vector<CaseParameter> rows{
         work("field", "", "Continuous field that is requested besides the sources",
@@ -148,8 +163,9 @@ std::vector<CaseParameter> all_rows() {
                     gradation_ratio_from_mmg),
         form_of_g_r("refine_beta", "Gradation ratio as refine's beta: g_r = 1 + ln(beta)",
                     gradation_ratio_from_refine),
-        work("reference", "", "Field to compare with", word<Case>(&Case::reference), {"exact"},
-             word_label("{} reference", &Case::reference)),
+        work("reference", "", "Field to compare with", reference_of(references),
+             {references.front()->name},
+             [](const Case& c) { return c.reference->name + " reference"; }),
         work("law", "", "Law of gradation", word<Case>(&Case::law), {"cone"},
              word_label("{} law", &Case::law)),
         method("schedule", "", "Order of gradation", word<Case>(&Case::schedule), {"queue"},
@@ -165,18 +181,25 @@ std::vector<CaseParameter> all_rows() {
                   {42}, has<SplitRules>, {}, "max_depth"),
         structure("octree_depth", "", "Deepest level of octrees, the root being 0", depth_if(false),
                   {14}, is_octree, {}, "max_depth"),
+        structure("interpolation", "", "Interpolation in quadratic leaves (K_Li, K_oLi)",
+                  word<Case>(&Case::interpolation), {"corrected"}, is_quadratic,
+                  [](const Case& c) {
+                      const bool published = c.interpolation == QuadraticForm::published;
+                      return published ? "published interpolation" : "";
+                  }),
         structure("target_delta", "",
                   "Non-conformity to the exact field that trees are adapted to, in place of "
                   "insertion and gradation; 0: not adapted",
                   target(), {0}, has<SourceLeaves>, if_given("δ <= {:.4g}", &Case::target_delta)),
-        structure("equal_delta", "",
-                  "Largest delta_R that the voxels of a grid (in levels voxel_factor too; and "
-                  "prune_delta, where that saves memory) are chosen for; 0: as they are set. "
-                  "Trees have target_delta",
-                  number_or_none(&Case::equal_delta), {0}, has<VoxelSize>,
-                  if_given("for delta {:.4g}", &Case::equal_delta)),
+        structure(
+            "equal_delta", "",
+            "Largest delta_R for which the voxels of a grid are chosen (in levels voxel_factor "
+            "too; and prune_delta, where that saves memory); 0: not chosen. For trees see "
+            "target_delta",
+            number_or_none(&Case::equal_delta), {0}, has<VoxelSize>,
+            if_given("for delta {:.4g}", &Case::equal_delta)),
         structure("equal_memory", "MB",
-                  "Memory of the finished grid that its voxels are chosen for; 0: as they are set",
+                  "Memory of the finished grid for which its voxels are chosen; 0: not chosen",
                   number_or_none(&Case::equal_memory), {0}, has<VoxelSize>,
                   if_given("for {:.4g} MB", &Case::equal_memory)),
         structure("voxel", "length",
@@ -184,39 +207,41 @@ std::vector<CaseParameter> all_rows() {
                   "length",
                   number_or_none(&Case::voxel), {0}, has<VoxelSize>,
                   if_given("voxel {:.4g}", &Case::voxel)),
-        structure("voxel_factor", "metric length of the metric it holds",
+        structure("voxel_factor", "metric length in its own metric",
                   "c of grids in levels: longest edge of a voxel", number_of(&Case::voxel_factor),
                   {1}, has<VoxelLevels>,
                   [](const Case& c) {
                       const double factor = c.voxel_factor.value_or(1);
                       return factor == 1 ? "" : fmt::format("c {:.4g}", factor);
                   }),
-        structure("neighbourhood", "",
-                  "Nodes that gradation compares: faces, those across faces (at vertices: along "
-                  "edges) as in the paper; all, those across edges and corners too (at vertices: "
-                  "of the same leaf or voxel). Structures that keep sources and adapted trees "
-                  "compare none",
-                  word<Case>(&Case::neighbourhood), {"faces"}, is_graded,
-                  if_chosen("{} neighbours", &Case::neighbourhood)),
+        structure(
+            "neighbourhood", "",
+            "Neighbours in gradation: faces, nodes across faces (at vertices: along edges) as "
+            "in the paper; all, those across edges and corners too (at vertices: of the same "
+            "leaf or voxel). None in structures that keep sources and in adapted trees",
+            word<Case>(&Case::neighbourhood), {"faces"}, is_graded,
+            if_chosen("{} neighbours", &Case::neighbourhood)),
         structure("node_values", "",
-                  "What control nodes hold: graded, the result of gradation; exact, the reference "
-                  "there, which shows the error of interpolation alone",
+                  "Metrics at control nodes: graded, the result of gradation; exact, the reference "
+                  "there, which isolates the error of interpolation",
                   word<Case>(&Case::node_values), {"graded"}, is_graded,
                   if_chosen("{} at nodes", &Case::node_values)),
-        structure("frozen", "",
-                  "Whether trees are converted to their compact, read-only form at the end, which "
-                  "is not timed: no; doubles, the same bits; floats, metrics rounded by 6e-8",
-                  word<Case>(&Case::frozen), {"no"}, has<CompactForm>,
-                  if_chosen("frozen with {}", &Case::frozen)),
+        structure(
+            "frozen", "",
+            "Conversion of trees to their compact, read-only form, not timed: no; doubles, the "
+            "same bits; floats, metrics rounded by 6e-8",
+            word<Case>(&Case::frozen), {"no"}, has<CompactForm>,
+            if_chosen("frozen with {}", &Case::frozen)),
         structure("prune_delta", "",
-                  "Non-conformity up to which OpenVDB grids join voxels once they are graded; 0: "
-                  "they do not",
+                  "Non-conformity up to which graded OpenVDB grids merge voxels; 0: not merged",
                   number_or_none(&Case::prune_delta), {0}, has<Pruning>,
                   if_given("pruned at {:.4g}", &Case::prune_delta)),
     };
     std::ranges::find(rows, "reference", &CaseParameter::key)->use = Use::accuracy;
     return rows;
 }
+
+namespace {
 
 /// The non-empty labels of parameters of a role, joined by commas.
 template <class Wanted>
@@ -233,7 +258,8 @@ std::string joined(const Case& c, std::span<const CaseParameter> parameters, con
 }  // namespace
 
 std::span<const CaseParameter> case_parameters() {
-    static const std::vector<CaseParameter> all = all_rows();
+    static const ReferenceKind* const exact[] = {&exact_reference_kind()};
+    static const std::vector<CaseParameter> all = case_parameters_with(exact);
     return all;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double mb = 1e6;
 
-/// What a case asks for, in the two measures of a trial.
+/// The requested δ_R or memory, in the measures of a trial.
 struct Goal {
     bool in_delta;
     double value;
@@ -25,7 +25,7 @@ struct Goal {
           value(in_delta ? *c.equal_delta : *c.equal_memory * mb) {}
     double aimed(const Trial& t) const { return in_delta ? t.delta : t.bytes; }
     bool is_kept(const Trial& t) const { return aimed(t) <= value; }
-    /// Voxels as fine as the goal asks for, or finer than it allows.
+    /// Voxels as fine as the goal requires, or finer than it allows.
     bool is_passed(const Trial& t) const { return is_kept(t) == in_delta; }
     bool is_better(const Trial& a, const Trial& b) const {
         if (is_kept(a) != is_kept(b)) return is_kept(a);
@@ -37,7 +37,7 @@ struct Goal {
 /// All trials of one case, whose voxels alone vary.
 class Trials {
 public:
-    /// With `levels_unit`, voxel_factor is the voxels' length in this unit. Voxels that take
+    /// With `levels_unit`, voxel_factor is the voxels' length in this unit. Voxels of
     /// `too_many_bytes` end the search.
     Trials(const Case& c, std::optional<double> levels_unit, double too_many_bytes,
            const std::function<Trial(const Case&)>& attempt)
@@ -69,7 +69,7 @@ public:
     const std::string& refusal() const { return refusal_; }
 
 private:
-    // Whether voxels of this length pass the goal, or ask for more than there is.
+    // Whether voxels of this length pass the goal, or exceed the memory.
     bool is_passed(double length) {
         Case setting = case_;
         setting.voxel = length;
@@ -101,11 +101,11 @@ private:
 };
 
 std::string shortfall(const Goal& goal, const Trial& trial, const std::string& refusal) {
-    std::string text = goal.in_delta
-                           ? fmt::format("delta_R of {:.4g} is out of reach: {:.4g} is the least",
-                                         goal.value, trial.delta)
-                           : fmt::format("{:.4g} MB hold no such grid: {:.4g} MB is the least",
-                                         goal.value / mb, trial.bytes / mb);
+    std::string text =
+        goal.in_delta ? fmt::format("delta_R of {:.4g} is out of reach: the smallest is {:.4g}",
+                                    goal.value, trial.delta)
+                      : fmt::format("no such grid fits into {:.4g} MB: the smallest has {:.4g} MB",
+                                    goal.value / mb, trial.bytes / mb);
     if (!refusal.empty()) text += fmt::format(" ({})", refusal);
     return text;
 }

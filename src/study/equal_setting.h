@@ -8,7 +8,7 @@
 
 namespace controlspace {
 
-/// How a grid comes out under one setting.
+/// Measures of a grid under one setting.
 struct Trial {
     double delta = 0;  ///< largest δ_R
     double bytes = 0;
@@ -21,15 +21,15 @@ struct EqualSetting {
     std::string shortfall = {};  ///< why the goal was missed, by the setting that came nearest
 };
 
-/// The voxels with which a grid comes to `equal_delta` of the case in the least memory, or those
-/// that use up `equal_memory`, to 3 %: `voxel`; in levels `voxel_factor` goes with it, so that the
-/// finest voxels are those where `finest_length` is asked for. Voxels are halved, from a quarter of
-/// `longest_edge` on, until the goal is passed; what lies between is bisected. A grid that can
-/// prune, and is not told how, is tried with half of `equal_delta` for its tolerance too.
+/// The voxels with which a grid reaches `equal_delta` of the case in the least memory, or those
+/// that use `equal_memory` up, to 3 %: `voxel`; in levels `voxel_factor` in proportion, so that the
+/// finest voxels are those where `finest_length` is requested. Voxels are halved, from a quarter of
+/// `longest_edge` on, until the goal is passed; then the last interval is bisected. A grid with
+/// Pruning is also tried with half of `equal_delta` as prune_delta, where none is set.
 ///
-/// `attempt` makes and measures a grid; it may throw InputError for one that takes too much memory:
-/// the voxels that come closest to it end the search, as do voxels that are halved twice for less
-/// than 5 %. If the very first attempt throws, so does this.
+/// `attempt` makes and measures a grid. An InputError from it (too much memory) ends the search at
+/// the voxels before, and so do two halvings that change less than 5 %. If the first attempt
+/// throws, so does this.
 EqualSetting find_equal_setting(const Case& c, const CatalogueEntry& entry, double longest_edge,
                                 double finest_length,
                                 const std::function<Trial(const Case&)>& attempt);

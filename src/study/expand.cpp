@@ -33,7 +33,7 @@ std::vector<const CatalogueEntry*> chosen(const Values& names,
     return entries;
 }
 
-/// Lists multiply: a slip in a study file should not ask for a year of work, or for all memory.
+/// Lists multiply: an error in a study file should not request a year of work, or all memory.
 void require_few(std::size_t cases) {
     constexpr std::size_t most = 5000;
     if (cases > most) {
@@ -53,7 +53,7 @@ void multiply(std::vector<Case>& cases, const CaseParameter& parameter, const Va
     cases = std::move(product);
 }
 
-/// A value other than the default where it does not apply is a slip: it was meant for other
+/// A value other than the default where it does not apply is an error: it was meant for other
 /// sources.
 bool is_needed(const CaseParameter& parameter, const Run& run, const Case& c) {
     if (parameter.applies(c)) return true;
@@ -93,18 +93,6 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
     return cases;
 }
 
-void require_reference(const SourcesChoice& sources) {
-    if (sources.kind != SourcesKind::sphere || has_field(sources)) {
-        throw InputError("reference published-sphere is for the sphere alone: use exact");
-    }
-    if (sources.centre != Point::Zero()) {
-        throw InputError("reference published-sphere is around the origin: use exact");
-    }
-    if (sources.s_n != 1) {
-        throw InputError("reference published-sphere is isotropic: use exact, or s_n = 1");
-    }
-}
-
 void require_sensible(const Case& c) {
     if (c.sources.kind == SourcesKind::none && !has_field(c.sources)) {
         throw InputError("neither sources nor a field: give one of them");
@@ -112,7 +100,7 @@ void require_sensible(const Case& c) {
     if (c.sources.field.kind == FieldKind::file && c.sources.field.file.empty()) {
         throw InputError("field = \"file\" needs field_file: name a .vdb");
     }
-    if (c.reference == ReferenceKind::published_sphere) require_reference(c.sources);
+    c.reference->require_fit(c.sources);
     if (c.equal_delta && c.equal_memory) {
         throw InputError("equal_delta and equal_memory choose the same voxels: give one of them");
     }

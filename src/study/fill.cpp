@@ -1,18 +1,13 @@
 #include <fmt/format.h>
 
-#include <chrono>
-
 #include "controlspace/error.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/sample_parallel.h"
 #include "controlspace/study/run.h"
+#include "mesh/stopwatch.h"
 
 namespace controlspace {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// A field is followed by adaptation; without a target only what keeps its cells can follow it.
 void require_follows(const Case& c, const CatalogueEntry& entry) {
@@ -25,9 +20,11 @@ void adapt(Filled& filled, const Case& c, const Workload& workload) {
     if (c.target_delta) goal.target = *c.target_delta;
     const AdaptationReport report = filled.builder->adapt(goal);
     if (c.target_delta) {
-        filled.creation.remark =
-            fmt::format("δ {:.4g} reached{}{}", report.reached,
-                        report.shortfall.empty() ? "" : "; ", report.shortfall);
+        filled.creation.remark = fmt::format("δ {:.4g} reached", report.reached);
+        if (report.met) return;
+        filled.creation.shortfall =
+            fmt::format("target {:.4g} missed{}{}", goal.target,
+                        report.shortfall.empty() ? "" : ": ", report.shortfall);
     }
 }
 
@@ -46,15 +43,15 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     if (is_adapted) require_follows(c, entry);
     const auto phase = [&](std::string_view name) {
         if (observer.phase_started) observer.phase_started(name);
-        return std::chrono::steady_clock::now();
+        return Stopwatch();
     };
     Filled filled;
     Creation& creation = filled.creation;
-    auto start = phase(is_adapted ? "adaptation" : "insertion");
+    Stopwatch time = phase(is_adapted ? "adaptation" : "insertion");
     filled.builder = entry.make(space_options(study, c, workload, rows.parameters));
     if (is_adapted) {
         adapt(filled, c, workload);
-        creation.insert_s = {seconds_since(start)};
+        creation.insert_s = {time.seconds()};
         creation.gradation_s = {0};
         if (const auto nodes = control_nodes(*filled.builder->build(), Neighbourhood::faces)) {
             creation.gradation.largest_ratio_left =
@@ -64,13 +61,13 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     }
     const std::span<const PointSource> sources = workload.sources;
     creation.sources_inserted = filled.builder->insert(sources).inserted;
-    creation.insert_s = {seconds_since(start)};
+    creation.insert_s = {time.seconds()};
 
-    start = phase("gradation");
+    time = phase("gradation");
     creation.gradation = filled.builder->grade(
         {.law = c.law, .schedule = c.schedule, .ratio = c.g_r, .neighbourhood = c.neighbourhood});
     filled.builder->build();  // where grids of other systems and the search of `direct` are made
-    creation.gradation_s = {seconds_since(start)};
+    creation.gradation_s = {time.seconds()};
     if (c.node_values == NodeValues::exact) {
         follow_at_nodes(dynamic_cast<NodeBuilder&>(*filled.builder),
                         *make_reference(study, c, workload));

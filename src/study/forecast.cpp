@@ -3,18 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "mesh/stopwatch.h"
 #include "study/text_table.h"
 #include "study/time_estimate.h"
 
 namespace controlspace {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// The `count` sources nearest to the one in the middle of the list: as close together as all are.
 std::vector<PointSource> patch_of(std::vector<PointSource> sources, std::size_t count) {
@@ -34,9 +30,9 @@ struct Trial {
 };
 
 Trial try_case(const PreparedStudy& prepared, const Case& c, const Workload& workload) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch time;
     const auto space = make_and_fill(prepared.study(), c, prepared.rows(), workload).build(c);
-    Trial trial{seconds_since(start), static_cast<double>(space->footprint().bytes_total()), 0};
+    Trial trial{time.seconds(), static_cast<double>(space->footprint().bytes_total()), 0};
     const auto places = random_points(workload.domain, 1000, 1);
     trial.query_seconds = 1e-9 * access_time(*space, places, 3).median_ns();
     return trial;
@@ -81,12 +77,12 @@ Trial forecast_patches(const PreparedStudy& prepared, const Case& c, const Workl
 /// Seconds that the reference takes for all probes.
 double probes_seconds(const Study& study, const Case& c, const Workload& workload, double probes) {
     constexpr std::size_t places = 200;
-    auto start = std::chrono::steady_clock::now();
+    Stopwatch time;
     const auto field = make_reference(study, c, workload);
-    const double making = seconds_since(start);
-    start = std::chrono::steady_clock::now();
+    const double making = time.seconds();
+    time = {};
     make_probes(*field, random_points(workload.domain, places, 1));
-    return making + seconds_since(start) * probes / static_cast<double>(places);
+    return making + time.seconds() * probes / static_cast<double>(places);
 }
 
 double cubed(int n) { return std::pow(n, 3); }
@@ -121,7 +117,7 @@ std::vector<std::optional<Forecast>> forecast(const PreparedStudy& prepared) {
                     forecast->seconds += probes_seconds(study, c, workload, probes);
                 }
             } catch (const std::exception&) {
-                // The row will say why.
+                // The row will contain the reason.
                 forecast.reset();
             }
         }
@@ -151,10 +147,12 @@ std::string forecast_text(const PreparedStudy& prepared,
     }
     std::string text = render(table, TableStyle::terminal);
     if (unknown == forecasts.size()) {
-        return text + fmt::format("\n{} cases: no trial tells what they cost (–)\n", unknown);
+        return text +
+               fmt::format("\n{}: no trial predicts the cost (–)\n", counted(unknown, "case"));
     }
-    text += fmt::format("\n{} cases: about {} in all, structures of up to {:.2g} MB",
-                        forecasts.size(), duration_text(seconds), 1e-6 * most_bytes);
+    text +=
+        fmt::format("\n{}: about {} in all, structures of up to {:.2g} MB",
+                    counted(forecasts.size(), "case"), duration_text(seconds), 1e-6 * most_bytes);
     if (unknown > 0) text += fmt::format("; {} of them (–) not counted", unknown);
     return text + "\n";
 }

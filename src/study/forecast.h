@@ -8,17 +8,16 @@
 
 namespace controlspace {
 
-/// What a case may cost.
+/// Predicted cost of a case.
 struct Forecast {
     double seconds = 0;  ///< the reference's probes included, at the first case that needs them
     double bytes = 0;    ///< of the structure
 };
 
-/// Forecasts for all cases of a study, from small trials: trees and grids in levels with some
-/// thousand neighbouring sources, whose cost is taken to grow in proportion; grids of one voxel
-/// size with fewer voxels. Right within a factor of two or three, as a rule. None for cases whose
-/// cost only running them tells: adaptation to a target, and a search for voxels; or that fail.
-/// Takes some ten milliseconds a case.
+/// Forecasts for all cases of a study, extrapolated from small trials: of trees and grids in levels
+/// with some thousand neighbouring sources, of grids of one voxel size with fewer voxels. Usually
+/// correct within a factor of two or three. None for cases that cannot be predicted (adaptation to
+/// a target, a search for voxels), and for those that fail. Costs some ten milliseconds a case.
 std::vector<std::optional<Forecast>> forecast(const PreparedStudy& prepared);
 
 /// The cases, their forecasts and the sum, as a table.

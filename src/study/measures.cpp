@@ -48,11 +48,6 @@ std::vector<Measure> size_rows() {
                 [](const Finished& f) { return f.footprint.bytes_topology; }),
         counted("bytes_auxiliary", "byte",
                 [](const Finished& f) { return f.footprint.bytes_auxiliary; }),
-        {"bytes_published_accounting", "byte",
-         [](const Finished& f) {
-             const auto& bytes = f.footprint.bytes_published;
-             return bytes ? count(*bytes) : MeasuredValue{};
-         }},
     };
 }
 
@@ -111,11 +106,9 @@ std::vector<Measure> accuracy_rows() {
          [](const Finished& f) { return fmt::format("{:016x}", f.access_random.checksum); }},
         {"remark",
          "",
-         [](const Finished& f) {
-             const std::string& made = f.creation.remark;
-             return made.empty() ? f.footprint.remark : made;
-         },
+         [](const Finished& f) { return remark_on(f.creation, f.footprint); },
          {"remark", "{}"}},
+        {"shortfall", "", [](const Finished& f) { return f.creation.shortfall; }},
     };
 }
 
@@ -130,6 +123,14 @@ std::span<const Measure> measures() {
         return rows;
     }();
     return all;
+}
+
+std::string remark_on(const Creation& creation, const Footprint& footprint) {
+    std::string text;
+    for (const std::string& part : {footprint.remark, creation.remark, creation.shortfall}) {
+        text += (text.empty() || part.empty() ? "" : "; ") + part;
+    }
+    return text;
 }
 
 std::vector<Measure> sampled_measure(const std::string& key, const std::string& unit,
@@ -155,6 +156,12 @@ double Row::number(const std::string& key) const {
     }
     const auto* real = std::get_if<double>(&found->second);
     return real != nullptr ? *real : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string Row::text(const std::string& key) const {
+    const auto found = values.find(key);
+    const auto* text = found == values.end() ? nullptr : std::get_if<std::string>(&found->second);
+    return text != nullptr ? *text : "";
 }
 
 }  // namespace controlspace

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "controlspace/study/measure.h"
+#include "study/grouped.h"
 #include "study/rank_correlation.h"
 #include "study/results_json.h"
 #include "study/tables.h"
@@ -18,26 +18,8 @@ namespace {
 
 using Rows = std::vector<const MeshRow*>;
 
-/// Rows that were meshed alike, under one setting.
-struct Group {
-    std::string title;
-    Rows rows;
-};
-
 /// What was meshed may be the reference: there is no δ_R of it then.
 bool has_delta_r(const MeshRow& row) { return !row.exact && row.saved.empty(); }
-
-std::vector<Group> groups_of(std::span<const MeshRow> rows) {
-    std::vector<Group> groups;
-    for (const MeshRow& row : rows) {
-        const std::string title = fmt::format("{}, {}", name_of(row.mesher), mesh_setting(row));
-        auto group = std::find_if(groups.begin(), groups.end(),
-                                  [&](const Group& g) { return g.title == title; });
-        if (group == groups.end()) group = groups.insert(groups.end(), {title, {}});
-        group->rows.push_back(&row);
-    }
-    return groups;
-}
 
 /// The mesh of the exact field that `row` is to be compared with.
 const MeshRow* exact_beside(const MeshRow& row, std::span<const MeshRow> rows) {
@@ -128,20 +110,20 @@ std::string correlation_text(const Rows& rows) {
         *with_largest, *with_mean);
 }
 
-TextTable measure_table(const Group& group, std::span<const MeshRow> all) {
+TextTable measure_table(const std::string& title, const Rows& rows, std::span<const MeshRow> all) {
     TextTable table{
-        "Meshes: " + group.title,
+        "Meshes: " + title,
         "L_R: share of edges of metric length 0.8 to 1.25; middle: by the metric at their middle "
         "alone; -exact: less that of the mesh of the exact field; unit: share from 1/√2 to √2. "
         "q: quality in the metric. share: of the processors' time, in the queries of the field." +
-            correlation_text(group.rows),
+            correlation_text(rows),
         {{"field", Align::left}},
         {}};
     for (const MeshMeasure& measure : mesh_measures()) {
         if (!measure.column.header.empty()) table.columns.push_back({measure.column.header});
     }
     table.columns.push_back({"remark", Align::left});
-    for (const MeshRow* row : group.rows) {
+    for (const MeshRow* row : rows) {
         auto& cells = table.rows.emplace_back();
         cells.push_back(mesh_label(*row));
         for (const MeshMeasure& measure : mesh_measures()) {
@@ -155,8 +137,8 @@ TextTable measure_table(const Group& group, std::span<const MeshRow> all) {
     return table;
 }
 
-TextTable histogram_table(const Group& group) {
-    TextTable table{"Edges by metric length [%]: " + group.title, "", {{"field", Align::left}}, {}};
+TextTable histogram_table(const std::string& title, const Rows& rows) {
+    TextTable table{"Edges by metric length [%]: " + title, "", {{"field", Align::left}}, {}};
     std::string from = "0";
     for (const double bound : length_bounds) {
         const std::string to = fmt::format("{:.3g}", bound);
@@ -164,7 +146,7 @@ TextTable histogram_table(const Group& group) {
         from = to;
     }
     table.columns.push_back({from + "–"});
-    for (const MeshRow* row : group.rows) {
+    for (const MeshRow* row : rows) {
         if (!row->error.empty()) continue;
         auto& cells = table.rows.emplace_back();
         cells.push_back(mesh_label(*row));
@@ -177,8 +159,8 @@ TextTable histogram_table(const Group& group) {
     return table;
 }
 
-nlohmann::ordered_json to_json(const MeshRow& row) {
-    nlohmann::ordered_json json;
+Json json_of(const MeshRow& row) {
+    Json json;
     const Case& c = row.setting;
     json["field"] = row.exact ? "exact" : c.structure;
     json["split"] = row.exact || !c.split ? "" : std::string(name_of(*c.split));
@@ -191,11 +173,7 @@ nlohmann::ordered_json to_json(const MeshRow& row) {
     for (const MeshMeasure& measure : mesh_measures()) {
         const MeasuredValue value = measure.value(row, nullptr);
         if (measure.key.empty() || std::holds_alternative<std::monostate>(value)) continue;
-        if (const auto* whole = std::get_if<std::int64_t>(&value)) {
-            json[measure.key] = *whole;
-        } else {
-            json[measure.key] = std::get<double>(value);
-        }
+        json[measure.key] = to_json(value);
     }
     return json;
 }
@@ -212,16 +190,18 @@ std::string mesh_setting(const MeshRow& row) {
 
 std::string mesh_tables(std::span<const MeshRow> rows, TableStyle style) {
     std::vector<TextTable> tables;
-    for (const Group& group : groups_of(rows)) {
-        tables.push_back(measure_table(group, rows));
-        tables.push_back(histogram_table(group));
+    for (const auto& [title, members] : grouped(rows, [](const MeshRow& row) {
+             return fmt::format("{}, {}", name_of(row.mesher), mesh_setting(row));
+         })) {
+        tables.push_back(measure_table(title, members, rows));
+        tables.push_back(histogram_table(title, members));
     }
     return render(tables, style);
 }
 
 std::string mesh_json(const Provenance& provenance, const Study& study,
                       const MeshSettings& settings, std::span<const MeshRow> rows, bool complete) {
-    nlohmann::ordered_json json;
+    Json json;
     json["origin"] = fmt::format("controlspace {}, {}, {}, {} ({} cores), {}",
                                  version_text(provenance), provenance.compiler, provenance.flags,
                                  provenance.cpu, provenance.cores, provenance.date);
@@ -232,9 +212,9 @@ std::string mesh_json(const Provenance& provenance, const Study& study,
     }
     json["length_bounds"] = length_bounds;
     json["complete"] = complete;
-    json["rows"] = nlohmann::ordered_json::array();
-    for (const MeshRow& row : rows) json["rows"].push_back(to_json(row));
-    return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    json["rows"] = Json::array();
+    for (const MeshRow& row : rows) json["rows"].push_back(json_of(row));
+    return dump(json, 1) + "\n";
 }
 
 }  // namespace controlspace

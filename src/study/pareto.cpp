@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <utility>
+
+#include "study/grouped.h"
 
 namespace controlspace {
 namespace {
@@ -29,33 +30,22 @@ void mark_front(ParetoPlot& plot, std::span<const Row> rows) {
     }
 }
 
-/// Works in the order of their first rows, with the measured rows of each.
-std::vector<std::pair<std::string, std::vector<std::size_t>>> works(
-    std::span<const Row> rows, std::span<const CaseParameter> parameters) {
-    std::vector<std::pair<std::string, std::vector<std::size_t>>> found;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (!std::isfinite(rows[i].number(errors[0]))) continue;
-        const std::string label = work_label(rows[i].setting, parameters);
-        auto work =
-            std::ranges::find_if(found, [&](const auto& known) { return known.first == label; });
-        if (work == found.end()) work = found.insert(found.end(), {label, {}});
-        work->second.push_back(i);
-    }
-    std::erase_if(found, [](const auto& work) { return work.second.size() < 2; });
-    return found;
-}
-
 }  // namespace
 
 std::vector<ParetoPlot> pareto_plots(std::span<const Row> rows,
                                      std::span<const CaseParameter> parameters) {
     std::vector<ParetoPlot> plots;
-    for (const auto& [work, members] : works(rows, parameters)) {
+    const auto label = [&](const Row& row) { return work_label(row.setting, parameters); };
+    for (auto [work, members] : grouped(rows, label)) {
+        std::erase_if(members,
+                      [](const Row* row) { return !std::isfinite(row->number(errors[0])); });
+        if (members.size() < 2) continue;
         for (const char* cost : costs) {
             for (const char* error : errors) {
                 ParetoPlot& plot = plots.emplace_back(ParetoPlot{work, cost, error, {}});
-                for (const std::size_t row : members) {
-                    plot.points.push_back({row, rows[row].number(cost), rows[row].number(error)});
+                for (const Row* row : members) {
+                    plot.points.push_back({static_cast<std::size_t>(row - rows.data()),
+                                           row->number(cost), row->number(error)});
                 }
                 mark_front(plot, rows);
             }

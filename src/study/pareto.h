@@ -14,8 +14,8 @@ struct ParetoPoint {
     std::size_t row = 0;
     double cost = 0;
     double error = 0;
-    /// No point that is at most as large in error is smaller in cost, by more than the quartiles of
-    /// times; nor one of equal cost smaller in error.
+    /// No point of at most this error has a smaller cost, beyond the quartiles of times, and none
+    /// of equal cost a smaller error.
     bool on_front = false;
 };
 

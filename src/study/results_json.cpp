@@ -15,18 +15,6 @@ Json to_json(ValueType type, const Value& value) {
     return std::visit([](const auto& v) { return Json(v); }, value);
 }
 
-Json to_json(const MeasuredValue& value) {
-    return std::visit(
-        [](const auto& v) -> Json {
-            if constexpr (std::same_as<std::decay_t<decltype(v)>, std::monostate>) {
-                return nullptr;
-            } else {
-                return v;
-            }
-        },
-        value);
-}
-
 MeasuredValue measured_from(const Json& json) {
     if (json.is_null()) return {};
     if (json.is_number_integer()) return json.get<std::int64_t>();
@@ -106,6 +94,18 @@ constexpr std::pair<const char*, std::string Provenance::*> provenance_texts[] =
     {"command_line", &Provenance::command_line}};
 
 }  // namespace
+
+Json to_json(const MeasuredValue& value) {
+    return std::visit(
+        [](const auto& v) -> Json {
+            if constexpr (std::same_as<std::decay_t<decltype(v)>, std::monostate>) {
+                return nullptr;
+            } else {
+                return v;
+            }
+        },
+        value);
+}
 
 Json to_json(const Case& setting, std::span<const CaseParameter> parameters) {
     Json json;

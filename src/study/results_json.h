@@ -12,6 +12,9 @@ namespace controlspace {
 
 using Json = nlohmann::ordered_json;
 
+/// Null where there is no value.
+Json to_json(const MeasuredValue& value);
+
 /// The structure and parameters of a case; those that do not apply are null.
 Json to_json(const Case& setting, std::span<const CaseParameter> parameters);
 
@@ -23,8 +26,8 @@ Json to_json(const Study& study);
 /// error all measures are.
 Json to_json(const Row& row, const StudyRows& rows);
 
-/// The way back, for rows of a study of `sources`: what the parameters do not say of the sources is
-/// as there. Throws InputError or Json::exception for what is no such row.
+/// The inverse, for rows of a study of `sources`, which give what the parameters do not. Throws
+/// InputError or Json::exception for what is no such row.
 Row row_from_json(const Json& json, const StudyRows& rows, const SourcesChoice& sources);
 
 /// Everything in results.json before its rows: provenance, settings, and defaults of parameters.

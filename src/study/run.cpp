@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <list>
 #include <memory>
 #include <new>
@@ -11,16 +10,11 @@
 #include <utility>
 
 #include "controlspace/error.h"
+#include "mesh/stopwatch.h"
 #include "study/equal_setting.h"
 
 namespace controlspace {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 template <class Callback, class... Arguments>
 void notify(const std::function<Callback>& callback, Arguments&&... arguments) {
@@ -64,13 +58,13 @@ public:
         const double most_bytes = 0.5 * study_.max_memory_gib * 1024 * 1024 * 1024;
         std::size_t first = 0;
         double bytes = 0;
-        Clock::time_point start = Clock::now();
+        Stopwatch time;
         for (std::size_t i = 0; i < cases.size(); ++i) {
             make(i);
             const auto& finished = batch_.back().finished;
             if (finished) bytes += static_cast<double>(finished->footprint.bytes_total());
             const bool ends = i + 1 == cases.size() || !share_probes(cases[i], cases[i + 1]) ||
-                              bytes > most_bytes || seconds_since(start) > longest_batch_s;
+                              bytes > most_bytes || time.seconds() > longest_batch_s;
             if (!ends) continue;
             finish_batch();
             for (; first <= i; ++first) after(first);
@@ -80,7 +74,7 @@ public:
                 });
             });
             bytes = 0;
-            start = Clock::now();
+            time = {};
         }
     }
 
@@ -106,7 +100,7 @@ private:
         const Case& c = prepared_.cases()[i];
         const Workload& workload = prepared_.workload(c);
         notify(observer_.case_started, c);
-        const auto start = Clock::now();
+        const Stopwatch time;
         Member& member = batch_.emplace_back();
         member.row.setting = c;
         member.row.sources = workload.sources.size();
@@ -114,9 +108,7 @@ private:
             const ReferenceProbes& probes = probes_of(i);
             const std::string shortfall = choose_voxels(member.row.setting, workload, probes);
             make_and_check(member, i, workload, probes);
-            std::string& remark = member.finished->creation.remark;
-            if (remark.empty()) remark = member.finished->footprint.remark;
-            remark += (remark.empty() || shortfall.empty() ? "" : "; ") + shortfall;
+            if (!shortfall.empty()) member.finished->creation.shortfall = shortfall;
         } catch (const std::bad_alloc&) {
             member.row.error = "out of memory: lower max_memory, or raise tau";
         } catch (const std::exception& error) {
@@ -128,10 +120,10 @@ private:
         } else if (observer_.case_checked) {
             observer_.case_checked(*member.finished, member.row);
         }
-        member.row.seconds = seconds_since(start);
+        member.row.seconds = time.seconds();
     }
 
-    /// Chooses the voxels of a case that asks for it; says if they fall short.
+    /// Chooses the voxels for equal_delta or equal_memory; returns why they miss it, or nothing.
     std::string choose_voxels(Case& c, const Workload& workload, const ReferenceProbes& probes) {
         if (!c.equal_delta && !c.equal_memory) return "";
         const EqualSetting found = find_equal_setting(
@@ -145,7 +137,8 @@ private:
         return found.shortfall;
     }
 
-    /// Makes the structure as often as asked for, with the same answers, and measures its accuracy.
+    /// Makes the structure creation_repeats times, with the same answers, and measures its
+    /// accuracy.
     void make_and_check(Member& member, std::size_t i, const Workload& workload,
                         const ReferenceProbes& probes) {
         const Case& c = member.row.setting;
@@ -178,7 +171,7 @@ private:
         finished.access_batch = finished_before_ + i + 1 - batch_.size();
     }
 
-    /// Times the access of all structures of the batch in turns, and hands out the rows.
+    /// Times the access of all structures of the batch in turns, and completes the rows.
     void finish_batch() {
         std::string error;
         try {
@@ -208,12 +201,12 @@ private:
         }
         if (timed.empty()) return;
         notify(observer_.phase_started, "access");
-        const auto start = Clock::now();
+        const Stopwatch time;
         const Finished& any = *timed.front()->finished;
         const auto places = random_points(any.workload.domain, study_.access_points, study_.seed);
         const auto random = access_times(spaces, places, study_.access_repeats);
         const auto grid = access_times(spaces, any.probes.coarse.points, study_.access_repeats);
-        const double each = seconds_since(start) / static_cast<double>(timed.size());
+        const double each = time.seconds() / static_cast<double>(timed.size());
         for (std::size_t i = 0; i < timed.size(); ++i) {
             timed[i]->finished->access_random = random[i];
             timed[i]->finished->access_grid = grid[i];

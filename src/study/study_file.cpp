@@ -65,7 +65,8 @@ private:
         for (const CaseParameter& other : parameters) {
             const bool related = other.key == one.same_as || other.same_as == one.same_as;
             if (related && other.key != one.key && table_.contains(other.key)) {
-                throw InputError(fmt::format("{} says the same: give one", other.key));
+                throw InputError(
+                    fmt::format("{} is the same setting: give one of them", other.key));
             }
         }
     }

@@ -4,7 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <utility>
+
+#include "study/grouped.h"
 
 namespace controlspace {
 namespace {
@@ -80,16 +81,11 @@ std::string cell_of(const MeasuredValue& value, const Column& column) {
 }
 
 std::vector<TextTable> measure_tables(std::span<const Row> rows, const StudyRows& columns) {
-    std::vector<std::pair<std::string, Rows>> settings;
-    for (const Row& row : rows) {
-        const std::string title = "All measures: " + setting_label(row.setting, columns.parameters);
-        auto found = std::ranges::find(settings, title, &std::pair<std::string, Rows>::first);
-        if (found == settings.end()) found = settings.insert(found, {title, {}});
-        found->second.push_back(&row);
-    }
     std::vector<TextTable> tables;
-    for (const auto& [title, members] : settings) {
-        tables.push_back(table_of(title, members, columns));
+    for (const auto& [setting, members] : grouped(rows, [&](const Row& row) {
+             return setting_label(row.setting, columns.parameters);
+         })) {
+        tables.push_back(table_of("All measures: " + setting, members, columns));
     }
     return tables;
 }

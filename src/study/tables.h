@@ -11,8 +11,8 @@ namespace controlspace {
 /// A value as its column shows it.
 std::string cell_of(const MeasuredValue& value, const Column& column);
 
-/// All measures that have columns, one table for each setting. A note says which structure is the
-/// fastest, where the quartiles of its access times do not overlap with those of others.
+/// All measures that have columns, one table for each setting. The note names the fastest
+/// structure, where the quartiles of its access times do not overlap with those of others.
 std::vector<TextTable> measure_tables(std::span<const Row> rows, const StudyRows& columns);
 
 }  // namespace controlspace

@@ -35,6 +35,10 @@ std::string line_of(std::string line) {
 
 }  // namespace
 
+std::string counted(std::size_t number, const std::string& what) {
+    return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
+}
+
 std::string render(const TextTable& table, TableStyle style) {
     const bool markdown = style == TableStyle::markdown;
     std::vector<std::vector<std::string>> lines(1);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct TextTable {
 };
 
 enum class TableStyle { terminal, markdown };
+
+/// "1 case", "2 cases".
+std::string counted(std::size_t number, const std::string& what);
 
 /// Title, note and aligned columns; UTF-8 counts by characters.
 std::string render(const TextTable& table, TableStyle style);

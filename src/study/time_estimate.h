@@ -19,8 +19,8 @@ std::string duration_text(double seconds);
 /// 0:15 left"; below ten millions "12 of 50 voxels, 3/s, about 0:12 left".
 std::string part_text(std::size_t done, std::size_t all, std::string_view unit, double seconds);
 
-/// How long the rest of a study may take, from what finished cases took. The work of a case is
-/// taken to grow with sources / tau, at a pace that is each structure's own once it is known.
+/// Estimates the remaining time of a study from its finished cases: in proportion to sources / tau,
+/// at the pace of the same structure where one has finished, else at that of all.
 class TimeEstimate {
 public:
     /// `source_counts[i]` belongs to `cases[i]`.

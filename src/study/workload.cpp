@@ -116,6 +116,7 @@ SpaceOptions space_options(const Study& study, const Case& c, const Workload& wo
     options.voxel = c.voxel.value_or(0);
     if (c.voxel_factor) options.voxel_factor = *c.voxel_factor;
     options.prune_delta = c.prune_delta.value_or(0);
+    if (c.interpolation) options.quadratic_form = *c.interpolation;
     for (const CaseParameter& parameter : parameters) {
         if (parameter.apply && !values_of(parameter, c).empty()) parameter.apply(c, options);
     }
@@ -125,15 +126,21 @@ SpaceOptions space_options(const Study& study, const Case& c, const Workload& wo
 
 std::shared_ptr<const ControlSpace> make_reference(const Study& study, const Case& c,
                                                    const Workload& workload) {
-    const double largest = workload.domain.half_diagonal();
-    if (c.reference == ReferenceKind::published_sphere) {
-        const SourcesChoice& s = c.sources;
-        return published_sphere_reference(s.radius, s.h * s.s_a, c.g_r, largest);
-    }
-    std::shared_ptr<const ControlSpace> cones = exact_reference(
-        workload.sources, c.g_r, Metric::isotropic(largest), study.reference_tolerance);
-    if (!workload.field.field) return cones;
-    return mixture({std::move(cones), workload.field.field});
+    return c.reference->make(study, c, workload);
+}
+
+const ReferenceKind& exact_reference_kind() {
+    static const ReferenceKind exact{
+        "exact", "intersection of the cones of all sources",
+        [](const Study& study, const Case& c,
+           const Workload& workload) -> std::shared_ptr<const ControlSpace> {
+            std::shared_ptr<const ControlSpace> cones =
+                exact_reference(workload.sources, c.g_r, largest_metric(workload.domain),
+                                study.reference_tolerance);
+            if (!workload.field.field) return cones;
+            return mixture({std::move(cones), workload.field.field});
+        }};
+    return exact;
 }
 
 ReferenceProbes make_reference_probes(const Study& study, const Case& c, const Workload& workload) {

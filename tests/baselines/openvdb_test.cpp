@@ -105,11 +105,15 @@ TEST_CASE("two Vec3S trees refuse metrics that floats cannot hold") {
 }
 
 TEST_CASE("the footprint of two Vec3S trees is what they have allocated") {
+    const auto made = [] {
+        return structure_with_id("openvdb-vec3s-trilinear").make(small_grid())->build();
+    };
+    made();  // what the libraries allocate at their first use, and keep
     const std::size_t before = live_bytes();
-    const auto space = structure_with_id("openvdb-vec3s-trilinear").make(small_grid())->build();
+    const auto space = made();
     const std::size_t allocated = live_bytes() - before;
     CHECK(space->footprint().bytes_total() <= allocated);
-    CHECK(space->footprint().bytes_total() + 8192 >= allocated);
+    CHECK(space->footprint().bytes_total() + 3072 >= allocated);
 }
 
 TEST_CASE("the arithmetic of OpenVDB's values is entry by entry") {

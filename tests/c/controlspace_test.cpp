@@ -95,6 +95,7 @@ TEST_CASE("C: what cannot be used is refused with a reason") {
     CHECK_THAT(refused("K_L", "tau=much"), Contains("option tau is 'much'"));
     CHECK_THAT(refused("K_L", "tau=-1"), Contains("tau"));
     CHECK_THAT(refused("K_L", "colour=1"), Contains("no option 'colour'"));
+    CHECK_THAT(refused("K_L", "tau=1 g_r=2 tau=1"), Contains("'tau' is given twice"));
     CHECK_THAT(refused("K_L", "tau"), Contains("name=value"));
     CHECK_THAT(refused("K_L", "split=s_X"), Contains("no split 's_X'"));
     CHECK_THAT(refused("K_L", "max_memory=nan"), Contains("max_memory"));

@@ -12,6 +12,8 @@ const std::string sources_csv = "x,y,z,h\n0,0,0,0.1\n1,0,0,0.2\n0,1,0,0.2\n1,1,1
 const std::vector<std::string> saved_structures{
     "K_V",
     "K_V --frozen floats",
+    "K_Li --interpolation published",
+    "K_Li --interpolation published --frozen doubles",
     "K_oLA",
     "uniform-trilinear",
 #ifdef CONTROLSPACE_OPENVDB
@@ -41,6 +43,68 @@ TEST_CASE("what is queried of a saved control space is what was queried before i
     CHECK(lines(loaded.out) == 4);
 }
 
+TEST_CASE("the interpolation of quadratic leaves is chosen, kept and named") {
+    const Sandbox box("build-interpolation");
+    box.write("s.csv", sources_csv);
+    box.write("places.csv", places_csv);
+    const auto built = [&](const std::string& options) {
+        REQUIRE(box.run("build s.csv -o f.ctrl --structures K_Li " + options).status == 0);
+        return box.run("query f.ctrl places.csv").out;
+    };
+    const std::string corrected = built("");
+    CHECK(built("--interpolation corrected") == corrected);
+    const std::string published = built("--interpolation published");
+    CHECK(published != corrected);
+    CHECK_THAT(box.run("info f.ctrl").out, Contains("interpolation published"));
+    CHECK(built("--interpolation published --frozen doubles") == published);
+    check_refused(box.run("build s.csv -o g.ctrl --structures K_L --interpolation wrong"),
+                  "give corrected, published");
+}
+
+TEST_CASE("a target that is missed is reported, with status 3, and what was made is written") {
+    const Sandbox box("build-missed");
+    box.write("s.csv", sources_csv);
+    box.write("places.csv", places_csv);
+    const std::string missed = " --structures K_oL --octree-depth 2 --target-delta 0.01";
+    const std::string reason = "δ 0.2023 reached; target 0.01 missed: leaves of level 2 ";
+    const auto check_missed = [&](const std::string& arguments) {
+        const Outcome outcome = box.run(arguments);
+        INFO(arguments << ": " << outcome.err);
+        CHECK(outcome.status == 3);
+        CHECK(lines(outcome.err) == 1);
+        CHECK_THAT(outcome.err, Catch::Matchers::StartsWith("controlspace: warning: K_oL") &&
+                                    Contains(reason) && Contains("raise target_delta"));
+        CHECK_FALSE(outcome.out.empty());
+    };
+    check_missed("build s.csv -o f.ctrl" + missed);
+    CHECK(box.run("query f.ctrl places.csv").status == 0);
+    check_missed("export s.csv -o f.csv" + missed);
+    CHECK(fs::file_size(box / "f.csv") > 0);
+    check_missed("query s.csv places.csv" + missed);
+    check_missed("compare --sources s.csv --quiet --output out --access-points 100" + missed);
+    CHECK_THAT(file_text(box / "out" / "results.json"), Contains("\"shortfall\":\"target"));
+    const Outcome met = box.run("query s.csv places.csv --structures K_oL --target-delta 1");
+    CHECK(met.status == 0);
+    CHECK_THAT(met.err, Catch::Matchers::StartsWith("K_oL: δ ") && Contains(" reached\n"));
+}
+
+TEST_CASE("what is read is not written over") {
+    const Sandbox box("build-over");
+    box.write("s.csv", sources_csv);
+    box.write("places.csv", places_csv);
+    REQUIRE(box.run("build s.csv -o f.ctrl").status == 0);
+    const std::string saved = file_text(box / "f.ctrl");
+    check_refused(box.run("query f.ctrl places.csv -o f.ctrl"), "f.ctrl is read");
+    check_refused(box.run("query s.csv places.csv -o f.ctrl"),
+                  "f.ctrl: metrics are written as .csv");
+    check_refused(box.run("query f.ctrl places.csv -o ./places.csv"), "places.csv is read");
+    check_refused(box.run("export s.csv -o s.csv"), "s.csv is read");
+    check_refused(box.run("convert s.csv s.csv"), "s.csv is read");
+    CHECK(file_text(box / "f.ctrl") == saved);
+    CHECK(file_text(box / "s.csv") == sources_csv);
+    CHECK(file_text(box / "places.csv") == places_csv);
+}
+
 TEST_CASE("info says what a saved control space is and holds") {
     const Sandbox box("build-info");
     box.write("s.csv", sources_csv);
@@ -54,15 +118,16 @@ TEST_CASE("info says what a saved control space is and holds") {
     };
     CHECK_THAT(said("--structures K_V --splits s_G --tau 0.5 --frozen floats"),
                Contains("structure    K_V: kd-tree, trilinear") &&
-                   Contains("frozen       in floats") && Contains("saved by     controlspace ") &&
-                   Contains(", format 3\n") && Contains("split s_G, tau 0.5, epsilon 0.2") &&
-                   Contains("of them leaves, in ") && Contains("MB in the file") &&
-                   Contains("sizes        0.1 to ") && Contains("anisotropy   1 at most") &&
+                   Contains("compact      floats: read-only") &&
+                   Contains("saved by     controlspace ") && Contains(", format 3\n") &&
+                   Contains("split s_G, tau 0.5, epsilon 0.2") && Contains(" leaves of ") &&
+                   Contains(" tree nodes, at levels of up to ") && Contains("MB in the file") &&
+                   Contains("lengths      0.1 to ") && Contains("anisotropy   1 (largest)") &&
                    Contains("gradation    1."));
     CHECK_THAT(said("--structures K_oLA --g-r 1.5"),
                Contains("g_r 1.5") && Contains("octree, up to three sources"));
     CHECK_THAT(said("--structures uniform-nearest --voxel 0.25"),
-               Contains("voxel 0.25") && !Contains("leaves") && !Contains("frozen"));
+               Contains("voxel 0.25") && !Contains("leaves") && !Contains("compact"));
     check_refused(box.run("info f.ctrl --source-array a"), "--source-array");
     box.write("cut.ctrl", file_text(box / "f.ctrl").substr(0, 200));
     check_refused(box.run("info cut.ctrl"), "is truncated");
@@ -73,7 +138,8 @@ TEST_CASE("saved control spaces that cannot be used") {
     box.write("s.csv", sources_csv);
     box.write("places.csv", places_csv);
     check_refused(box.run("build s.csv -o f.txt"), "ends in .ctrl");
-    check_refused(box.run("build s.csv -o f.ctrl --structures K_L,K_V"), "only one can be taken");
+    check_refused(box.run("build s.csv -o f.ctrl --structures K_L,K_V"),
+                  "choose one by --structures");
     CHECK(!fs::exists(box / "f.ctrl"));
     REQUIRE(box.run("build s.csv -o f.ctrl").status == 0);
     check_refused(box.run("query f.ctrl places.csv --tau 0.5"), "--tau");

@@ -123,6 +123,8 @@ TEST_CASE("bad input ends with one line and status 2, and writes nothing") {
         {"", "subcommand"},
         {"compare --tua 1", "--tua"},
         {"compare --tau", "--tau"},
+        {"build s.csv", "(see controlspace build --help)"},
+        {"--tua", "(see controlspace --help)"},
         {"compare --tau x", "--tau: 'x' is not a number"},
         {"compare --tau 0", "--tau: 0 is not positive"},
         {"compare --g-r 1.2 --mmg-hgrad 1.3", "excludes"},
@@ -217,7 +219,7 @@ TEST_CASE("Ctrl-C leaves whole files and status 130") {
     CHECK(outcome.status == 130);
     CHECK_THAT(
         outcome.err,
-        Contains("interrupted: 0 of 12 cases are in out; to go on, run the same command with "
+        Contains("interrupted: 0 of 12 cases done, in out; to continue, run the same command with "
                  "--resume out"));
     const auto json = nlohmann::json::parse(file_text(box / "out" / "results.json"));
     CHECK(json["complete"] == false);

@@ -36,7 +36,7 @@ TEST_CASE("each item of a list is completed") {
     CHECK(offered("compare --structures K_L,K_oL") == "K_L,K_oL K_L,K_oLB K_L,K_oLi K_L,K_oLA");
 }
 
-TEST_CASE("where files are asked for, nothing is offered in their place") {
+TEST_CASE("where files are expected, nothing is offered in their place") {
     CHECK(offered("compare study").empty());
     CHECK(offered("compare --output res").empty());
 }

@@ -44,7 +44,7 @@ TEST_CASE("metrics at the vertices of a mesh are those of the structure") {
     // Cones: 0.1 + 0.4 * 0.25 from the first source; and the last source itself.
     const Outcome info = box.run("info m." + ending);
     INFO(info.err);
-    CHECK_THAT(info.out, Contains("3, all of them") && Contains("0.1 to 0.4"));
+    CHECK_THAT(info.out, Contains("3, all positive definite") && Contains("0.1 to 0.4"));
     REQUIRE(box.run("convert m." + ending + " back.csv").status == 0);
     CHECK_THAT(file_text(box / "back.csv"), Contains("\n0.25,0,0,0.2"));
 }

@@ -156,7 +156,7 @@ TEST_CASE("Ctrl-C in the midst of a mesh leaves whole files and status 130") {
                 "exec sh -c 'echo $$ >pid; exec \"$@\"' sh ");
     INFO(outcome.err);
     CHECK(outcome.status == 130);
-    CHECK_THAT(outcome.err, Contains("interrupted: 0 meshes are in out"));
+    CHECK_THAT(outcome.err, Contains("interrupted: meshes in out: 0"));
     const auto json = nlohmann::json::parse(file_text(box / "out" / "meshes.json"));
     CHECK(json["complete"] == false);
     CHECK(std::distance(fs::directory_iterator(box / "out"), fs::directory_iterator()) == 1);

@@ -26,7 +26,7 @@ Outcome run_on_terminal(const Sandbox& box, const std::string& arguments, const 
 
     Outcome outcome;
     bool typed = word.empty();
-    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(5);
     // Reading fails once nobody has the terminal open.
     for (ssize_t got = 1; got > 0 && std::chrono::steady_clock::now() < end;) {
         pollfd ready{terminal, POLLIN, 0};

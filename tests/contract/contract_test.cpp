@@ -207,7 +207,7 @@ STRUCTURE_CASE(does_not_round, "a control node's own metric at its own place") {
 }
 
 STRUCTURE_CASE(does_not_round,
-               "a constant is answered as such; assigning what was read changes nothing") {
+               "a constant is answered as such, and assigning what was read changes nothing") {
     const Work work = GENERATE(anisotropic_sphere(), anisotropic_oblong_box());
     CAPTURE(work.name);
     const std::vector<Point> x = random_points(work.domain, 500, 4);

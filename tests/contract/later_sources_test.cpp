@@ -123,7 +123,7 @@ STRUCTURE_CASE(keeps_node_values,
 }
 
 STRUCTURE_CASE(keeps_node_values,
-               "what makes no difference is not followed; what does is followed alone") {
+               "what makes no difference is not followed, and what does is followed alone") {
     const Batch fine = scattered(100, 5);
     const Batch near = scattered(3, 6);
     if (is_direct(*structure.entry)) return;

@@ -7,7 +7,7 @@ import unittest
 from pathlib import Path
 
 from samples import (PAPER_ROWS, ROOT, SETTINGS, evidence_of, failed_row, json_row, paper_json_rows,
-                     results_of, run, times, write_results)
+                     results_of, run, sized, times, write_results)
 
 from pages import paper, paper_page
 from pages.paper import DELTA_R, SIZE, Evidence
@@ -18,8 +18,8 @@ HEADER = ",".join(paper.FIELDS) + "\n"
 
 
 def measured(structure, split, megabytes, delta_r, **changes):
-    return json_row(structure, split, bytes_published_accounting=round(megabytes * 1e6),
-                    delta_R_max=delta_r, **changes)
+    counts = sized(structure, megabytes, changes.pop("control_nodes", 103))
+    return json_row(structure, split, delta_R_max=delta_r, **counts, **changes)
 
 
 def verdict_on(rows, table, structure, *more):

@@ -81,7 +81,7 @@ class Results(WithFolder):
             self.assertTrue(read_results(ROOT / "bench/results" / kept).measured)
 
     def test_a_setting_that_a_program_does_not_know_yet_is_the_default(self):
-        old, new, other = results_of([json_row("K_Li"), json_row("K_Li", interpolation="quadratic"),
+        old, new, other = results_of([json_row("K_Li"), json_row("K_Li", interpolation="corrected"),
                                       json_row("K_Li", interpolation="published")]).rows
         self.assertEqual(old.key, new.key)
         self.assertNotEqual(old.key, other.key)

@@ -79,7 +79,7 @@ CASE_OF_EACH(entry, anchored_catalogue(), "more sources than anchors at one plac
     }
 }
 
-TEST_CASE("sources of one metric share it; idle ones go") {
+TEST_CASE("sources of one metric share it, and idle ones go") {
     SourceTable table;
     const Metric m = Metric::isotropic(0.1);
     for (int i = 0; i < 100; ++i) table.add({Point(i, 0, 0), m});

@@ -213,7 +213,7 @@ TEST_CASE("leaf neighbours: all across the faces, or the nearest across each") {
     }
 }
 
-TEST_CASE("K_oLB is balanced after every insertion; K_oL is not") {
+TEST_CASE("K_oLB is balanced after every insertion, and K_oL is not") {
     const std::vector<PointSource> sources{{Point(0.01, 0.01, 0.01), Metric::isotropic(0.01)},
                                            {Point(-0.9, 0.3, 0.2), Metric::isotropic(0.05)},
                                            {Point(-0.01, 0.6, -0.3), Metric::isotropic(0.004)}};

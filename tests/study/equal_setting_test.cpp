@@ -54,14 +54,14 @@ TEST_CASE("an error that does not go away ends the search, and is said") {
     };
     const EqualSetting found = find_equal_setting(for_delta(0.1), grid, 2, 0.1, bounded);
     CHECK(attempts == 3);
-    CHECK_THAT(found.shortfall, Catch::Contains("0.1 is out of reach: 0.370"));
+    CHECK_THAT(found.shortfall, Catch::Contains("0.1 is out of reach: the smallest is 0.370"));
     CHECK(found.setting.voxel == 0.125);
 
     const EqualSetting small = find_equal_setting(for_memory(1e-4), grid, 2, 0.1, ideal);
-    CHECK_THAT(small.shortfall, Catch::Contains("hold no such grid"));
+    CHECK_THAT(small.shortfall, Catch::Contains("no such grid fits into"));
 }
 
-TEST_CASE("a grid that takes too much memory ends the search; a first one ends the case") {
+TEST_CASE("a grid that takes too much memory ends the search, and a first one ends the case") {
     const auto capped = [&](const Case& c) {
         if (*c.voxel < 0.1) throw InputError("too much");
         return ideal(c);

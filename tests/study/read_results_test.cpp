@@ -25,7 +25,8 @@ std::vector<Row> some_rows() {
     rows[1].setting.voxel_factor = 0.7;
     rows[1].setting.prune_delta = 0.05;
     rows[1].setting.target_delta = 0.1;
-    rows[1].values["bytes_published_accounting"] = MeasuredValue();
+    rows[1].setting.interpolation = QuadraticForm::published;
+    rows[1].values["tree_nodes"] = MeasuredValue();
     rows[1].fields = FieldFiles{{Point(0, 1, 2), Point(3, 4, 5)}, 1, "a", "b", "", "d", "e"};
     rows.push_back(failed_row());
     return rows;

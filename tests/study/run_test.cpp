@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "cli/paper_reference.h"
 #include "controlspace/error.h"
 
 using namespace controlspace;
@@ -103,7 +104,7 @@ TEST_CASE("reference and sources are made once for the cases that share them") {
     study.runs[0]["reference"] = {"exact", "published-sphere"};
     study.runs.push_back(study.runs[0]);
     study.runs[1]["tau"] = {2};
-    PreparedStudy prepared(study, {tree_catalogue()});
+    PreparedStudy prepared(study, {tree_catalogue(), program_parameters()});
     CHECK(prepared.cases().size() == 16);
     CHECK(std::set<std::size_t>(prepared.source_counts().begin(), prepared.source_counts().end())
               .size() == 2);
@@ -149,7 +150,8 @@ TEST_CASE("a study that cannot be run is refused before anything runs") {
     CHECK_THROWS_WITH(PreparedStudy(study, {tree_catalogue()}), Contains("no/such/file.csv"));
 }
 
-TEST_CASE("with a field, trees are adapted to it and the sources; without a target they say so") {
+TEST_CASE(
+    "with a field, trees are adapted to it and the sources, and without a target they say so") {
     Study study = small_study({"K_V", "K_oL"});
     study.sources.field.lengths = {.across = 0.1, .along = 0.4};
     study.runs[0]["field"] = {"planes"};
@@ -176,7 +178,7 @@ TEST_CASE("with a field, trees are adapted to it and the sources; without a targ
     check(false);
 }
 
-TEST_CASE("frozen trees answer alike, in less memory; what cannot be frozen is as it was") {
+TEST_CASE("frozen trees answer alike, in less memory, and what cannot be frozen is as it was") {
     Study study = small_study({"K_oV", "K_LA"});
     study.runs[0]["frozen"] = {"no", "doubles", "floats"};
     const auto trees = tree_catalogue();

@@ -1,13 +1,14 @@
 #pragma once
 
+#include "cli/paper_reference.h"
 #include "controlspace/study/measure.h"
 #include "controlspace/study/parameter.h"
 #include "controlspace/study/study.h"
 
 namespace controlspace {
 
-/// The rows of the library, and the six trees.
-inline StudyRows tree_rows() { return {tree_catalogue()}; }
+/// The rows of the program, and the six trees.
+inline StudyRows tree_rows() { return {tree_catalogue(), program_parameters()}; }
 
 /// A structure with a different number in every measure.
 inline Finished sample_finished(const Case& setting) {
@@ -23,7 +24,8 @@ inline Finished sample_finished(const Case& setting) {
                   .insert_s = {1.5, 1.4, 1.9},
                   .gradation_s = {0.25, 0.3, 0.2},
                   .gradation = {.operations = 105, .largest_ratio_left = 1.2499},
-                  .remark = "a remark, with \"quotes\""};
+                  .remark = "a remark, with \"quotes\"",
+                  .shortfall = ""};
     f.footprint = {.elements = 102,
                    .leaves = 103,
                    .control_nodes = 104,
@@ -31,7 +33,7 @@ inline Finished sample_finished(const Case& setting) {
                    .bytes_payload = 1'000'000,
                    .bytes_topology = 200'000,
                    .bytes_auxiliary = 30'000,
-                   .bytes_published = 17'070'000,
+                   .bytes_published = {},
                    .remark = ""};
     f.access_random = {.samples_ns = {52, 50, 51}, .checksum = 0xff00000000000001};
     f.access_grid = {.samples_ns = {12, 10, 11}, .checksum = 2};
@@ -69,7 +71,7 @@ inline Case published_case() {
             .max_depth = 42,
             .law = GradationLaw::mean_length,
             .schedule = GradationSchedule::passes,
-            .reference = ReferenceKind::published_sphere};
+            .reference = &published_sphere()};
 }
 
 inline Row failed_row() {

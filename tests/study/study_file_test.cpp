@@ -1,18 +1,20 @@
 #include <catch2/catch.hpp>
 #include <utility>
 
+#include "cli/paper_reference.h"
 #include "controlspace/error.h"
 #include "controlspace/gradation/law.h"
 #include "controlspace/study/study.h"
 #include "data_folder.h"
-#include "study/embedded.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;
 
 namespace {
 
-Study parse(std::string_view text) { return parse_study(text, "folder/my-study.toml"); }
+Study parse(std::string_view text) {
+    return parse_study(text, "folder/my-study.toml", program_parameters());
+}
 
 /// What reading `text` complains of.
 std::string complaint(std::string_view text) {
@@ -164,8 +166,8 @@ TEST_CASE("what is wrong in a study file is named with its line") {
         {"rho = -inf", ":1: rho: -inf is not a finite number"},
         {"g_r = 0.9", ":1: g_r: 0.9 is out of range"},
         {"mmg_hgrad = 0.5", ":1: mmg_hgrad: 0.5 is out of range"},
-        {"g_r = 1.2\nmmg_hgrad = 1.3", "says the same"},
-        {"refine_beta = 1.2\nmmg_hgrad = 1.3", "says the same"},
+        {"g_r = 1.2\nmmg_hgrad = 1.3", "is the same setting"},
+        {"refine_beta = 1.2\nmmg_hgrad = 1.3", "is the same setting"},
         {"epsilon = -1", "epsilon: -1 is not positive"},
         {"kd_depth = 1.5", "kd_depth: 1.5 is not a whole number"},
         {"voxel = -0.1", "voxel: -0.1 is out of range"},
@@ -231,13 +233,12 @@ TEST_CASE("each parameter gives back what it was set to") {
 
 TEST_CASE("the study files of the project can be read") {
     const std::filesystem::path folder = data_folder() / "studies";
-    const Study full = read_study(folder / "paper-sphere.toml");
+    const Study full = read_study(folder / "paper-sphere.toml", program_parameters());
     REQUIRE(full.runs.size() == 2);
     CHECK(*full.runs[1].find("law") == Values{"mean-length"});
-    const Study quick = read_study(folder / "paper-sphere-quick.toml");
-    const Study built_in = parse_study(quick_study_text(), "built-in");
-    CHECK(quick.name == built_in.name);
-    CHECK(quick.runs.size() == built_in.runs.size());
+    const Study quick = read_study(folder / "paper-sphere-quick.toml", program_parameters());
+    CHECK(quick.runs.size() == 2);
+    CHECK(quick.runs[0].structures() == Values{"all"});
     CHECK(read_study(folder / "sources.toml").runs.size() == 3);
     for (const auto& [name, fields] : {std::pair{"fields.toml", 4u}, {"mixtures.toml", 2u}}) {
         const Study study = read_study(folder / name);

@@ -4,7 +4,9 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "cli/paper_reference.h"
 #include "controlspace/error.h"
+#include "controlspace/study/workload.h"
 #include "data_folder.h"
 
 using namespace controlspace;
@@ -22,7 +24,7 @@ std::vector<CatalogueEntry> catalogue_with_a_grid() {
 
 std::vector<Case> expand(const Study& study) {
     const auto catalogue = catalogue_with_a_grid();
-    return expand(study, {catalogue});
+    return expand(study, {catalogue, program_parameters()});
 }
 
 Study study_of(Values structures) {
@@ -82,6 +84,20 @@ TEST_CASE("voxels, levels and pruning multiply the grids that have them") {
     CHECK_THROWS_WITH(expand(study, {catalogue}), Contains("not a grid in levels"));
 }
 
+TEST_CASE("interpolation multiplies trees with quadratic leaves only") {
+    Study study = study_of({"K_L", "K_Li", "K_oLi", "grid"});
+    study.runs[0]["splits"] = {"s_L"};
+    study.runs[0]["interpolation"] = {"corrected", "published"};
+    const auto cases = expand(study);
+    REQUIRE(cases.size() == 1 + 2 + 2 + 1);
+    CHECK_FALSE(cases[0].interpolation);
+    CHECK(structure_label(cases[1]) == "K_Li s_L");
+    CHECK(structure_label(cases[2]) == "K_Li s_L, published interpolation");
+    const Workload workload = make_workload(study, cases[0].sources);
+    CHECK(space_options(study, cases[1], workload).quadratic_form == QuadraticForm::corrected);
+    CHECK(space_options(study, cases[2], workload).quadratic_form == QuadraticForm::published);
+}
+
 TEST_CASE("goals that voxels are chosen for multiply grids, node values what holds metrics") {
     std::vector<CatalogueEntry> catalogue = catalogue_with_a_grid();
     catalogue.push_back(
@@ -124,9 +140,10 @@ TEST_CASE("groups name many structures, and nothing is run twice") {
 }
 
 TEST_CASE("the paper's study has its 72 rows as published, and all structures by default") {
-    const auto cases = expand(read_study(data_folder() / "studies/paper-sphere.toml"));
+    const auto cases =
+        expand(read_study(data_folder() / "studies/paper-sphere.toml", program_parameters()));
     std::size_t published = 0;
-    for (const Case& c : cases) published += c.reference == ReferenceKind::published_sphere ? 1 : 0;
+    for (const Case& c : cases) published += c.reference == &published_sphere() ? 1 : 0;
     CHECK(published == 72);
     CHECK(cases.size() == 72 + 78 + 6);
     std::set<std::pair<double, double>> settings;

@@ -41,7 +41,7 @@ TEST_CASE("every row is in one table of measures that names its mode") {
     Case defaults = published_case();
     defaults.law = GradationLaw::cone;
     defaults.schedule = GradationSchedule::queue;
-    defaults.reference = ReferenceKind::exact;
+    defaults.reference = &exact_reference_kind();
     Case grid = defaults;
     grid.structure = "uniform-nearest";
     grid.split.reset();

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "cli/paper_reference.h"
 #include "controlspace/error.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/metric/intersection.h"
@@ -58,7 +59,7 @@ TEST_CASE("sources must lie in the field's domain") {
     }
 }
 
-TEST_CASE("the smallest length asked for is that of the sources or of the field") {
+TEST_CASE("the smallest requested length is that of the sources or of the field") {
     const Study study = small_study();
     SourcesChoice choice = study.sources;
     choice.field.kind = FieldKind::planes;
@@ -95,6 +96,20 @@ TEST_CASE("the reference of a field with sources is the intersection of both") {
     const auto field = make_reference(study, c, alone);
     CHECK(value_at(*field, {-0.5, 0.9, 0}).xx == Approx(0.02).epsilon(1e-12));
     CHECK(difference(value_at(*field, {1, 1, 1}), Metric::isotropic(largest)) < 1e-12);
+}
+
+TEST_CASE("the reference of the paper's Table 4 grows with the distance from the sphere") {
+    Case c;
+    c.reference = &published_sphere();
+    const Study study;
+    Workload workload;
+    workload.domain = {Point::Constant(-1), Point::Constant(1)};
+    const auto field = make_reference(study, c, workload);
+    const double slope = 2 * 0.25 / 2.25;
+    CHECK(value_at(*field, Point(0.8, 0, 0)) == Metric::isotropic(0.03));
+    CHECK(value_at(*field, Point::Zero()).xx == Approx(0.03 + slope * 0.8));
+    CHECK(value_at(*field, Point(0, -0.6, 0.8)).xx == Approx(0.03 + slope * 0.2));
+    CHECK(value_at(*field, Point(100, 0, 0)) == Metric::isotropic(workload.domain.half_diagonal()));
 }
 
 TEST_CASE("sources follow the sampling and the seed of the study") {

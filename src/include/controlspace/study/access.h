@@ -17,7 +17,7 @@
 
 namespace controlspace {
 
-/// A text that a parameter takes, and what it means.
+/// A permitted value of a text parameter, and its meaning.
 struct Choice {
     std::string name;
     std::string meaning;

@@ -1,24 +1,38 @@
 #pragma once
 
+#include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "controlspace/gradation/grade.h"
+#include "controlspace/space/space_options.h"
 #include "controlspace/space/split_words.h"
 #include "controlspace/study/sources_choice.h"
 #include "controlspace/study/value.h"
 
 namespace controlspace {
 
-/// What δ_R is measured against.
-enum class ReferenceKind {
-    /// Intersection of all sources' cones (paper §5.2) and, as it stands, of the field.
-    exact,
-    published_sphere,  ///< the analytic field behind the paper's Table 4; spheres only
+class ControlSpace;
+struct Case;
+struct Study;
+struct Workload;
+
+/// A kind of field that δ_R is measured against.
+struct ReferenceKind {
+    std::string name;
+    std::string meaning;
+    std::function<std::shared_ptr<const ControlSpace>(const Study&, const Case&, const Workload&)>
+        make;
+    /// Throws InputError for sources that have no such field.
+    std::function<void(const SourcesChoice&)> require_fit = [](const SourcesChoice&) {};
 };
 
-/// What the control nodes of a graded structure hold.
+/// Intersection of all sources' cones (paper §5.2) and, as it stands, of the field.
+const ReferenceKind& exact_reference_kind();
+
+/// The metrics at the control nodes of a graded structure.
 enum class NodeValues {
     graded,  ///< the result of gradation
     exact,   ///< the reference at their positions: the remaining error is that of interpolation
@@ -27,8 +41,8 @@ enum class NodeValues {
 /// Whether a structure is built in its compact form (BuildOptions::precision).
 enum class Frozen { no, doubles, floats };
 
-/// One structure under one setting; a row of results belongs to it. Its members are set by the rows
-/// of case_parameters(). What does not apply to the structure is none, or stays at its default.
+/// One structure under one setting, which gives one row of results. Its members are set by the rows
+/// of case_parameters(). What does not apply to the structure is none, or has its default.
 struct Case {
     std::string structure = "K_L";        ///< id in the catalogue
     std::optional<SplitRule> split = {};  ///< kd-trees only
@@ -45,12 +59,13 @@ struct Case {
     /// Grids only: δ_R, or memory [MB], that voxels are chosen for (study/equal_setting.h).
     std::optional<double> equal_delta = {};
     std::optional<double> equal_memory = {};
-    NodeValues node_values = NodeValues::graded;  ///< structures that hold metrics only
-    Frozen frozen = Frozen::no;                   ///< structures with compact forms only
+    std::optional<QuadraticForm> interpolation = {};  ///< trees with quadratic leaves only
+    NodeValues node_values = NodeValues::graded;      ///< structures that hold metrics only
+    Frozen frozen = Frozen::no;                       ///< structures with compact forms only
     GradationLaw law = GradationLaw::cone;
     GradationSchedule schedule = GradationSchedule::queue;
     Neighbourhood neighbourhood = Neighbourhood::faces;  ///< structures that hold metrics only
-    ReferenceKind reference = ReferenceKind::exact;
+    const ReferenceKind* reference = &exact_reference_kind();
     /// Values of parameters that are defined outside the library, by key.
     std::map<std::string, Value> other = {};
 
@@ -77,11 +92,10 @@ struct Words<Neighbourhood> {
         {Neighbourhood::all, "all", "those across edges and corners too"}};
 };
 template <>
-struct Words<ReferenceKind> {
-    static constexpr Word<ReferenceKind> table[] = {
-        {ReferenceKind::exact, "exact", "intersection of the cones of all sources"},
-        {ReferenceKind::published_sphere, "published-sphere",
-         "the analytic field behind the paper's Table 4"}};
+struct Words<QuadraticForm> {
+    static constexpr Word<QuadraticForm> table[] = {
+        {QuadraticForm::corrected, "corrected", "paper §3.1.2 with its coordinates put right"},
+        {QuadraticForm::published, "published", "with the two errors of the paper's program"}};
 };
 template <>
 struct Words<NodeValues> {

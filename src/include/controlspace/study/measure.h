@@ -16,17 +16,21 @@
 
 namespace controlspace {
 
-/// How a structure was made: once for each of creation_repeats, with the same answers.
+/// How a structure was made, creation_repeats times with the same answers.
 struct Creation {
     std::uint64_t sources_inserted = 0;  ///< sources that changed the structure
     std::vector<double> insert_s;        ///< making the structure and inserting all sources
     std::vector<double> gradation_s;
     GradationReport gradation;
-    std::string remark;
+    std::string remark;     ///< "δ 0.0987 reached"
+    std::string shortfall;  ///< why a requested target was missed; empty where it was met
 };
 
-/// A finished structure of a study, and what was measured of it: what rows of measures are computed
-/// from. The references are valid during the call.
+/// The remark on a structure: its limitations, the δ reached, and why a target was missed.
+std::string remark_on(const Creation& creation, const Footprint& footprint);
+
+/// A finished structure of a study with its raw measurements, from which the rows of measures are
+/// computed. The references are valid during the call.
 struct Finished {
     std::size_t index = 0;  ///< of the case in the study, from 0
     const Study& study;
@@ -41,7 +45,8 @@ struct Finished {
     double source_accuracy = 0;     ///< δ_S
     AccessTime access_random = {};  ///< at random places
     AccessTime access_grid = {};    ///< at the coarse probes, x fastest
-    std::size_t access_batch = 0;   ///< first case of its batch: those were timed in turns
+    std::size_t access_batch =
+        0;  ///< first case of its batch, whose structures were timed in turns
 };
 
 /// A value in a row of results: none where the measure does not apply.
@@ -69,8 +74,8 @@ struct Measure {
 /// All measures of the library, in the order of columns.
 std::span<const Measure> measures();
 
-/// The rows of a measure of which there are many samples: its median under `key`, its quartiles
-/// under key_q1 and key_q3, and the samples under key_samples.
+/// The rows of a sampled measure: its median as `key`, its quartiles as key_q1 and key_q3, and the
+/// samples as key_samples.
 std::vector<Measure> sampled_measure(const std::string& key, const std::string& unit,
                                      std::function<std::vector<double>(const Finished&)> samples,
                                      const Column& column);
@@ -92,8 +97,12 @@ struct Row {
     double seconds = 0;  ///< that the case took
 
     bool is_measured() const { return error.empty(); }
+    /// Whether it was measured, and met the target that was requested.
+    bool is_as_requested() const { return is_measured() && text("shortfall").empty(); }
     /// A number; NaN where there is none.
     double number(const std::string& key) const;
+    /// A text; empty where there is none.
+    std::string text(const std::string& key) const;
 };
 
 }  // namespace controlspace

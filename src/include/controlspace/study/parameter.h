@@ -11,17 +11,17 @@
 
 namespace controlspace {
 
-/// What a parameter is for; commands offer what they use.
+/// The purpose of a parameter; a command has options for those that it uses.
 enum class Use {
     making,    ///< the structure
     reading,   ///< files of sources
     results,   ///< name and place of the results
     accuracy,  ///< what is measured against the reference
-    timing,    ///< what else only `compare` measures
+    timing,    ///< other measurements, by `compare` only
 };
 
-/// What a parameter applies to ("the sphere"), and whether that is so of a target; to everything
-/// without a function. A value other than the default where it does not apply is an error.
+/// To which targets a parameter applies: in words ("the sphere"), and as a condition; without one,
+/// to all. A value other than the default where it does not apply is an error.
 template <class Target>
 struct AppliesTo {
     std::string what;
@@ -43,11 +43,11 @@ struct Parameter {
     }
 };
 
-/// What a parameter of cases says of them.
+/// The part of a case that a parameter describes.
 enum class Role {
-    work,       ///< the field that is asked for
-    method,     ///< how any structure answers it
-    structure,  ///< a choice that only some structures have
+    work,       ///< the requested field
+    method,     ///< how it is approximated, for any structure
+    structure,  ///< an option of some structures
 };
 
 /// A parameter of cases. Each value of its list in a run makes cases of its own.
@@ -71,22 +71,27 @@ inline constexpr const char* structures_key = "structures";
 /// work and method, and slower than what is theirs.
 std::span<const CaseParameter> case_parameters();
 
+/// The same with these kinds of reference to choose from, the default first; in the library there
+/// is the exact one. They must live as long as the rows.
+std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* const> references);
+
 /// A number that is kept in Case::other, for a parameter that is defined outside the library.
 Access<Case> other_number(const std::string& key, Check check = any_number);
 
 /// The values of a case, none where the parameter does not apply.
 Values values_of(const CaseParameter& parameter, const Case& c);
 
-/// "K_L s_L, all neighbours": the structure, and what is its own where that is not the default.
+/// "K_L s_L, all neighbours": the structure, and those of its options that are not the default.
 std::string structure_label(const Case& c,
                             std::span<const CaseParameter> parameters = case_parameters());
 
-/// What rows of one table share: "rho 1, s_a 2, s_n 1, g_r 1.25, exact reference, cone law, queue,
-/// epsilon 0.2, tau 0.5", with "field ugawg-linear, " or "poisson sources, " first.
+/// The setting that the rows of one table share: "rho 1, s_a 2, s_n 1, g_r 1.25, exact reference,
+/// cone law, queue, epsilon 0.2, tau 0.5", with "field ugawg-linear, " or "poisson sources, "
+/// first.
 std::string setting_label(const Case& c,
                           std::span<const CaseParameter> parameters = case_parameters());
 
-/// What is asked for, however it is answered: of the setting what has the role work.
+/// The requested field: the part of the setting that has the role work.
 std::string work_label(const Case& c,
                        std::span<const CaseParameter> parameters = case_parameters());
 

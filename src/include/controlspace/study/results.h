@@ -16,27 +16,26 @@ namespace controlspace {
 /// Of results.json: another number where its fields mean something else.
 constexpr int results_schema_version = 2;
 
-/// What a folder of results holds.
+/// The contents of a folder of results.
 struct StoredResults {
     Provenance provenance;
-    Study study;  ///< with default runs: the rows say what was run
+    Study study;  ///< with default runs: the cases are in the rows
     std::vector<Row> rows;
     bool complete = false;
 };
 
-/// Reads FOLDER/results.json. Throws InputError, naming the file, and the row counted from 1, for
-/// what cannot be read, is no such file, is of another schema or was made with other parameters or
-/// measures than `rows` has.
+/// Reads FOLDER/results.json. Throws InputError, naming the file and the row (from 1), for a file
+/// that is missing, damaged or of another schema, and for other parameters or measures than those
+/// of `rows`.
 StoredResults read_results(const std::filesystem::path& folder, const StudyRows& rows);
 
-/// The rows that an interrupted run of `study` left behind: those of its first cases, in order.
-/// Throws InputError where going on would mix what must not be mixed: results that are complete, of
-/// another study or other settings, or made by another build or on another processor.
+/// The rows of an interrupted run of `study`: those of its first cases, in order. Throws InputError
+/// for results that cannot be continued: complete ones, those of another study or other settings,
+/// and those made by another build or on another processor.
 std::vector<Row> rows_to_go_on_from(const StoredResults& earlier, const Study& study,
                                     std::span<const Case> cases, const Provenance& now);
 
-/// A text file that is written at its end, where a tail is replaced each time: it is whole after
-/// every call.
+/// A text file to which text is appended in front of a fixed end; complete after every call.
 class GrowingFile {
 public:
     /// Replaces the file by `text` and `tail`. Throws InputError, naming it, if that fails.
@@ -51,24 +50,24 @@ private:
     std::string tail_;
 };
 
-/// The folder that a study's results go to, a sink for its rows: results.json and results.csv grow
-/// with each row, and hold all rows at any time; fields/ gets the sampled fields of the rows of the
-/// first setting; summary.md and pareto.json are written at the end.
+/// The folder of a study's results, a sink for its rows. Each row is appended to results.json and
+/// results.csv, which are complete at any time; the sampled fields of the first setting are written
+/// to fields/; summary.md and pareto.json are written at the end.
 class ResultsFolder {
 public:
     /// Makes the folder with its parents. Throws InputError if that fails, if results are in it
     /// already, or if it cannot be written to.
     ResultsFolder(std::filesystem::path folder, Provenance provenance, Study study,
                   const StudyRows& rows);
-    /// The folder of an interrupted run, which holds `earlier` rows and goes on.
+    /// The folder of an interrupted run, which contains `earlier` rows and is continued.
     ResultsFolder(std::filesystem::path folder, Provenance provenance, Study study,
                   const StudyRows& rows, std::vector<Row> earlier);
 
     const std::filesystem::path& path() const { return folder_; }
     std::span<const Row> rows() const { return written_; }
 
-    /// Samples the field of a structure that is one of the first setting's (see sampled_fields.h),
-    /// and names the files in `row`. For StudyObserver::case_checked.
+    /// Samples the field of a structure of the first setting (see sampled_fields.h), and enters the
+    /// files in `row`. For StudyObserver::case_checked.
     void sample_fields(const Finished& finished, Row& row);
     /// Throws InputError, naming the file, if it cannot be written.
     void add(const Row& row);

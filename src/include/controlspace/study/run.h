@@ -13,38 +13,38 @@
 
 namespace controlspace {
 
-/// Receives what a study does; each function may be empty.
+/// Notifications of a running study; each function may be empty.
 struct StudyObserver {
     std::function<void(const Case&)> case_started;
     std::function<void(std::string_view)> phase_started;  ///< within a case: "insertion"
-    /// A structure is finished and checked, not yet timed; it may add to the row.
+    /// A structure is finished and checked, but not timed yet; the row may be extended.
     std::function<void(const Finished&, Row&)> case_checked;
     std::function<void(const Row&)> case_finished;  ///< in the order of the cases
 };
 
-/// A study made ready to run: every case checked, every set of sources in memory.
+/// A study that is ready to run: all cases are checked, all sources are in memory.
 class PreparedStudy {
 public:
-    /// Without the `finished` cases that come first. Throws InputError for anything about the study
-    /// that cannot be run. The rows must outlive it.
+    /// Leaves out the first `finished` cases. Throws InputError for a study that cannot be run. The
+    /// rows must outlive it.
     PreparedStudy(Study study, const StudyRows& rows, const FileReaders& readers = {},
                   std::size_t finished = 0);
 
     const Study& study() const { return study_; }
     const StudyRows& rows() const { return rows_; }
     std::span<const Case> cases() const { return cases_; }
-    /// Of a case of the study: its structure, and its sources, until `run` has freed them.
+    /// The structure of a case, and its sources until `run` has freed them.
     const CatalogueEntry& entry(const Case& c) const;
     const Workload& workload(const Case& c) const { return sources_of(c).workload; }
     /// Number of sources of each case.
     std::span<const std::size_t> source_counts() const { return source_counts_; }
 
     /// Runs the cases. Each structure is made creation_repeats times and checked, one after the
-    /// other, so that none disturbs the timing of another; finished structures of consecutive cases
-    /// with the same sources and reference are kept in a batch, within half of max_memory, and
-    /// their access is timed in turns. A time is reported only for answers that were checked. A
-    /// case that fails gives a row with its reason. Sources and probes are freed after the last
-    /// case that needs them, so it runs once.
+    /// other, so that none disturbs the timing of another. Finished structures of consecutive cases
+    /// with the same sources and reference form a batch, within half of max_memory, whose access is
+    /// timed in turns. A time is reported only for answers that were checked. A case that fails
+    /// gives a row with the reason. Sources and probes are freed after the last case that needs
+    /// them; hence a study runs once.
     void run(const StudyObserver& observer) &&;
 
 private:
@@ -71,12 +71,12 @@ bool share_probes(const Case& a, const Case& b);
 /// The entry of the structure of `c`, which `expand` has found in `catalogue`.
 const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> catalogue);
 
-/// A builder that holds what case `c` asks for, graded. Exceptions pass through.
+/// A builder with the sources of a case inserted, graded or adapted. Exceptions pass through.
 struct Filled {
     std::unique_ptr<ControlSpaceBuilder> builder;
     Creation creation;  ///< of this one
 
-    /// In the form that the case asks for.
+    /// In the requested form.
     std::unique_ptr<ControlSpace> build(const Case& c) const;
 };
 Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,

@@ -30,7 +30,7 @@ struct FieldChoice {
     bool operator==(const FieldChoice&) const = default;
 };
 
-/// What is taken out of a file of sources that holds more than one thing, or no lengths.
+/// The part of a file of sources to be read, or lengths for a file without any.
 struct FileSources {
     std::string array = {};         ///< .vtu, .vtp, .msh, .pos; empty: the only one
     CurvatureSizes curvature = {};  ///< .stl, .obj, .ply, .off

@@ -19,33 +19,35 @@ namespace controlspace {
 struct Measure;
 std::span<const Measure> measures();
 
-/// The rows that a study is made of. Programs may add their own to those of the library.
+/// The rows of a study. Programs may add their own to those of the library.
 struct StudyRows {
     std::span<const CatalogueEntry> structures;
     std::span<const CaseParameter> parameters = case_parameters();
     std::span<const Measure> measures = controlspace::measures();
 };
 
-/// Lists of values whose product gives cases, by the keys of parameters; those without a list have
-/// their defaults. What does not apply to a structure (a split to an octree) does not multiply it.
+/// Lists of values by the keys of parameters, whose product gives cases; without a list, a
+/// parameter has its default. What does not apply to a structure (a split to an octree) does not
+/// multiply it.
 class Run {
 public:
     Run() = default;
     Run(std::initializer_list<std::pair<const std::string, Values>> lists) : lists_(lists) {}
 
-    /// Without a check: by names of structures, or values of a parameter.
+    /// Unchecked access: names of structures, or values of a parameter.
     Values& operator[](const std::string& key) { return lists_[key]; }
     /// Null where there is none.
     const Values* find(const std::string& key) const;
-    /// Those of the parameter, or its defaults.
+    /// The list of the parameter, or its defaults.
     const Values& values(const CaseParameter& parameter) const;
     /// Ids, or families and "all"; {"all"} by default.
     Values structures() const;
 
-    /// Throws InputError for what is no list of the parameter. One in another form is converted.
+    /// Throws InputError for values that the parameter does not have. A parameter that is another
+    /// form of one sets that one.
     void set(const CaseParameter& parameter, const Values& values,
              std::span<const CaseParameter> all = case_parameters());
-    /// The same of the structures.
+    /// The same for the structures.
     void set_structures(const Values& names);
 
 private:
@@ -76,8 +78,8 @@ struct Study {
 /// Parameters of a study as a whole.
 std::span<const Parameter<Study>> study_parameters();
 
-/// Throws InputError for a parameter of the study whose value is not the default although it does
-/// not apply: it was meant for other sources.
+/// Throws InputError for a parameter of the study that does not apply, as to other sources, and
+/// whose value is not the default.
 void require_applicable(const Study& study);
 
 /// All cases of a study, each once, in the order of the runs. Throws InputError as

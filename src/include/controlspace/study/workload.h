@@ -14,7 +14,7 @@
 
 namespace controlspace {
 
-/// Readers of file formats, by the program that links their libraries.
+/// Readers of file formats, provided by the program that links their libraries.
 struct FileReaders {
     /// Sources of kind `file`, by the ending of the file's name in small letters (".vdb").
     std::map<std::string, std::function<std::vector<PointSource>(const SourcesChoice&)>> sources;
@@ -22,20 +22,20 @@ struct FileReaders {
     std::function<AnalyticField(const FieldChoice&)> vdb_field;
 };
 
-/// What all cases with the same sources share.
+/// Sources and field, shared by all cases with the same ones.
 struct Workload {
     std::vector<PointSource> sources;
     AnalyticField field;  ///< `field.field` is null where there is none
     Box domain;
-    double finest_length = 0;  ///< smallest length that any source or the field asks for
+    double finest_length = 0;  ///< smallest requested length, of sources and field
 };
 
-/// The sources of the file that `choice`, of kind `file`, names: by the reader of its ending, or
-/// by read_sources. Throws InputError.
+/// The sources in the file of `choice` (of kind `file`), by the reader for its ending, or by
+/// read_sources. Throws InputError.
 std::vector<PointSource> read_source_file(const SourcesChoice& choice, const FileReaders& readers);
 
-/// Samples or reads the sources, and checks that each lies in the domain, and the domain where the
-/// field is defined. Throws InputError.
+/// Samples or reads the sources. Throws InputError for a source outside the domain, and for a
+/// domain beyond that of the field.
 Workload make_workload(const Study& study, const SourcesChoice& choice,
                        const FileReaders& readers = {});
 
@@ -44,15 +44,14 @@ Workload make_workload(const Study& study, const SourcesChoice& choice,
 SpaceOptions space_options(const Study& study, const Case& c, const Workload& workload,
                            std::span<const CaseParameter> parameters = case_parameters());
 
-/// Places at which structures are compared with their reference, and the reference there.
+/// Points at which structures are compared with their reference, and the reference there.
 struct ReferenceProbes {
     Probes coarse;  ///< probe_grid^3 cell centres
     Probes fine;    ///< fine_probe_grid^3 cell centres
 };
 
-/// What δ_R of `c` is measured against; a structure that follows a field follows this one. Depends
-/// on the sources, the kind of reference and g_r of `c`, and on the study's reference_tolerance,
-/// only.
+/// The reference of `c`, for δ_R and for exact values at control nodes. Depends only on the
+/// sources, the kind of reference and g_r of `c`, and on the study's reference_tolerance.
 std::shared_ptr<const ControlSpace> make_reference(const Study& study, const Case& c,
                                                    const Workload& workload);
 

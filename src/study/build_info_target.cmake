@@ -1,10 +1,4 @@
-# Sources that are written by the build: data files as text, and which commit is built.
-# Sets CONTROLSPACE_EMBEDDED to their names.
-set(embedded_data ${PROJECT_SOURCE_DIR}/data/studies/paper-sphere-quick.toml)
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${embedded_data})
-file(READ ${PROJECT_SOURCE_DIR}/data/studies/paper-sphere-quick.toml QUICK_STUDY)
-configure_file(study/embedded.cpp.in ${CMAKE_CURRENT_BINARY_DIR}/embedded.cpp @ONLY)
-
+# Writes at every build which commit is built. Sets CONTROLSPACE_BUILD_INFO to the source.
 string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
 get_target_property(build_flags controlspace_flags INTERFACE_COMPILE_OPTIONS)
 list(FILTER build_flags EXCLUDE REGEX "^-W|^\\$")
@@ -20,6 +14,4 @@ add_custom_target(controlspace_build_info
         "-DFLAGS=${build_flags}"
         -P ${CMAKE_CURRENT_SOURCE_DIR}/study/build_info.cmake
     VERBATIM COMMENT "")
-set(CONTROLSPACE_EMBEDDED
-    ${CMAKE_CURRENT_BINARY_DIR}/build_info.cpp
-    ${CMAKE_CURRENT_BINARY_DIR}/embedded.cpp)
+set(CONTROLSPACE_BUILD_INFO ${CMAKE_CURRENT_BINARY_DIR}/build_info.cpp)
