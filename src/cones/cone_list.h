@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "cones/tensor_lanes.h"
+#include "metric/tensor_lanes.h"
 #include "controlspace/geometry/point.h"
 
 namespace controlspace {

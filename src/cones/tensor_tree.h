@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cones/cone_tree.h"
-#include "cones/tensor_lanes.h"
+#include "metric/tensor_lanes.h"
 #include "controlspace/sources/point_source.h"
 
 namespace controlspace {

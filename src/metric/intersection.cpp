@@ -1,6 +1,7 @@
 #include "controlspace/metric/intersection.h"
 
 #include "metric/decompose.h"
+#include "metric/reduction.h"
 
 namespace controlspace {
 
@@ -18,16 +19,10 @@ Metric cut_off(const Metric& m, double h) {
     return metric_from_frame(frame.lengths, frame.directions);
 }
 
-// Simultaneous reduction: C = b^-1 a = U diag(s) V^T. The reduced problem a b^-2 a is C^T C, and
-// working on C itself keeps the digits that squaring would lose. The result's square is H H^T with
-// H = a V min(1, 1/s), and a v_i / s_i = b u_i, so each column comes from the metric that is the
-// shorter there.
-struct Reduction {
-    std::array<double, 3> s;
-    Eigen::Matrix3d av, bu;
-};
-
-Reduction reduce(const Metric& a, const Metric& b, const Cholesky& factor) {
+// C = b^-1 a = U diag(s) V^T. The reduced problem a b^-2 a is C^T C, and working on C itself keeps
+// the digits that squaring would lose. The result's square is H H^T with H = a V min(1, 1/s), and
+// a v_i / s_i = b u_i, so each column comes from the metric that is the shorter there.
+Reduction reduce_plainly(const Metric& a, const Metric& b, const Cholesky& factor) {
     const Svd c = svd(factor.solve(a.matrix()));
     return {c.s, a.matrix() * c.v, b.matrix() * c.u};
 }
@@ -43,7 +38,18 @@ Reduction reduce_between_frames(const Metric& a, const Metric& b) {
     return {c.s, fa.directions * (la * c.v), fb.directions * (lb * c.u)};
 }
 
+// The plain way loses the digits of b's condition times C's.
+Reduction reduce(const Metric& a, const Metric& b, const Cholesky& factor, double condition_b) {
+    const Reduction r = reduce_plainly(a, b, factor);
+    return condition_b * r.s[0] > 1e4 * r.s[2] ? reduce_between_frames(a, b) : r;
+}
+
 }  // namespace
+
+Reduction reduce(const Metric& a, const Metric& b) {
+    const Cholesky factor(b);
+    return reduce(a, b, factor, condition(b, factor));
+}
 
 Metric intersection_of_tensors(const Metric& a, const Metric& b) {
     if (a == b) return a;
@@ -52,16 +58,10 @@ Metric intersection_of_tensors(const Metric& a, const Metric& b) {
 
     const Cholesky factor(b);
     const double condition_b = condition(b, factor);
-    Reduction r = reduce(a, b, factor);
-    // The plain way loses the digits of b's condition times C's.
-    if (condition_b * r.s[0] > 1e4 * r.s[2]) r = reduce_between_frames(a, b);
+    const Reduction r = reduce(a, b, factor, condition_b);
     if (r.s[0] <= 1 + rounding * condition_b) return a;
     if (r.s[2] >= 1 - rounding * condition_b) return b;
-    Eigen::Matrix3d half = r.av;
-    for (int i = 0; i < 3; ++i) {
-        if (r.s[static_cast<std::size_t>(i)] > 1) half.col(i) = r.bu.col(i);
-    }
-    return left_polar_factor(half);
+    return left_polar_factor(r.half());
 }
 
 double growth(const Metric& a, const Metric& b) {

@@ -1,4 +1,4 @@
-#include "cones/tensor_lanes.h"
+#include "metric/tensor_lanes.h"
 
 #include <catch2/catch.hpp>
 

@@ -16,9 +16,11 @@ using LanesOf = Eigen::Array<double, n, 1, Eigen::DontAlign>;
 inline constexpr int lane_count = 8;
 using Lanes = LanesOf<lane_count>;
 
-/// Eight symmetric tensors.
-struct TensorLanes {
-    Lanes xx = Lanes::Ones(), yy = xx, zz = xx, xy = Lanes::Zero(), xz = xy, yz = xy;
+/// Symmetric tensors side by side.
+template <int n>
+struct TensorLanesOf {
+    using Number = LanesOf<n>;
+    Number xx = Number::Ones(), yy = xx, zz = xx, xy = Number::Zero(), xz = xy, yz = xy;
 
     Metric operator[](Eigen::Index lane) const {
         return {xx[lane], yy[lane], zz[lane], xy[lane], xz[lane], yz[lane]};
@@ -32,6 +34,7 @@ struct TensorLanes {
         yz[lane] = m.yz;
     }
 };
+using TensorLanes = TensorLanesOf<lane_count>;
 
 /// Vectors side by side.
 template <int n>
@@ -73,19 +76,41 @@ inline Lanes lengths_of_products(const TensorLanes& m, const VectorLanes& v) {
         .sqrt();
 }
 
+/// As `Cholesky`, to the bit.
+template <int n>
+class CholeskyLanes {
+public:
+    using Number = LanesOf<n>;
+
+    explicit CholeskyLanes(const TensorLanesOf<n>& m)
+        : i0_(m.xx.inverse()), l10_(m.xy * i0_), l20_(m.xz * i0_) {
+        i1_ = (m.yy - l10_ * m.xy).inverse();
+        const Number left = m.yz - l20_ * m.xy;
+        l21_ = left * i1_;
+        i2_ = (m.zz - l20_ * m.xz - l21_ * left).inverse();
+    }
+    VectorLanesOf<n> solve(const VectorLanesOf<n>& v) const {
+        const Number y = v.y - l10_ * v.x;
+        const Number z = (v.z - l20_ * v.x - l21_ * y) * i2_;
+        const Number b = y * i1_ - l21_ * z;
+        return {v.x * i0_ - l10_ * b - l20_ * z, b, z};
+    }
+    Number trace_of_inverse() const {
+        const Number l = l10_ * l21_ - l20_;
+        return i0_ + i1_ * (1 + l10_.square()) + i2_ * (1 + l21_.square() + l.square());
+    }
+    /// Positive where the tensor is positive definite.
+    Number least_pivot() const { return i0_.min(i1_).min(i2_); }
+    Number determinant() const { return (i0_ * i1_ * i2_).inverse(); }
+
+private:
+    Number i0_, l10_, l20_, i1_, l21_, i2_;
+};
+
 /// |M^-1 v|, M positive definite: to the bit what `metric_length` gives, but for axis-aligned M.
 inline Lanes metric_lengths(const TensorLanes& m, const VectorLanes& v) {
-    const Lanes i0 = m.xx.inverse();
-    const Lanes l10 = m.xy * i0;
-    const Lanes l20 = m.xz * i0;
-    const Lanes i1 = (m.yy - l10 * m.xy).inverse();
-    const Lanes left = m.yz - l20 * m.xy;
-    const Lanes l21 = left * i1;
-    const Lanes i2 = (m.zz - l20 * m.xz - l21 * left).inverse();
-    const Lanes y = v.y - l10 * v.x;
-    const Lanes z = (v.z - l20 * v.x - l21 * y) * i2;
-    const Lanes b = y * i1 - l21 * z;
-    return (((v.x * i0 - l10 * b - l20 * z).square() + b.square()) + z.square()).sqrt();
+    const auto [x, y, z] = CholeskyLanes<lane_count>(m).solve(v);
+    return ((x.square() + y.square()) + z.square()).sqrt();
 }
 
 /// Pivots of a factorisation: the tensor is positive definite where all three are positive.

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "controlspace/metric/metric.h"
+
+namespace controlspace {
+
+/// Largest metric within some metrics M_k, and a certificate that it is.
+struct OrderFreeIntersection {
+    /// Multiplier of the constraint M^2 <= M_k^2, k = `index`. As seen from `factor` H it is the
+    /// positive semidefinite tensor L; itself it is H^-T L H^-1.
+    struct Multiplier {
+        std::uint32_t index;
+        Metric tensor;
+    };
+    static constexpr std::size_t most_multipliers = 16;
+
+    /// H with H H^T = M^2, not symmetric in general. A nearby intersection starts from it.
+    Eigen::Matrix3d factor;
+    /// log det M^2 is at most this much below that of the largest metric (duality gap). Seen from
+    /// H, that is -log det(sum L_k) + sum tr(L_k H^-1 M_k^2 H^-T) - 3. Lengths may differ by its
+    /// root.
+    double gap = 0;
+    /// Newton steps made.
+    int steps = 0;
+
+    std::span<const Multiplier> multipliers() const { return {multiplier.data(), count}; }
+    /// M.
+    Metric metric() const;
+
+    std::array<Multiplier, most_multipliers> multiplier{};
+    std::size_t count = 0;
+};
+
+/// Intersection of any number of metrics, whatever their order: the metric M within all of them
+/// whose elements are the largest,
+///     M^2 = argmax { log det Y : Y <= M_k^2 for all k },
+/// where <= says that the difference is positive semidefinite. Its unit ball is the ellipsoid of
+/// greatest volume in all unit balls (Loewner-John ellipsoid: John 1948; Boyd & Vandenberghe,
+/// Convex Optimization, section 8.4). It is unique, continuous in the M_k, and covariant: a linear
+/// map A of space takes M^2 to A M^2 A^T. Of two metrics it is their `intersection`, of isotropic
+/// ones the smallest. One metric more never makes the determinant larger, but may make M longer
+/// along some direction.
+///
+/// M is within every M_k up to the rounding of six numbers, and the duality gap is at most
+/// `tolerance`, 1e-10 or more, unless rounding prevents it at anisotropies near 1e6: see `gap`. A
+/// metric that is within all others is the answer to the bit. The bits do not depend on the order
+/// of the metrics, but on `near`: a factor of an answer that is likely to be close (the matrix of a
+/// metric will do), from which the search starts in place of from nothing.
+///
+/// Allocates nothing. Throws InputError if there are no metrics, or if one is not positive
+/// definite, has numbers that are not finite, or an anisotropy above 1e7: six numbers do not hold
+/// the lengths of its square.
+OrderFreeIntersection order_free_intersection(std::span<const Metric> metrics,
+                                              double tolerance = 1e-6,
+                                              const Eigen::Matrix3d* near = nullptr);
+
+}  // namespace controlspace
