@@ -56,21 +56,14 @@ template <int n, class Visit>
     (std::make_integer_sequence<int, n>());
 }
 
-// (I - P)^-1 - I.
+// (I - P)^-1 - I. Not by cofactors: with two small slacks they lose the determinant.
 ConstraintLanes slack_inverse(const ConstraintLanes& p) {
-    const Numbers x = 1 - p.xx;
-    const Numbers y = 1 - p.yy;
-    const Numbers z = 1 - p.zz;
-    const Numbers xx = y * z - p.yz.square();
-    const Numbers xy = p.xz * p.yz + p.xy * z;
-    const Numbers xz = p.xy * p.yz + y * p.xz;
-    const Numbers scale = (x * xx - p.xy * xy - p.xz * xz).inverse();
-    return {xx * scale - 1,
-            (x * z - p.xz.square()) * scale - 1,
-            (x * y - p.xy.square()) * scale - 1,
-            xy * scale,
-            xz * scale,
-            (p.xy * p.xz + x * p.yz) * scale};
+    ConstraintLanes s =
+        Factorisation({1 - p.xx, 1 - p.yy, 1 - p.zz, -p.xy, -p.xz, -p.yz}).inverse();
+    s.xx -= 1;
+    s.yy -= 1;
+    s.zz -= 1;
+    return s;
 }
 
 double greatest_eigenvalue(const Metric& t) {

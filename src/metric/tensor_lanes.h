@@ -99,6 +99,17 @@ public:
         const Number l = l10_ * l21_ - l20_;
         return i0_ + i1_ * (1 + l10_.square()) + i2_ * (1 + l21_.square() + l.square());
     }
+    TensorLanesOf<n> inverse() const {
+        const Number l = l10_ * l21_ - l20_;
+        const Number xz = l * i2_;
+        const Number yz = -l21_ * i2_;
+        return {i0_ + l10_.square() * i1_ + l * xz,
+                i1_ - l21_ * yz,
+                i2_,
+                -l10_ * i1_ - l21_ * xz,
+                xz,
+                yz};
+    }
     /// Positive where the tensor is positive definite.
     Number least_pivot() const { return i0_.min(i1_).min(i2_); }
     Number determinant() const { return (i0_ * i1_ * i2_).inverse(); }
