@@ -15,9 +15,6 @@ using ConstraintNumbers = ConstraintLanes::Number;
 
 inline double sum(const ConstraintNumbers& n) { return (n[0] + n[2]) + (n[1] + n[3]); }
 inline double trace(const Metric& t) { return t.xx + t.yy + t.zz; }
-inline double trace_of_product(const Metric& a, const Metric& b) {
-    return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2 * (a.xy * b.xy + a.xz * b.xz + a.yz * b.yz);
-}
 
 inline Metric sum(std::span<const ConstraintLanes> tensors) {
     ConstraintLanes total = tensors[0];

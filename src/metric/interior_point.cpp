@@ -20,10 +20,14 @@ namespace controlspace {
 // Rendl, Vanderbei & Wolkowicz, Kojima, Shindoh & Hara, and Monteiro):
 //     D + sum sym(L_k D S_k) = I - mu sum S_k,
 //     L_k changes by mu S_k - L_k + sym(L_k D S_k),
-// and goes as far as B_k - Z and L_k stay positive definite. P_k may be singular but for rounding,
-// where a constraint is far off: B_k never appears, and tr(L_k B_k) is carried along,
-//     tr(dL_k B_k) = mu tr(I + S_k) - tr(L_k B_k) + tr(L_k D) + tr(L_k D S_k).
-// After the step all tensors are looked at from the new Y: H F, with F F^T = Z.
+// and goes as far as B_k - Z and L_k stay positive definite. Then all tensors are looked at from
+// the new Y: H F, with F F^T = Z.
+//
+// P_k may be singular but for rounding, where a constraint is far off, so B_k never appears. The
+// gap is that of the multipliers c P_k L_k P_k in place of L_k, to first order the same: since
+// tr(P_k L_k P_k B_k) = tr(P_k L_k), rounding of L_k where B_k is large counts for nothing. The
+// best c makes it 3 log(sum tr(P_k L_k) / 3) - log det(sum P_k L_k P_k). On the central path
+// L_k = mu S_k, so that mu = sum tr(L_k - P_k L_k) / sum tr(P_k).
 
 namespace {
 
@@ -195,15 +199,22 @@ void InteriorPoint::scale(double factor) {
 // mu S_k, such that they sum to I as nearly as they can.
 void InteriorPoint::set_multipliers() {
     for (std::size_t g = 0; g < groups_; ++g) multipliers_[g] = slack_inverse(constraints_[g]);
-    const double of_slacks = trace(sum(used(multipliers_)));
-    const double mu = 3 / of_slacks;
+    const double mu = 3 / trace(sum(used(multipliers_)));
     for (std::size_t g = 0; g < groups_; ++g) multipliers_[g] = scaled(multipliers_[g], mu);
-    bound_ = 3 + 3 * mu * static_cast<double>(size_);
 }
 
 void InteriorPoint::measure() {
-    sum_ = sum(used(multipliers_));
-    gap_ = bound_ - 3 - std::log(sum_.matrix().determinant());
+    double traces = 0;
+    for (std::size_t g = 0; g < groups_; ++g) {
+        const Matrices w = product(constraints_[g], multipliers_[g]);
+        traces += sum(w.xx + w.yy + w.zz);
+        certificate_[g] = symmetric_product(w, constraints_[g]);
+    }
+    const double slackness = trace(sum(used(multipliers_))) - traces;
+    mu_ = slackness / trace(sum(used(constraints_)));
+    certificate_scale_ = 3 / traces;
+    gap_ = -3 * std::log(certificate_scale_) -
+           std::log(sum(used(certificate_)).matrix().determinant());
 }
 
 void InteriorPoint::solve(double tolerance) {
@@ -218,23 +229,20 @@ void InteriorPoint::solve(double tolerance) {
 
 // One step towards `centring` times the present mu. Returns the fraction that was possible.
 double InteriorPoint::advance(double centring) {
-    const auto size = static_cast<double>(size_);
     Groups s;
     for (std::size_t g = 0; g < groups_; ++g) s[g] = slack_inverse(constraints_[g]);
     const Metric of_slacks = sum(used(s));
-    const double mu = centring * (bound_ - trace(sum_)) / (3 * size);
+    const double mu = centring * mu_;
     const Metric d = direction(used(s), used(multipliers_),
                                {1 - mu * of_slacks.xx, 1 - mu * of_slacks.yy, 1 - mu * of_slacks.zz,
                                 -mu * of_slacks.xy, -mu * of_slacks.xz, -mu * of_slacks.yz});
     Numbers greatest = Numbers::Constant(controlspace::greatest_eigenvalue(-1 * d));
-    Numbers traces = Numbers::Zero();
     Groups change;
     for (std::size_t g = 0; g < groups_; ++g) {
         const Matrices w = product(s[g], d);
         greatest = greatest.max(greatest_eigenvalues(w));
         const ConstraintLanes& l = multipliers_[g];
         const ConstraintLanes second = symmetric_product(w, l);
-        traces += second.xx + second.yy + second.zz;
         change[g] = {mu * s[g].xx - l.xx + second.xx, mu * s[g].yy - l.yy + second.yy,
                      mu * s[g].zz - l.zz + second.zz, mu * s[g].xy - l.xy + second.xy,
                      mu * s[g].xz - l.xz + second.xz, mu * s[g].yz - l.yz + second.yz};
@@ -249,8 +257,6 @@ double InteriorPoint::advance(double centring) {
     while (dual > least && !are_positive(used(multipliers_), dual / certain, used(change))) {
         dual *= 0.9;
     }
-    bound_ += dual * (mu * (3 * size + trace(of_slacks)) - bound_ + trace_of_product(sum_, d) +
-                      sum(traces));
     const Triangle f(d, primal);
     factor_ = (factor_ * f.matrix()).eval();
     for (std::size_t g = 0; g < groups_; ++g) {

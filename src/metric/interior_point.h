@@ -33,9 +33,10 @@ public:
     /// By how much log det Y can be larger at most.
     double gap() const { return gap_; }
     int steps() const { return steps_; }
-    /// Multiplier L_k of constraint k as seen from H: itself it is H^-T L_k H^-1.
+    /// Multiplier of constraint k that proves the gap, L, as seen from H: itself it is H^-T L H^-1.
     Metric multiplier(std::size_t k) const {
-        return multipliers_[k / constraint_lanes][static_cast<Eigen::Index>(k % constraint_lanes)];
+        return certificate_scale_ *
+               certificate_[k / constraint_lanes][static_cast<Eigen::Index>(k % constraint_lanes)];
     }
 
 private:
@@ -57,8 +58,9 @@ private:
     Eigen::Matrix3d factor_;
     Groups constraints_;  ///< P_k, or 0 where there is none
     Groups multipliers_;  ///< L_k
-    Metric sum_;          ///< of all L_k
-    double bound_ = 0;    ///< sum of tr(L_k P_k^-1)
+    Groups certificate_;  ///< P_k L_k P_k
+    double certificate_scale_ = 1;
+    double mu_ = 0;
     double gap_ = 0;
     int steps_ = 0;
 };

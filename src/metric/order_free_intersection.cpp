@@ -309,6 +309,10 @@ OrderFreeIntersection order_free_intersection(std::span<const Metric> metrics, d
         InteriorPoint solution(core.metrics(), near);
         solution.solve(of_core);
         steps += solution.steps();
+        if (near != nullptr && solution.gap() > of_core) {  // not near after all
+            near = nullptr;
+            continue;
+        }
         if (core.size() == metrics.size()) return made_smaller(core, solution, 1, steps);
         const Excess worst = worst_excess(metrics, solution.factor());
         if (solution.gap() + 3 * std::log(worst.growth) <= tolerance || core.has(worst.index)) {

@@ -264,7 +264,8 @@ TEST_CASE("order-free intersection: a start nearby saves steps and changes nothi
     for (const Case& c : cases()) {
         CAPTURE(c.name, c.metrics.size(), c.anisotropy);
         const OrderFreeIntersection answer = order_free_intersection(c.metrics);
-        for (const double level : {0.0, 1e-4, 5e-3, 0.3, 1e3}) {
+        for (const double level : {0.0, 1e-4, 5e-3, 0.3, 1.0, 1e3}) {
+            CAPTURE(level);
             Eigen::Matrix3d near = answer.factor;
             for (int i = 0; i < 3; ++i) near.col(i) += level * (answer.factor * draw.vector());
             const auto again = order_free_intersection(c.metrics, 1e-6, &near);
