@@ -309,7 +309,7 @@ OrderFreeIntersection order_free_intersection(std::span<const Metric> metrics, d
         InteriorPoint solution(core.metrics(), near);
         solution.solve(of_core);
         steps += solution.steps();
-        if (near != nullptr && solution.gap() > of_core) {  // not near after all
+        if (near != nullptr && !(std::abs(solution.gap()) <= of_core)) {  // not near after all
             near = nullptr;
             continue;
         }
