@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "controlspace/gradation/grade.h"
+#include "controlspace/space/catalogue.h"
+#include "controlspace/space/detail/shared_builder.h"
 #include "controlspace/trees/detail/growing_tree.h"
 #include "controlspace/trees/detail/leaf_graph.h"
-#include "controlspace/trees/detail/published_bytes.h"
 #include "trees/values/anchored_values.h"
 
 namespace controlspace {
@@ -89,14 +90,6 @@ public:
         Base::settle();
     }
 
-    Footprint footprint() const {
-        Footprint footprint = Base::footprint();
-        footprint.bytes_published =
-            published_bytes({Node::arity == 8, false, topology_.leaves(), topology_.inner_nodes(),
-                             footprint.control_nodes});
-        return footprint;
-    }
-
     void save(StateWriter& state) const {
         controlspace::save(topology_, state);
         storage_.save(state);
@@ -117,5 +110,21 @@ private:
 
     bool is_graded_ = false;  // no source has come since
 };
+
+/// The catalogue's row of such a tree.
+template <class Node>
+CatalogueEntry source_row(const char* id, const char* description) {
+    CatalogueEntry row{
+        .id = id,
+        .description = description,
+        .family = "anchored",
+        .construct = [](const SpaceOptions& options) -> std::unique_ptr<ControlSpaceBuilder> {
+            require_valid(options);
+            return std::make_unique<SharedBuilder<SourceTree<Node>>>(options);
+        },
+        .capabilities = {SourceLeaves(), KeptSources()}};
+    if (Node::arity == 2) row.capabilities.push_back(SplitRules());
+    return row;
+}
 
 }  // namespace controlspace

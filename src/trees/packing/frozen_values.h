@@ -21,14 +21,48 @@ namespace controlspace {
 // compact form it is. `Number` is the type of the numbers in metrics, `Plane` that of the numbers
 // of planes.
 
+/// Metrics of nodes, and leaves, of which each has its `faces` as numbers of planes.
+template <class Number, class Leaf>
+class FrozenLeaves {
+public:
+    FrozenLeaves(CutPlanes planes, std::vector<StoredMetric<Number>> metrics)
+        : planes_(std::move(planes)), metrics_(std::move(metrics)) {}
+
+    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&leaves_[leaf]); }
+    Box box(LeafIndex leaf) const { return leaves_[leaf].faces.box(planes_); }
+    void describe(Footprint& footprint) const {
+        footprint.control_nodes = metrics_.size();
+        footprint.bytes_payload = metrics_.capacity() * sizeof(StoredMetric<Number>);
+        footprint.bytes_topology += leaves_.capacity() * sizeof(Leaf) + planes_.bytes();
+    }
+
+protected:
+    void save_metrics(StateWriter& state) const {
+        NodeMetrics::exchange(NodeMetrics({metrics_.begin(), metrics_.end()}), state);
+    }
+
+    CutPlanes planes_;
+    std::vector<StoredMetric<Number>> metrics_;
+    std::vector<Leaf> leaves_;
+};
+
+template <class Plane>
+struct QuadraticLeaf {
+    Faces<Plane> faces;
+    PartsAcross across;
+};
+
 /// One metric a leaf, interpolated with those of the neighbours.
 template <class Number, class Plane>
-class FrozenQuadratic {
+class FrozenQuadratic : public FrozenLeaves<Number, QuadraticLeaf<Plane>> {
+    using Base = FrozenLeaves<Number, QuadraticLeaf<Plane>>;
+    using Base::planes_, Base::metrics_, Base::leaves_;
+
 public:
     template <class Node>
     FrozenQuadratic(const Topology<Node>& tree, CutPlanes planes,
                     std::vector<StoredMetric<Number>> metrics, const QuadraticRule& rule)
-        : planes_(std::move(planes)), metrics_(std::move(metrics)), rule_(rule) {
+        : Base(std::move(planes), std::move(metrics)), rule_(rule) {
         leaves_.reserve(tree.leaves());
         for_each_faces<Plane>(tree, planes_, [&](LeafIndex, const Faces<Plane>& faces) {
             leaves_.push_back({faces, {}});
@@ -40,14 +74,12 @@ public:
             metrics_, [](const StoredMetric<Number>& m) { return is_isotropic(m); });
     }
 
-    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&leaves_[leaf]); }
     template <class Node>
     void values_in(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
                    std::span<const Point> x, std::span<Metric> out) const {
         QuadraticInLeaves(tree, *this).interpolate(leaves, x, out);
     }
 
-    Box box(LeafIndex leaf) const { return leaves_[leaf].faces.box(planes_); }
     const PartsAcross& parts_across(LeafIndex leaf, const Point&) const {
         return leaves_[leaf].across;
     }
@@ -62,93 +94,68 @@ public:
     ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
         return {leaf_graph(tree, neighbourhood).graph, {metrics_.begin(), metrics_.end()}};
     }
-    void describe(Footprint& footprint) const {
-        footprint.control_nodes = metrics_.size();
-        footprint.bytes_payload = metrics_.capacity() * sizeof(StoredMetric<Number>);
-        footprint.bytes_topology += leaves_.capacity() * sizeof(Leaf) + planes_.bytes();
-    }
     void save(StateWriter& state) const {
-        NodeMetrics::exchange(NodeMetrics({metrics_.begin(), metrics_.end()}), state);
+        this->save_metrics(state);
         state("quadratic.slope", rule_.slope);
     }
 
 private:
-    struct Leaf {
-        Faces<Plane> faces;
-        PartsAcross across;
-    };
-
-    CutPlanes planes_;
-    std::vector<StoredMetric<Number>> metrics_;
-    std::vector<Leaf> leaves_;
     QuadraticRule rule_;
     bool isotropic_;
+};
+
+template <class Plane>
+struct VertexLeaf {
+    Corners corners;
+    Faces<Plane> faces;
 };
 
 /// A metric at each vertex, trilinear between the eight of a leaf; vertices numbered as the leaves
 /// come to them.
 template <class Number, class Plane>
-class FrozenVertices {
+class FrozenVertices : public FrozenLeaves<Number, VertexLeaf<Plane>> {
+    using Base = FrozenLeaves<Number, VertexLeaf<Plane>>;
+    using Base::planes_, Base::metrics_, Base::leaves_;
+
 public:
     /// `corners` are those of the tree's leaves, whose numbers point into `metrics`.
     template <class Node>
     FrozenVertices(const Topology<Node>& tree, CutPlanes planes,
                    const std::vector<Corners>& corners, std::vector<StoredMetric<Number>> metrics)
-        : planes_(std::move(planes)), metrics_(std::move(metrics)) {
+        : Base(std::move(planes), std::move(metrics)) {
         leaves_.reserve(tree.leaves());
         for_each_faces<Plane>(tree, planes_, [&](LeafIndex leaf, const Faces<Plane>& faces) {
             leaves_.push_back({corners[leaf], faces});
         });
     }
 
-    void prefetch(LeafIndex leaf) const { __builtin_prefetch(&leaves_[leaf]); }
     template <class Node>
     void values_in(const Topology<Node>&, std::span<const LeafIndex> leaves,
                    std::span<const Point> x, std::span<Metric> out) const {
         trilinear_in_leaves(*this, leaves, x, out);
     }
     const Corners& corners(LeafIndex leaf) const { return leaves_[leaf].corners; }
-    Box box(LeafIndex leaf) const { return leaves_[leaf].faces.box(planes_); }
     std::span<const StoredMetric<Number>> metrics() const { return metrics_; }
 
     template <class Node>
-    ControlNodes control_nodes(const Topology<Node>&, Neighbourhood neighbourhood) const {
-        std::vector<Point> positions(metrics_.size());
-        for (const Leaf& leaf : leaves_) {
-            const Box box = leaf.faces.box(planes_);
-            for (int i = 0; i < 8; ++i) {
-                positions[leaf.corners[static_cast<std::size_t>(i)]] = corner(box, i);
-            }
-        }
-        return {vertex_graph(all_corners(), std::move(positions), neighbourhood),
-                {metrics_.begin(), metrics_.end()}};
-    }
-    void describe(Footprint& footprint) const {
-        footprint.control_nodes = metrics_.size();
-        footprint.bytes_payload = metrics_.capacity() * sizeof(StoredMetric<Number>);
-        footprint.bytes_topology += leaves_.capacity() * sizeof(Leaf) + planes_.bytes();
+    ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
+        const std::vector<Corners> corners = all_corners();
+        return {
+            vertex_graph(corners, vertex_positions(tree, corners, metrics_.size()), neighbourhood),
+            {metrics_.begin(), metrics_.end()}};
     }
     void save(StateWriter& state) const {
-        NodeMetrics::exchange(NodeMetrics({metrics_.begin(), metrics_.end()}), state);
+        this->save_metrics(state);
         state("vertices.of_leaves", all_corners());
     }
 
 private:
-    struct Leaf {
-        Corners corners;
-        Faces<Plane> faces;
-    };
-
     std::vector<Corners> all_corners() const {
         std::vector<Corners> corners;
         corners.reserve(leaves_.size());
-        for (const Leaf& leaf : leaves_) corners.push_back(leaf.corners);
+        for (const auto& leaf : leaves_) corners.push_back(leaf.corners);
         return corners;
     }
-
-    CutPlanes planes_;
-    std::vector<Leaf> leaves_;
-    std::vector<StoredMetric<Number>> metrics_;
 };
 
 }  // namespace controlspace

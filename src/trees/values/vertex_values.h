@@ -10,6 +10,7 @@
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/detail/state.h"
 #include "controlspace/space/space_options.h"
+#include "controlspace/trees/detail/adjacency.h"
 #include "controlspace/trees/detail/corners.h"
 #include "controlspace/trees/detail/leaf_judge.h"
 #include "controlspace/trees/node_metrics.h"
@@ -65,12 +66,7 @@ public:
     template <class Node>
     void loaded(const Topology<Node>& tree, const StateReader& state) {
         require_sound(state, tree.leaves());
-        positions_.assign(metrics_.size(), tree.domain().low);
-        tree.for_each_leaf([&](LeafIndex leaf, const Box& box) {
-            for (int i = 0; i < 8; ++i) {
-                positions_[corners_[leaf][static_cast<std::size_t>(i)]] = corner(box, i);
-            }
-        });
+        positions_ = vertex_positions(tree, corners_, metrics_.size());
     }
 
     void describe(Footprint& footprint) const;

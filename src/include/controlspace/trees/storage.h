@@ -56,7 +56,7 @@ namespace controlspace {
 //   prefetch(leaf)         prefetches what value_in reads first
 //   ceiling(leaf, x)       upper bound of the requested isotropic length at x, now and after all
 //                          later insertions; infinity where there is none
-//   prepare(tree)          called before queries, after the last change of the tree or the metrics
+//   prepare(tree)          makes queries faster until a leaf is cut; they may come without it
 //   pack(tree, precision)  the compact form. Required for eight nodes a leaf.
 //   loaded(tree, state)    checks what was loaded, and makes what is not in files. Required where
 //   an
@@ -68,6 +68,12 @@ namespace controlspace {
 template <class Storage>
 inline constexpr std::size_t nodes_per_leaf =
     std::tuple_size_v<std::remove_cvref_t<decltype(std::declval<const Storage&>().nodes_of(0))>>;
+
+template <class Storage>
+consteval bool nodes_at_vertices() {
+    if constexpr (requires(const Storage& s) { s.nodes_of(0); }) return nodes_per_leaf<Storage> > 1;
+    return false;
+}
 
 /// Whether a storage lists data beside its metrics.
 template <class Storage>

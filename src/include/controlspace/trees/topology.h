@@ -207,12 +207,16 @@ public:
     /// Calls visit(leaf, box) for all leaves, depth first, children in their order.
     template <class Visit>
     void for_each_leaf(Visit&& visit) const {
-        visit_leaves({root_, domain_}, visit);
+        for_each_leaf_in({root_, domain_}, visit);
     }
     /// The same in a part of the tree.
     template <class Visit>
     void for_each_leaf_in(const TreePart& part, Visit&& visit) const {
-        visit_leaves(part, visit);
+        if (part.ref.is_leaf()) {
+            visit(LeafIndex{part.ref.index()}, part.box);
+            return;
+        }
+        for (int c = 0; c < arity; ++c) for_each_leaf_in(child(part, c), visit);
     }
     /// Child `c` of an inner node.
     TreePart child(const TreePart& inner, int c) const {
@@ -249,15 +253,6 @@ private:
 
     auto node_of() const {
         return [this](Ref inner) -> const Node& { return node(inner); };
-    }
-
-    template <class Visit>
-    void visit_leaves(const TreePart& part, Visit& visit) const {
-        if (part.ref.is_leaf()) {
-            visit(LeafIndex{part.ref.index()}, part.box);
-            return;
-        }
-        for (int c = 0; c < arity; ++c) visit_leaves(child(part, c), visit);
     }
 
     Box domain_;

@@ -64,6 +64,19 @@ NodeGraph graph_from_pairs(std::size_t nodes,
 /// Removes repeated neighbours and sorts each row.
 void sort_rows_uniquely(NodeGraph& graph);
 
+/// Where so many vertices stand, of which `corners` are those of the leaves.
+template <class Node>
+std::vector<Point> vertex_positions(const Topology<Node>& tree, std::span<const Corners> corners,
+                                    std::size_t count) {
+    std::vector<Point> positions(count, tree.domain().low);
+    tree.for_each_leaf([&](LeafIndex leaf, const Box& box) {
+        for (int i = 0; i < 8; ++i) {
+            positions[corners[leaf][static_cast<std::size_t>(i)]] = corner(box, i);
+        }
+    });
+    return positions;
+}
+
 /// The vertices of leaves as a graph.
 NodeGraph vertex_graph(std::span<const Corners> leaves, std::vector<Point> positions,
                        Neighbourhood neighbourhood);

@@ -18,17 +18,13 @@ namespace controlspace {
 
 // What is done with the control nodes of a tree, wherever they stand: once for all storages.
 
-/// The control nodes as a graph, and which node of the storage each of the graph's is.
-struct OrderedNodes {
-    NodeGraph graph;
-    std::vector<NodeIndex> order;  ///< none: they are numbered alike
-};
+/// The control nodes as a graph, and which node of the storage each of the graph's is; without an
+/// order they are numbered alike.
 template <class Node, class Storage>
-OrderedNodes ordered_nodes(const Topology<Node>& tree, const Storage& storage,
-                           Neighbourhood neighbourhood) {
+LeafGraph ordered_nodes(const Topology<Node>& tree, const Storage& storage,
+                        Neighbourhood neighbourhood) {
     if constexpr (nodes_per_leaf<Storage> == 1) {
-        LeafGraph leaves = leaf_graph(tree, neighbourhood);
-        return {std::move(leaves.graph), std::move(leaves.order)};
+        return leaf_graph(tree, neighbourhood);
     } else {
         return {vertex_graph(storage.corners(), storage.positions(), neighbourhood), {}};
     }
@@ -37,7 +33,7 @@ OrderedNodes ordered_nodes(const Topology<Node>& tree, const Storage& storage,
 template <class Node, class Storage>
 ControlNodes nodes_of_tree(const Topology<Node>& tree, const Storage& storage,
                            Neighbourhood neighbourhood) {
-    OrderedNodes nodes = ordered_nodes(tree, storage, neighbourhood);
+    LeafGraph nodes = ordered_nodes(tree, storage, neighbourhood);
     const std::span<const Metric> field = storage.metrics().field();
     std::vector<Metric> metrics(field.begin(), field.end());
     for (std::size_t i = 0; i < nodes.order.size(); ++i) metrics[i] = field[nodes.order[i]];
@@ -62,7 +58,7 @@ void assign_nodes(const Topology<Node>& tree, Storage& storage, std::span<const 
 template <class Node, class Storage>
 GradationReport grade_nodes(const Topology<Node>& tree, Storage& storage,
                             const GradationOptions& options) {
-    OrderedNodes nodes = ordered_nodes(tree, storage, neighbourhood_of(options));
+    LeafGraph nodes = ordered_nodes(tree, storage, neighbourhood_of(options));
     storage.metrics().forget_requested();
     const GradationReport report =
         grade(std::move(nodes.graph), {storage.metrics().field(), nodes.order}, options);

@@ -6,40 +6,27 @@
 
 namespace controlspace {
 
-/// Calls visit(leaf, box) for the leaves whose box, and all boxes above it, `keep(box)` accepts:
-/// neighbours on demand, in time that grows with the depth and not with the number of leaves.
+/// Calls visit(leaf, box) for the leaves below `part` whose box, and all boxes above it,
+/// `keep(box)` accepts: neighbours on demand, in time that grows with the depth and not with the
+/// number of leaves.
 template <class Node, class Keep, class Visit>
-class LeavesWhere {
-public:
-    LeavesWhere(const Topology<Node>& tree, const Keep& keep, Visit& visit)
-        : tree_(tree), keep_(keep), visit_(visit) {
-        look_into(tree.root(), tree.domain());
+void for_each_leaf_where(const Topology<Node>& tree, const TreePart& part, const Keep& keep,
+                         Visit&& visit) {
+    if (!keep(part.box)) return;
+    if (part.ref.is_leaf()) {
+        visit(LeafIndex{part.ref.index()}, part.box);
+        return;
     }
-
-private:
-    void look_into(Ref ref, const Box& box) {
-        if (!keep_(box)) return;
-        if (ref.is_leaf()) {
-            visit_(LeafIndex{ref.index()}, box);
-            return;
-        }
-        const Node& inner = tree_.node(ref);
-        const Subdivision subdivision = inner.subdivision(box);
-        for (int c = 0; c < Topology<Node>::arity; ++c) {
-            look_into(inner.children[static_cast<std::size_t>(c)], subdivision.child(c));
-        }
+    for (int c = 0; c < Node::arity; ++c) {
+        for_each_leaf_where(tree, tree.child(part, c), keep, visit);
     }
-
-    const Topology<Node>& tree_;
-    const Keep& keep_;
-    Visit& visit_;
-};
+}
 
 /// Leaves that touch the place `x`.
 template <class Node, class Visit>
 void for_each_leaf_at(const Topology<Node>& tree, const Point& x, Visit&& visit) {
-    const auto keep = [&](const Box& box) { return box.contains(x); };
-    LeavesWhere(tree, keep, visit);
+    for_each_leaf_where(
+        tree, {tree.root(), tree.domain()}, [&](const Box& box) { return box.contains(x); }, visit);
 }
 
 /// Leaves that overlap `box` or share a part of a face with it that has an area; with the
@@ -56,7 +43,7 @@ void for_each_leaf_around(const Topology<Node>& tree, const Box& box, Neighbourh
         }
         return overlaps >= least;
     };
-    LeavesWhere(tree, keep, visit);
+    for_each_leaf_where(tree, {tree.root(), tree.domain()}, keep, visit);
 }
 
 }  // namespace controlspace

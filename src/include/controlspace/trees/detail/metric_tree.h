@@ -10,7 +10,6 @@
 #include "controlspace/trees/detail/leaf_growth.h"
 #include "controlspace/trees/detail/met_sources.h"
 #include "controlspace/trees/detail/packed_tree.h"
-#include "controlspace/trees/detail/published_bytes.h"
 #include "controlspace/trees/detail/tree_changes.h"
 
 namespace controlspace {
@@ -64,14 +63,6 @@ public:
     }
 
     void finish() { Base::settle(); }
-
-    Footprint footprint() const {
-        Footprint footprint = Base::footprint();
-        footprint.bytes_published =
-            published_bytes({Node::arity == 8, nodes_per_leaf<Storage> > 1, topology_.leaves(),
-                             topology_.inner_nodes(), footprint.control_nodes});
-        return footprint;
-    }
 
     std::unique_ptr<ControlSpace> pack(Precision precision) const {
         return pack_tree(topology_, storage_, precision);

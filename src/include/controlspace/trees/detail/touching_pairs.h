@@ -10,43 +10,31 @@ template <class Node, class Visit>
 class TouchingPairs {
 public:
     TouchingPairs(const Topology<Node>& tree, Visit& visit) : tree_(tree), visit_(visit) {
-        within(Cell{tree.root(), tree.domain()});
+        within({tree.root(), tree.domain()});
     }
 
 private:
-    struct Cell {
-        Ref ref;
-        Box box;
-    };
-    using Children = std::array<Cell, Topology<Node>::arity>;
-
-    Children children(const Cell& cell) const {
-        const Node& node = tree_.node(cell.ref);
-        const Subdivision subdivision = node.subdivision(cell.box);
-        Children parts;
-        for (std::size_t c = 0; c < parts.size(); ++c) {
-            parts[c] = {node.children[c], subdivision.child(static_cast<int>(c))};
-        }
-        return parts;
-    }
-
-    void within(const Cell& cell) {
-        if (cell.ref.is_leaf()) return;
-        const Children parts = children(cell);
-        for (std::size_t c = 0; c < parts.size(); ++c) {
-            within(parts[c]);
-            for (std::size_t other = 0; other < c; ++other) between(parts[other], parts[c]);
+    void within(const TreePart& part) {
+        if (part.ref.is_leaf()) return;
+        for (int c = 0; c < Node::arity; ++c) {
+            const TreePart child = tree_.child(part, c);
+            within(child);
+            for (int other = 0; other < c; ++other) between(tree_.child(part, other), child);
         }
     }
 
-    void between(const Cell& a, const Cell& b) {
+    void between(const TreePart& a, const TreePart& b) {
         if (!touch(a.box, b.box)) return;
-        if (!a.ref.is_leaf()) {
-            for (const Cell& part : children(a)) between(part, b);
-        } else if (!b.ref.is_leaf()) {
-            for (const Cell& part : children(b)) between(a, part);
-        } else {
+        if (a.ref.is_leaf() && b.ref.is_leaf()) {
             visit_(LeafIndex{a.ref.index()}, LeafIndex{b.ref.index()});
+            return;
+        }
+        for (int c = 0; c < Node::arity; ++c) {
+            if (a.ref.is_leaf()) {
+                between(a, tree_.child(b, c));
+            } else {
+                between(tree_.child(a, c), b);
+            }
         }
     }
 
