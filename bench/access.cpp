@@ -44,7 +44,7 @@ const CatalogueEntry& entry_named(const std::string& id) {
 std::unique_ptr<ControlSpaceBuilder> as_fine_as_octree(const CatalogueEntry& grid,
                                                        const Work& work) {
     const int depth = graded(entry_named("K_oL"), work)->build()->footprint().depth;
-    const double voxel = bench_domain().edges().x() / static_cast<double>(1 << (depth - 1));
+    const double voxel = bench_domain().edges().x() / static_cast<double>(1 << depth);
     return graded(grid, work, SplitRule::middle, voxel);
 }
 
@@ -187,8 +187,8 @@ void time_batch(benchmark::State& state, std::size_t n, Answer&& answer) {
 void access(benchmark::State& state, const ControlSpace& space, const std::vector<Point>& x) {
     time_batch(state, x.size(), [&](std::vector<Metric>& out) { space.sample(x, out); });
     const Footprint f = space.footprint();
-    const auto each = static_cast<double>(f.leaves > 0 ? f.leaves : f.elements);
-    state.counters["elements"] = each;
+    const auto each = static_cast<double>(f.cells);
+    state.counters["cells"] = each;
     state.counters["payload"] = static_cast<double>(f.bytes_payload) / each;
     state.counters["topology"] = static_cast<double>(f.bytes_topology) / each;
     state.counters["auxiliary"] = static_cast<double>(f.bytes_auxiliary) / each;

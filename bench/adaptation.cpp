@@ -47,7 +47,7 @@ std::unique_ptr<ControlSpace> timed(benchmark::State& state, const CatalogueEntr
     }
     state.counters["cpu_ms"] = 1e3 * cpu / static_cast<double>(state.iterations());
     const Footprint footprint = space->footprint();
-    state.counters["leaves"] = static_cast<double>(footprint.leaves);
+    state.counters["leaves"] = static_cast<double>(footprint.cells);
     state.counters["megabytes"] = 1e-6 * static_cast<double>(footprint.bytes_total());
     return space;
 }

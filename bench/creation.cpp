@@ -59,7 +59,7 @@ void create(benchmark::State& state, const CatalogueEntry& entry, const Work& wo
         state.SetIterationTime(Seconds(graded - start).count());
         insertion += inserted - start;
         gradation += graded - inserted;
-        leaves = static_cast<double>(space->build()->footprint().leaves);
+        leaves = static_cast<double>(space->build()->footprint().cells);
     }
     const auto times = static_cast<double>(state.iterations());
     state.counters["insertion_ms"] = 1e3 * insertion.count() / times;

@@ -48,7 +48,7 @@ void grow(benchmark::State& state, const CatalogueEntry& entry, double n, bool f
         return access_time(*space, places(order, *space), 5).median_ns();
     };
     state.counters["sources"] = static_cast<double>(sources.size());
-    state.counters["leaves"] = static_cast<double>(space->footprint().leaves);
+    state.counters["leaves"] = static_cast<double>(space->footprint().cells);
     state.counters["ns_random"] = ns(Order::random);
     state.counters["ns_elements"] = ns(Order::elements);
 }

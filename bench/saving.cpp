@@ -32,7 +32,7 @@ const ControlSpaceBuilder& graded(const CatalogueEntry& entry) {
 
 void count(benchmark::State& state) {
     const auto space = load_control_space(file, tree_catalogue());
-    state.counters["leaves"] = static_cast<double>(space->footprint().leaves);
+    state.counters["leaves"] = static_cast<double>(space->footprint().cells);
     state.counters["file_MB"] = static_cast<double>(std::filesystem::file_size(file)) / 1e6;
     std::filesystem::remove(file);
 }

@@ -125,9 +125,8 @@ public:
     Footprint footprint() const override {
         const std::size_t count = sources_->all().size();
         Footprint footprint;
-        footprint.elements = 1;
+        footprint.cells = 1;
         footprint.control_nodes = count;
-        footprint.depth = 1;
         footprint.bytes_payload = cones_.bytes_payload();
         footprint.bytes_topology = cones_.bytes_topology();
         footprint.bytes_auxiliary = sources_->all().capacity() * sizeof(PointSource);

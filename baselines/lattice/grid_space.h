@@ -40,9 +40,8 @@ public:
 
     Footprint footprint() const override {
         Footprint footprint;
-        footprint.elements = static_cast<std::size_t>(stencil_.cells().prod());
+        footprint.cells = static_cast<std::size_t>(stencil_.cells().prod());
         footprint.control_nodes = stencil_.lattice().size();
-        footprint.depth = 1;
         footprint.remark = remark_;
         storage_.add_to(footprint);
         if (!later_) return footprint;

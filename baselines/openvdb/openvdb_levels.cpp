@@ -123,7 +123,7 @@ public:
 
     Footprint footprint() const {
         Footprint footprint;
-        footprint.elements = field_.voxels;
+        footprint.cells = field_.voxels;
         footprint.control_nodes = numbered().size();
         int finest = cells_.top();
         int coarsest = 0;
@@ -136,7 +136,7 @@ public:
         }
         footprint.bytes_topology = field_.bytes() - footprint.bytes_payload;
         if (requested_) footprint.bytes_auxiliary = requested_->bytes();
-        footprint.depth = coarsest - finest + 1;
+        footprint.depth = coarsest - finest;
         footprint.remark =
             fmt::format("voxels of {:.3g} to {:.3g}", cells_.edges(finest).maxCoeff(),
                         cells_.edges(coarsest).maxCoeff());

@@ -74,7 +74,7 @@ std::string options_text(const CatalogueEntry& entry, const SpaceOptions& o) {
     if (is_tree || entry.has<VoxelLevels>() || o.voxel == 0) add("tau", o.l_min);
     add("epsilon", o.tolerance);
     if (is_tree) add("maximum depth", entry.has<SplitRules>() ? o.kd_depth : o.octree_depth);
-    if (entry.order == 2) add("interpolation", name_of(o.quadratic_form));
+    if (entry.has<QuadraticLeaves>()) add("interpolation", name_of(o.quadratic_form));
     if (entry.has<KeptSources>()) add("g_r", o.ratio);
     if (entry.has<VoxelSize>() && o.voxel > 0) add("voxel", o.voxel);
     if (entry.has<VoxelLevels>()) add("voxel_factor", o.voxel_factor);
@@ -96,11 +96,10 @@ std::string space_info(const std::filesystem::path& file) {
     }
     text += fmt::format("  saved by     {}\n  domain       {}\n  options      {}\n", saved.saved_by,
                         to_string(saved.space->domain()), options_text(entry, recipe.options));
-    if (footprint.leaves > 0) {
-        text += fmt::format("  cells        {} leaves of {} tree nodes, at levels of up to {}",
-                            footprint.leaves, footprint.elements, footprint.depth - 1);
-    } else {
-        text += fmt::format("  cells        {}", footprint.elements);
+    text += fmt::format("  cells        {}", footprint.cells);
+    if (footprint.tree_nodes > 0) {
+        text += fmt::format(" leaves of {} tree nodes, at levels of up to {}", footprint.tree_nodes,
+                            footprint.depth);
     }
     if (!footprint.remark.empty()) text += "; " + footprint.remark;
     text += fmt::format(

@@ -1,7 +1,7 @@
 #include "cli/paper_reference.h"
 
 #include "controlspace/error.h"
-#include "controlspace/measure/reference.h"
+#include "controlspace/fields/surface_fields.h"
 #include "controlspace/study/workload.h"
 
 namespace controlspace {
@@ -9,8 +9,13 @@ namespace {
 
 std::shared_ptr<const ControlSpace> make(const Study&, const Case& c, const Workload& workload) {
     const SourcesChoice& s = c.sources;
-    return published_sphere_reference(s.radius, s.h * s.s_a, c.g_r,
-                                      workload.domain.half_diagonal());
+    const double length = s.h * s.s_a;
+    return sphere_field({.radius = s.radius,
+                         .lengths = {.across = length,
+                                     .along = length,
+                                     .growth = 2 * (c.g_r - 1) / (c.g_r + 1),
+                                     .largest = workload.domain.half_diagonal()}})
+        .field;
 }
 
 void require_isotropic_sphere(const SourcesChoice& sources) {

@@ -100,7 +100,7 @@ Accuracy accuracy(const ControlSpace& space, const Probes& probes) {
                 ++partial.coarser;
                 continue;
             }
-            // The ratio itself is dear for tensors: asked for where it may be the largest.
+            // The ratio itself is expensive for tensors: computed where it may be the largest.
             if (!is_within(value, partial.coarser_max, reference)) {
                 partial.coarser_max = std::max(partial.coarser_max, growth(value, reference));
             }

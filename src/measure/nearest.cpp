@@ -9,8 +9,8 @@
 namespace controlspace {
 namespace {
 
-/// A balanced kd-tree without nodes of its own: the middle of a range of `order_` is its root, what
-/// lies before it is on the low side.
+/// A balanced implicit kd-tree: the middle of a range of `order_` is its root, points before it are
+/// on the low side.
 class PointTree {
 public:
     explicit PointTree(std::span<const Point> points)
@@ -24,7 +24,7 @@ public:
     /// The points nearest to `x` but not there, ascending.
     void find(const Point& x, std::size_t most, Found& found) const {
         found.clear();
-        look_into(0, order_.size(), x, most, found);
+        search(0, order_.size(), x, most, found);
         std::sort_heap(found.begin(), found.end());
     }
 
@@ -49,8 +49,8 @@ private:
         build(middle + 1, last);
     }
 
-    void look_into(std::size_t first, std::size_t last, const Point& x, std::size_t most,
-                   Found& found) const {
+    void search(std::size_t first, std::size_t last, const Point& x, std::size_t most,
+                Found& found) const {
         if (first == last) return;
         const std::size_t middle = first + (last - first) / 2;
         const Point& p = points_[order_[middle]];
@@ -65,12 +65,11 @@ private:
             std::push_heap(found.begin(), found.end());
         }
         const double beyond = x[axes_[middle]] - p[axes_[middle]];
-        const auto look = [&](bool low) {
-            low ? look_into(first, middle, x, most, found)
-                : look_into(middle + 1, last, x, most, found);
+        const auto search_side = [&](bool low) {
+            low ? search(first, middle, x, most, found) : search(middle + 1, last, x, most, found);
         };
-        look(beyond < 0);
-        if (found.size() < most || beyond * beyond < found.front().first) look(beyond >= 0);
+        search_side(beyond < 0);
+        if (found.size() < most || beyond * beyond < found.front().first) search_side(beyond >= 0);
     }
 
     std::span<const Point> points_;

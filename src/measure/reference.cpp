@@ -11,7 +11,6 @@
 #include "cones/cone.h"
 #include "cones/cone_field.h"
 #include "controlspace/error.h"
-#include "controlspace/fields/surface_fields.h"
 #include "controlspace/gradation/grade.h"
 #include "controlspace/metric/intersection.h"
 
@@ -110,13 +109,6 @@ std::unique_ptr<ControlSpace> brute_force_reference(std::vector<PointSource> sou
                                                     const Metric& largest) {
     require_usable(sources, g, largest);
     return std::make_unique<BruteForceReference>(std::move(sources), g, largest);
-}
-
-std::shared_ptr<const ControlSpace> published_sphere_reference(double radius, double h, double g,
-                                                               double largest) {
-    require_valid(GradationOptions{.ratio = g});
-    return sphere_field({.radius = radius, .lengths = {h, h, 2 * (g - 1) / (g + 1), largest}})
-        .field;
 }
 
 }  // namespace controlspace

@@ -8,10 +8,10 @@
 
 namespace controlspace {
 
-/// What metrics ask for, at a glance.
+/// Summary of the lengths of metrics.
 struct LengthSummary {
     std::size_t count = 0;
-    std::size_t isotropic = 0;  ///< how many ask for the same length in every direction
+    std::size_t isotropic = 0;  ///< number of isotropic metrics
     double finest = 0;          ///< smallest length in any direction
     double coarsest = 0;        ///< largest length in any direction
     double mean = 0;            ///< mean over the metrics of their mean length
@@ -20,12 +20,12 @@ struct LengthSummary {
 
 LengthSummary summarise_lengths(std::span<const Metric> metrics);
 
-/// What sources ask for, and where.
+/// Summary of sources.
 struct SourceSummary : LengthSummary {
-    std::size_t contradictory = 0;  ///< how many lie where another one asks for something else
+    std::size_t contradictory = 0;  ///< number of sources at the position of a different one
     Box extent;                     ///< the smallest box around them
-    /// Largest gradation ratio, under the cone law, from a source to one of the six nearest that
-    /// are not at its very place: a field graded with less takes something off the sources.
+    /// Largest gradation ratio, under the cone law, from a source to one of the six nearest at
+    /// other positions: gradation with a smaller ratio shortens lengths of the sources.
     double gradation = 1;
 };
 

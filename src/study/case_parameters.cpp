@@ -31,7 +31,6 @@ template <class Capability>
 bool has(const CatalogueEntry& entry, const Case&) {
     return entry.has<Capability>();
 }
-bool is_quadratic(const CatalogueEntry& entry, const Case&) { return entry.order == 2; }
 bool is_octree(const CatalogueEntry& entry, const Case&) {
     return entry.has<SourceLeaves>() && !entry.has<SplitRules>();
 }
@@ -182,7 +181,7 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
         structure("octree_depth", "", "Deepest level of octrees, the root being 0", depth_if(false),
                   {14}, is_octree, {}, "max_depth"),
         structure("interpolation", "", "Interpolation in quadratic leaves (K_Li, K_oLi)",
-                  word<Case>(&Case::interpolation), {"corrected"}, is_quadratic,
+                  word<Case>(&Case::interpolation), {"corrected"}, has<QuadraticLeaves>,
                   [](const Case& c) {
                       const bool published = c.interpolation == QuadraticForm::published;
                       return published ? "published interpolation" : "";

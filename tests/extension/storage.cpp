@@ -73,7 +73,7 @@ void check_adaptation(const CatalogueEntry& row, const CatalogueEntry& constant,
     const auto adapted = builder->build();
     const auto of_constant = constant.make(options);
     check(of_constant->adapt(goal).met, "so do constant leaves");
-    check(2 * adapted->footprint().leaves < of_constant->build()->footprint().leaves,
+    check(2 * adapted->footprint().cells < of_constant->build()->footprint().cells,
           "with less than half as many leaves");
     check_saving(*adapted);
 

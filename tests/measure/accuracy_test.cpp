@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "controlspace/error.h"
+#include "controlspace/fields/surface_fields.h"
 #include "controlspace/measure/access_time.h"
 #include "measure/fake_spaces.h"
 #include "metric/draw.h"
@@ -71,7 +72,7 @@ TEST_CASE("Cell centres need a sane number of cells") {
 }
 
 TEST_CASE("Probes carry the reference's own values") {
-    const auto field = published_sphere_reference(0.8, 0.03, 1.25, 2);
+    const auto field = sphere_field({}).field;
     const Probes probes = make_probes(*field, cell_centres(cube, 3));
     REQUIRE(probes.reference.size() == 27);
     for (std::size_t i = 0; i < 27; ++i) {
@@ -120,7 +121,7 @@ TEST_CASE("The first of several worst places is reported") {
 }
 
 TEST_CASE("Accuracy does not depend on the number of threads") {
-    const auto field = published_sphere_reference(0.8, 0.03, 1.25, 2);
+    const auto field = sphere_field({}).field;
     const Probes probes = make_probes(*field, random_points(cube, 50000, 5));
     const FunctionSpace space([](const Point& p) {
         return Metric{0.1 + p.squaredNorm(), 0.2, 0.3 + p.x() * p.x(), 0.01, 0.02, 0.03};

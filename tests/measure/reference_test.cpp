@@ -262,15 +262,6 @@ TEST_CASE("Answers do not depend on the number of threads or on the batch") {
     for (std::size_t i = 0; i < 20; ++i) CHECK(at(*field, points[i]) == many[i]);
 }
 
-TEST_CASE("The published field of a sphere") {
-    const auto field = published_sphere_reference(0.8, 0.03, 1.25, 1.7320508);
-    const double slope = 2 * 0.25 / 2.25;
-    CHECK(at(*field, Point(0.8, 0, 0)) == Metric::isotropic(0.03));
-    CHECK(at(*field, Point::Zero()).xx == Approx(0.03 + slope * 0.8));
-    CHECK(at(*field, Point(0, -0.6, 0.8)).xx == Approx(0.03 + slope * 0.2));
-    CHECK(at(*field, Point(100, 0, 0)) == Metric::isotropic(1.7320508));
-}
-
 TEST_CASE("What no reference can be made of is named") {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double infinity = std::numeric_limits<double>::infinity();
@@ -290,8 +281,4 @@ TEST_CASE("What no reference can be made of is named") {
         CHECK_THROWS_WITH(make({good, good, {Point::Zero(), {1, 1, 1, 2, 0, 0}}}, 1.25, wide),
                           Catch::Contains("source 2") && Catch::Contains("positive definite"));
     }
-    CHECK_THROWS_AS(published_sphere_reference(0.8, 0.03, 0.5, 1), InputError);
-    CHECK_THROWS_AS(published_sphere_reference(0.8, 0, 1.25, 1), InputError);
-    CHECK_THROWS_AS(published_sphere_reference(-1, 0.03, 1.25, 1), InputError);
-    CHECK_THROWS_AS(published_sphere_reference(0.8, 0.03, 1.25, nan), InputError);
 }

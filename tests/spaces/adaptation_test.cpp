@@ -87,8 +87,8 @@ CASE_OF_EACH(
             CHECK(report.reached <= target);
             CHECK(report.shortfall.empty());
             CHECK(share_beyond(target, *space, *field) <= 2e-4);
-            CHECK(space->footprint().leaves >= leaves);
-            leaves = space->footprint().leaves;
+            CHECK(space->footprint().cells >= leaves);
+            leaves = space->footprint().cells;
         }
     }
 }
@@ -160,7 +160,7 @@ CASE_OF_EACH(entry, all_trees(),
 CASE_OF_EACH(entry, all_trees(), "without sources the root is enough") {
     const auto space = editable(entry.make({.domain = domain}));
     CHECK(space->adapt({{}, nullptr, g, 0.1}).reached < 1e-12);
-    CHECK(space->footprint().leaves == 1);
+    CHECK(space->footprint().cells == 1);
 }
 
 CASE_OF_EACH(
@@ -174,7 +174,7 @@ CASE_OF_EACH(
     // Sources alone make grids in levels finer.
     CHECK((keeps_it || entry.has<VoxelLevels>()));
     if (entry.id == "K_V" || entry.id == "K_oV" || entry.family == "anchored") {
-        CHECK(space->footprint().leaves == 1);
+        CHECK(space->footprint().cells == 1);
         CHECK(report.reached < 1e-12);
     }
 }
@@ -206,7 +206,7 @@ TEST_CASE("a target out of reach is told, with what was reached") {
         CHECK_FALSE(report.met);
         CHECK(report.reached > 0.1);
         CHECK(report.shortfall.find("raise target_delta or the depth") != std::string::npos);
-        CHECK(space->footprint().leaves == 64);
+        CHECK(space->footprint().cells == 64);
     }
     for (const CatalogueEntry& entry : structures()) {
         if (entry.id != "uniform-nearest") continue;

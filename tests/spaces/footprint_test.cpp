@@ -95,7 +95,7 @@ CASE_OF_EACH(entry, tree_catalogue(), "the memory cap holds for gradation too") 
             space.reset();
         }
     }
-    CAPTURE(cap, space->footprint().leaves, peak_bytes() - before);
+    CAPTURE(cap, space->footprint().cells, peak_bytes() - before);
     CHECK(peak_bytes() - before < cap);
     CHECK(peak_bytes() - before > cap / 4);
 }

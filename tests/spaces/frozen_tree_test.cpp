@@ -138,8 +138,8 @@ CASE_OF_EACH(tree, trees(),
         const Footprint footprint = frozen->footprint();
         CHECK(footprint.bytes_total() <= allocated);
         CHECK(footprint.bytes_total() + 1024 >= allocated);
-        CHECK(footprint.leaves == full.leaves);
-        CHECK(footprint.elements == full.elements);
+        CHECK(footprint.cells == full.cells);
+        CHECK(footprint.tree_nodes == full.tree_nodes);
         CHECK(footprint.depth == full.depth);
         CHECK(footprint.control_nodes == full.control_nodes);
         CHECK(footprint.bytes_payload ==
@@ -167,7 +167,7 @@ TEST_CASE("trees with more planes than 16 bits can number are frozen too") {
     const auto space = editable(kd_vertices.make({.domain = domain, .split = SplitRule::golden}));
     space->insert(sources);
     // Hardly two cuts stand on one plane.
-    REQUIRE(space->footprint().leaves > 3 * 80000);
+    REQUIRE(space->footprint().cells > 3 * 80000);
     const auto frozen = space->compact(Precision::doubles);
     const std::vector<Point> x = places();
     CHECK(checksum(answers(*frozen, x)) == checksum(answers(*space, x)));

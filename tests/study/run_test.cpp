@@ -257,7 +257,7 @@ TEST_CASE("a study takes rows of measures and parameters from outside") {
     std::vector<Measure> more(measures().begin(), measures().end());
     more.push_back({"nodes_per_cell", "", [](const Finished& f) -> MeasuredValue {
                         return static_cast<double>(f.footprint.control_nodes) /
-                               static_cast<double>(f.footprint.leaves);
+                               static_cast<double>(f.footprint.cells);
                     }});
     std::vector<CaseParameter> parameters(case_parameters().begin(), case_parameters().end());
     CaseParameter stretch{{"stretch", "", "factor of l_min", other_number("stretch", positive)}};

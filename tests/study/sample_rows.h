@@ -26,14 +26,13 @@ inline Finished sample_finished(const Case& setting) {
                   .gradation = {.operations = 105, .largest_ratio_left = 1.2499},
                   .remark = "a remark, with \"quotes\"",
                   .shortfall = ""};
-    f.footprint = {.elements = 102,
-                   .leaves = 103,
+    f.footprint = {.tree_nodes = 102,
+                   .cells = 103,
                    .control_nodes = 104,
-                   .depth = 22,
+                   .depth = 21,
                    .bytes_payload = 1'000'000,
                    .bytes_topology = 200'000,
                    .bytes_auxiliary = 30'000,
-                   .bytes_published = {},
                    .remark = ""};
     f.access_random = {.samples_ns = {52, 50, 51}, .checksum = 0xff00000000000001};
     f.access_grid = {.samples_ns = {12, 10, 11}, .checksum = 2};

@@ -5,8 +5,10 @@
 namespace controlspace {
 
 CatalogueEntry kd_quadratic() {
-    return tree_row<KdNode, QuadraticValues>(
+    CatalogueEntry row = tree_row<KdNode, QuadraticValues>(
         "K_Li", "kd-tree, quadratic from a leaf and its face neighbours");
+    row.capabilities.push_back(QuadraticLeaves());
+    return row;
 }
 
 }  // namespace controlspace

@@ -8,6 +8,7 @@ CatalogueEntry octree_quadratic() {
     CatalogueEntry row = tree_row<OctreeNode, QuadraticValues>(
         "K_oLi", "octree, quadratic from a leaf and its face neighbours");
     row.family = "further";
+    row.capabilities.push_back(QuadraticLeaves());
     return row;
 }
 

@@ -29,17 +29,17 @@ struct AccessTime {
     double median_ns() const { return quartile(samples_ns, 2); }
 };
 
-/// Times `sample` of several structures on the same batch of points in turns, so that what else
-/// the machine does affects all of them alike: in each of the `repeats` rounds each structure
-/// answers the batch once untimed, which warms the caches, and then as often as it takes to spend
-/// `shortest_s` in it, which gives one sample. The clock is read twice a run (some 50 ns), so the
-/// batch should have a thousand points or more. Throws std::logic_error if a structure answers
-/// otherwise than the first time, InputError for no points or no repeats.
+/// Times `sample` of several structures on the same batch of points in turns, so that other load
+/// of the machine affects all of them alike. In each of the `repeats` rounds each structure answers
+/// the batch once untimed, which warms the caches, and then until `shortest_s` have passed, which
+/// gives one sample. The clock is read twice a run (about 50 ns), so the batch should have at least
+/// a thousand points. Throws std::logic_error if answers differ from the first ones, InputError for
+/// no points or no repeats.
 std::vector<AccessTime> access_times(std::span<const ControlSpace* const> spaces,
                                      std::span<const Point> points, int repeats,
                                      double shortest_s = 0.005);
 
-/// The same of one structure.
+/// The same for one structure.
 AccessTime access_time(const ControlSpace& space, std::span<const Point> points, int repeats,
                        double shortest_s = 0.005);
 

@@ -26,9 +26,9 @@ Probes make_probes(const ControlSpace& field, std::vector<Point> points);
 /// than this fraction. Beyond rounding, and far below the scatter of a mesh's edge lengths.
 constexpr double coarser_tolerance = 0.01;
 
-/// Non-conformity δ between a structure and its reference over a set of points; and, since δ is
-/// symmetric, the dangerous errors separately: lengths larger than those of the reference. Where
-/// the structure's answer is not positive definite, all errors are infinite.
+/// Non-conformity δ between a structure and its reference over a set of points; since δ is
+/// symmetric, lengths larger than those of the reference are reported separately. Where the
+/// structure's answer is not positive definite, all errors are infinite.
 struct Accuracy {
     double max = 0;
     double mean = 0;

@@ -14,11 +14,11 @@ namespace controlspace {
 /// order of their smallest lengths at p, ascending, and of their indices where equal: the
 /// intersection of three or more tensors depends on the order.
 ///
-/// A query takes microseconds for isotropic sources, whatever their number. For anisotropic ones it
-/// takes what the definition asks for: about one source in thirty of a thin-layered sphere really
-/// shortens the metric at a place, each by its own small amount (a quarter of a millisecond a query
-/// for 36186 sources). A `tolerance` t above 0 omits those that would shorten it by less than that
-/// fraction; the non-conformity to the exact field was at most 2.3 t^2 in all fields tested.
+/// A query takes microseconds for isotropic sources, whatever their number. The time for
+/// anisotropic ones follows from the definition: about one source in thirty of a thin-layered
+/// sphere shortens the metric at a point, each by a small amount (0.25 ms a query for 36186
+/// sources). A `tolerance` t above 0 omits those that would shorten it by less than that fraction;
+/// the non-conformity to the exact field was at most 2.3 t^2 in all fields tested.
 ///
 /// Throws InputError, naming the source by its index (0-based), for a position that is not finite
 /// or a metric that is not positive definite; for a gradation ratio g < 1 or not finite; for such a
@@ -29,11 +29,5 @@ std::unique_ptr<ControlSpace> exact_reference(std::vector<PointSource> sources, 
 /// The same field by intersecting with every source, without a search: the oracle of the tests.
 std::unique_ptr<ControlSpace> brute_force_reference(std::vector<PointSource> sources, double g,
                                                     const Metric& largest);
-
-/// What the paper's Table 4 was measured against, for spheres around the origin: the isotropic
-/// field h(p) = min(largest, h + s ||p| - radius|), s = 2 (g-1) / (g+1).
-/// Throws InputError for lengths that are not positive or finite, and for g as above.
-std::shared_ptr<const ControlSpace> published_sphere_reference(double radius, double h, double g,
-                                                               double largest);
 
 }  // namespace controlspace

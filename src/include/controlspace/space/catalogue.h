@@ -27,6 +27,8 @@ struct MetricNodes {
 };
 /// Keeps sources and answers their cones: ratio.
 struct KeptSources {};
+/// Interpolates in a leaf over its neighbours: quadratic_form.
+struct QuadraticLeaves {};
 /// Has compact forms: BuildOptions::precision.
 struct CompactForm {};
 /// A grid: voxel.
@@ -36,8 +38,8 @@ struct VoxelLevels {};
 /// Joins voxels that are alike: prune_delta.
 struct Pruning {};
 
-using Capability = std::variant<SourceLeaves, SplitRules, MetricNodes, KeptSources, CompactForm,
-                                VoxelSize, VoxelLevels, Pruning>;
+using Capability = std::variant<SourceLeaves, SplitRules, MetricNodes, KeptSources, QuadraticLeaves,
+                                CompactForm, VoxelSize, VoxelLevels, Pruning>;
 
 /// One structure of the study.
 struct CatalogueEntry {

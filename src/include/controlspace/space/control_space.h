@@ -13,16 +13,14 @@ namespace controlspace {
 /// What a structure consists of and what it holds in memory, in bytes that are really allocated
 /// (capacities, not sizes). The object itself and the allocator's own overhead are not counted.
 struct Footprint {
-    std::size_t elements = 0;         ///< leaves and inner nodes of a tree; cells of a grid
-    std::size_t leaves = 0;           ///< 0 where the structure has none
-    std::size_t control_nodes = 0;    ///< places that carry a metric
-    int depth = 0;                    ///< levels, the root being level 1; 1 for a grid
+    std::size_t tree_nodes = 0;       ///< leaves and inner nodes; 0 without a tree
+    std::size_t cells = 0;            ///< leaves of a tree, or cells of a grid
+    std::size_t control_nodes = 0;    ///< points that carry a metric
+    int depth = 0;                    ///< deepest level, that of the root or coarsest cells being 0
     std::size_t bytes_payload = 0;    ///< the metrics
-    std::size_t bytes_topology = 0;   ///< what finds them
-    std::size_t bytes_auxiliary = 0;  ///< what only speeds something up, or serves insertion alone
-    /// Bytes as the paper's Table 1 counts them (see published_bytes); none outside its structures.
-    std::optional<std::size_t> bytes_published;
-    /// What the structure had to give up, or nothing: "512^3; 1024^3 would need 51 GB".
+    std::size_t bytes_topology = 0;   ///< tree nodes, or indices: what leads to the metrics
+    std::size_t bytes_auxiliary = 0;  ///< what only accelerates, or serves insertion alone
+    /// A limitation of what was built, or empty: "512^3; 1024^3 would need 51 GB".
     std::string remark;
 
     std::size_t bytes_total() const { return bytes_payload + bytes_topology + bytes_auxiliary; }

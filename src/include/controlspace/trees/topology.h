@@ -84,9 +84,9 @@ public:
     std::size_t bytes_of_jumps() const { return jumps_.bytes(); }
     /// Enters what it consists of, and the bytes that it takes.
     void describe(Footprint& footprint) const {
-        footprint.leaves = leaves();
-        footprint.elements = leaves() + inner_nodes();
-        footprint.depth = deepest_ + 1;
+        footprint.tree_nodes = leaves() + inner_nodes();
+        footprint.cells = leaves();
+        footprint.depth = deepest_;
         footprint.bytes_topology = nodes_.capacity() * sizeof(Node);
         footprint.bytes_auxiliary = bytes_of_jumps();
     }
