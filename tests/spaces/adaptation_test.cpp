@@ -180,7 +180,7 @@ CASE_OF_EACH(
 }
 
 CASE_OF_EACH(entry, all_trees(),
-             "mixture: sources and a continuous one, each where it is smaller; insertion goes on") {
+             "mixture: sources and a continuous one, each where it is smaller, insertion goes on") {
     const auto ramp = std::make_shared<Ramp>();
     const PointSource source{Point(0.5, 0.2, 0.1), Metric::isotropic(0.02)};
     const PointSource later{Point(-0.4, -0.3, 0.6), Metric::isotropic(0.03)};

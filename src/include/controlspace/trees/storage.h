@@ -48,9 +48,9 @@ namespace controlspace {
 //   fit(leaf, field)       sets the node and the data of a leaf (LeafBox) to a field
 //                          (ControlSpace), for adaptation; called for several leaves at the same
 //                          time. Without it the nodes are set to the field.
-//   lower(place, metric)   intersects the metrics of a leaf with a source's, where that is more
-//   than
-//                          NodeMetrics::lower: at the source, the field must not be longer after it
+//   lower(place, metric)   intersects the metrics of a leaf with a source's, where
+//                          NodeMetrics::lower does not do: at the source, the field must not be
+//                          longer after it
 //   assigned()             metrics were set from outside
 //   graded(ratio)          metrics were graded with this ratio, or fitted to a field of it
 //   prefetch(leaf)         prefetches what value_in reads first
@@ -59,8 +59,7 @@ namespace controlspace {
 //   prepare(tree)          makes queries faster until a leaf is cut; they may come without it
 //   pack(tree, precision)  the compact form. Required for eight nodes a leaf.
 //   loaded(tree, state)    checks what was loaded, and makes what is not in files. Required where
-//   an
-//                          array has not an entry for each leaf.
+//                          an array does not have one entry for each leaf.
 //   describe(footprint), shrink_to_fit()
 //                          where not all memory is in metrics() and data()
 
@@ -68,12 +67,6 @@ namespace controlspace {
 template <class Storage>
 inline constexpr std::size_t nodes_per_leaf =
     std::tuple_size_v<std::remove_cvref_t<decltype(std::declval<const Storage&>().nodes_of(0))>>;
-
-template <class Storage>
-consteval bool nodes_at_vertices() {
-    if constexpr (requires(const Storage& s) { s.nodes_of(0); }) return nodes_per_leaf<Storage> > 1;
-    return false;
-}
 
 /// Whether a storage lists data beside its metrics.
 template <class Storage>

@@ -9,7 +9,6 @@
 #include "controlspace/space/space_options.h"
 #include "controlspace/trees/detail/adapt_tree.h"
 #include "controlspace/trees/detail/adjacency.h"
-#include "controlspace/trees/detail/published_bytes.h"
 #include "controlspace/trees/detail/sample_leaves.h"
 #include "controlspace/trees/detail/source_cuts.h"
 #include "controlspace/trees/detail/storage_state.h"
@@ -38,8 +37,6 @@ public:
         Footprint footprint;
         topology_.describe(footprint);
         describe_storage(storage_, footprint);
-        footprint.bytes_published =
-            published_bytes(Node::is_octant, footprint, nodes_at_vertices<Storage>());
         return footprint;
     }
 
