@@ -232,12 +232,13 @@ void CoreSet::drop(const InteriorPoint& solution) {
         tensors.col(static_cast<Eigen::Index>(k)) << l.xx, l.yy, l.zz, l.xy, l.xz, l.yz;
     }
     while (size_ > needed) {
-        Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, room, 1> change =
-            tensors.fullPivLu().kernel().col(0);
+        // Zeros fill it up: its greatest coefficient is positive.
+        Eigen::Matrix<double, room, 1> change = Eigen::Matrix<double, room, 1>::Zero();
+        change.head(tensors.cols()) = tensors.fullPivLu().kernel().col(0);
         if (change.maxCoeff() <= 0) change = -change;
         Eigen::Index last = 0;
         const double most = change.maxCoeff(&last);
-        for (Eigen::Index k = 0; k < change.size(); ++k) tensors.col(k) *= 1 - change[k] / most;
+        for (Eigen::Index k = 0; k < tensors.cols(); ++k) tensors.col(k) *= 1 - change[k] / most;
         const auto gone = static_cast<std::size_t>(last);
         --size_;
         for (std::size_t k = gone; k < size_; ++k) {
