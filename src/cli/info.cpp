@@ -79,7 +79,7 @@ std::string options_text(const CatalogueEntry& entry, const SpaceOptions& o) {
     if (entry.has<VoxelSize>() && o.voxel > 0) add("voxel", o.voxel);
     if (entry.has<VoxelLevels>()) add("voxel_factor", o.voxel_factor);
     if (entry.has<Pruning>()) add("prune_delta", o.prune_delta);
-    if (o.takes_later_sources) text += ", takes later sources";
+    if (o.takes_later_sources) text += ", accepts later sources";
     return text;
 }
 
@@ -104,8 +104,7 @@ std::string space_info(const std::filesystem::path& file) {
     if (!footprint.remark.empty()) text += "; " + footprint.remark;
     text += fmt::format(
         "\n  memory       {:.3g} MB: metrics {:.3g}, topology {:.3g}, auxiliary {:.3g}; {:.3g} MB "
-        "in the "
-        "file\n",
+        "in the file\n",
         mb(footprint.bytes_total()), mb(footprint.bytes_payload), mb(footprint.bytes_topology),
         mb(footprint.bytes_auxiliary), mb(std::filesystem::file_size(file)));
     const auto nodes = control_nodes(*saved.space, Neighbourhood::faces);

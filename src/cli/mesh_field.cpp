@@ -82,8 +82,8 @@ TetMesh make_mesh(const Box& domain, const ControlSpace& field, const MeshSettin
     row.query_seconds = run.query_seconds;
     if (run.anisotropic) {
         spdlog::warn(
-            "{}: the field is anisotropic, and Gmsh takes its smallest lengths: --mesher mmg "
-            "follows it",
+            "{}: the field is anisotropic, and Gmsh uses only its smallest lengths: use --mesher "
+            "mmg",
             mesh_label(row));
     }
     return std::move(run.mesh);

@@ -8,8 +8,8 @@
 namespace controlspace {
 
 /// The field that the paper's Table 4 was measured against, for isotropic sources of a sphere
-/// around the origin: h(p) = min(H, h + s ||p| - radius|), s = 2 (g_r - 1) / (g_r + 1), H half of the
-/// domain's diagonal.
+/// around the origin: h(p) = min(H, h + s ||p| - radius|), s = 2 (g_r - 1) / (g_r + 1), where H is
+/// half of the domain's diagonal.
 const ReferenceKind& published_sphere();
 
 /// The parameters of cases in this program: those of the library, with that reference.

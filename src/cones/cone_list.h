@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "metric/tensor_lanes.h"
 #include "controlspace/geometry/point.h"
+#include "metric/tensor_lanes.h"
 
 namespace controlspace {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cones/cone_tree.h"
-#include "metric/tensor_lanes.h"
 #include "controlspace/sources/point_source.h"
+#include "metric/tensor_lanes.h"
 
 namespace controlspace {
 

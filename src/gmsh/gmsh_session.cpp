@@ -49,7 +49,7 @@ void in_gmsh_session(int threads, const std::function<void()>& action) {
     } catch (int status) {
         fail("status " + std::to_string(status));
     } catch (const std::length_error&) {
-        fail("it was asked for more than memory holds");
+        fail("it needs more memory than there is");
     }
 }
 

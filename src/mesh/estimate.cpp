@@ -28,8 +28,8 @@ void require_few_tets(const Box& domain, const ControlSpace& field, double most)
     const double tets = estimated_tets(domain, field);
     if (tets <= most) return;
     throw InputError(
-        fmt::format("the field asks for some {:.2g} tetrahedra, more than {:.2g}: ask "
-                    "for larger lengths, or allow more",
+        fmt::format("the field requests about {:.2g} tetrahedra, more than {:.2g}: "
+                    "request larger lengths, or raise the limit",
                     tets, most));
 }
 

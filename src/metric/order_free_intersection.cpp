@@ -316,7 +316,8 @@ OrderFreeIntersection order_free_intersection(std::span<const Metric> metrics, d
         }
         if (core.size() == metrics.size()) return made_smaller(core, solution, 1, steps);
         const Excess worst = worst_excess(metrics, solution.factor());
-        if (solution.gap() + 3 * std::log(worst.growth) <= tolerance || core.has(worst.index)) {
+        if (worst.growth <= 1 || solution.gap() + 3 * std::log(worst.growth) <= tolerance ||
+            core.has(worst.index)) {
             return made_smaller(core, solution, worst.growth, steps);
         }
         if (core.is_full()) core.drop(solution);

@@ -100,7 +100,7 @@ std::string_view checked_body(std::string_view bytes, const std::string& name) {
         fail("is altered (its order of bytes): copy it again, or save the control space again");
     }
     if (header.version > control_space_file_version) {
-        fail(fmt::format("has format version {}, this program reads up to {}: take a newer one",
+        fail(fmt::format("has format version {}, this program reads up to {}: use a newer one",
                          header.version, control_space_file_version));
     }
     if (header.version < control_space_file_version) {
@@ -175,8 +175,8 @@ SavedControlSpace open_control_space(const std::filesystem::path& file,
     const CatalogueEntry* entry = find_entry(structures, structure);
     if (entry == nullptr) {
         throw InputError(fmt::format(
-            "{} holds the structure {}, which is not known here: take a build that has it", name,
-            quote(structure)));
+            "{} contains the structure {}, which this program does not have: use one that has it",
+            name, quote(structure)));
     }
     saved.recipe.structure = entry->id;
     if (state.has("compact.precision")) {
@@ -198,7 +198,7 @@ std::unique_ptr<ControlSpaceBuilder> load_builder(const std::filesystem::path& f
     auto builder = open_control_space(file, structures).builder;
     if (!builder) {
         throw InputError(file.string() +
-                         " holds a compact form, which is only read: save its builder");
+                         " holds a compact form, which is read-only: save its builder");
     }
     return builder;
 }

@@ -42,7 +42,7 @@ std::string mesh_json(const Provenance& provenance, const Study& study,
 /// "K_L s_L", or "exact".
 std::string mesh_label(const MeshRow& row);
 
-/// What was asked for; of a control space that was saved, its file.
+/// The requested setting; of a saved control space, its file.
 std::string mesh_setting(const MeshRow& row);
 
 }  // namespace controlspace

@@ -178,9 +178,9 @@ std::vector<Parameter<Study>> table() {
     return {
         {"name", "", "Name of the study, and of its folder of results", name(), Use::results},
         {"sources", "",
-         "sphere, planes, or none, for a field alone; or a file of sources: .csv, a pipe of such, "
-         ".mesh or .meshb beside .sol or .solb, .pos, .msh, .vtu or .vtp; or a surface: .stl, "
-         ".obj, .ply, .off or in a .vdb",
+         "sphere or planes (sampled); none (only a field); a file of points with metrics: .csv "
+         "(also from a pipe), .mesh or .meshb with .sol or .solb, .pos, .msh, .vtu or .vtp; or a "
+         "surface: .stl, .obj, .ply, .off or in a .vdb",
          sources()},
         {"centre", length, "x y z: centre of the sphere", point_of(of_sources(&Sources::centre)),
          making, sphere},

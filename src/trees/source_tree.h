@@ -51,9 +51,9 @@ public:
     }
 
     /// Finds the sources that govern the leaves; the law is always the cone law. Leaves governed by
-    /// three sources and more are cut, down to
-    /// l_min in their own metric. The field gets nowhere longer, if all is isotropic: a ratio
-    /// larger than before changes nothing, and what may govern a place in a leaf stays its anchor.
+    /// three sources and more are cut, down to l_min in their own metric. The field gets nowhere
+    /// longer, if all is isotropic: a ratio larger than before changes nothing, and what may govern
+    /// a place in a leaf stays its anchor.
     /// Without new sources or a smaller ratio there is nothing to do.
     GradationReport grade(const GradationOptions& options) {
         require_valid(options);

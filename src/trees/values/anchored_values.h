@@ -22,8 +22,7 @@ namespace controlspace {
 /// values passed from leaf to leaf add up along a path.
 ///
 /// Gradation finds the sources that govern each leaf, at its centre and its corners; the law is
-/// always the cone law. A continuous source is kept as it
-/// is and evaluated with the cones.
+/// always the cone law. A continuous source is kept as it is and evaluated with the cones.
 class AnchoredValues {
 public:
     static constexpr int order = 0;

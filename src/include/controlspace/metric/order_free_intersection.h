@@ -22,8 +22,8 @@ struct OrderFreeIntersection {
     /// H with H H^T = M^2, not symmetric in general. A nearby intersection starts from it.
     Eigen::Matrix3d factor;
     /// log det M^2 is at most this much below that of the largest metric (duality gap). Seen from
-    /// H, that is -log det(sum L_k) + sum tr(L_k H^-1 M_k^2 H^-T) - 3. Lengths may differ by its
-    /// root.
+    /// H, that is -log det(sum L_k) + sum tr(L_k H^-1 M_k^2 H^-T) - 3. Lengths are shorter than
+    /// those of the largest metric by a fraction of at most 2 sqrt(gap), nearly.
     double gap = 0;
     /// Newton steps made.
     int steps = 0;
@@ -49,12 +49,12 @@ struct OrderFreeIntersection {
 /// M is within every M_k up to the rounding of six numbers, and the duality gap is at most
 /// `tolerance`, 1e-10 or more, unless rounding prevents it at anisotropies near 1e6: see `gap`. A
 /// metric that is within all others is the answer to the bit. The bits do not depend on the order
-/// of the metrics, but on `near`: a factor of an answer that is likely to be close (the matrix of a
-/// metric will do), from which the search starts in place of from nothing.
+/// of the metrics, but on `near`, an initial guess: the regular factor of a metric that is likely
+/// to be close to the answer (its matrix will do).
 ///
 /// Allocates nothing. Throws InputError if there are no metrics, or if one is not positive
-/// definite, has numbers that are not finite, or an anisotropy above 1e7: six numbers do not hold
-/// the lengths of its square.
+/// definite, has numbers that are not finite, or where tr(M) tr(M^-1) / 9 exceeds 1e7 (anisotropies
+/// above 9e7, and none below 1e7): round-off then hides the shortest lengths of M^2.
 OrderFreeIntersection order_free_intersection(std::span<const Metric> metrics,
                                               double tolerance = 1e-6,
                                               const Eigen::Matrix3d* near = nullptr);

@@ -34,8 +34,8 @@ struct Recipe {
 /// None where it was not made by a CatalogueEntry.
 std::optional<Recipe> recipe_of(const ControlSpace& space);
 
-/// Writes a finished structure, which can be read again, or a builder, which can be gone on with
-/// too, to `file`: whole or not at all. Throws InputError where it was not made by a
+/// Writes a finished structure, or a builder, which can be continued after loading, to `file`:
+/// whole or not at all. Throws InputError where it was not made by a
 /// CatalogueEntry, where it keeps a continuous field, and where writing fails.
 void save_control_space(const std::filesystem::path& file, const ControlSpace& space);
 void save_control_space(const std::filesystem::path& file, const ControlSpaceBuilder& builder);
@@ -43,15 +43,15 @@ void save_control_space(const std::filesystem::path& file, const ControlSpaceBui
 /// What a file holds.
 struct SavedControlSpace {
     Recipe recipe;
-    std::string saved_by;                          ///< "controlspace 0.1.0, format 1"
+    std::string saved_by;                          ///< "controlspace 0.1.0, format 3"
     std::unique_ptr<ControlSpaceBuilder> builder;  ///< none of a compact form
     std::unique_ptr<ControlSpace> space;
 };
 
 /// The control space that was saved: it answers, takes sources and is graded as the first one
 /// would, to the last bit, in as much memory.
-/// Throws InputError, saying why, where the file is missing, no such file, of a newer version,
-/// truncated or altered, and where its structure is not among `structures`.
+/// Throws InputError with the reason if the file is missing, is not a control space, has another
+/// format version, is truncated or altered, or if its structure is not among `structures`.
 SavedControlSpace open_control_space(const std::filesystem::path& file,
                                      std::span<const CatalogueEntry> structures);
 /// The space alone, to be read.

@@ -39,9 +39,10 @@ struct SpaceOptions {
     /// field is the old one, lowered at the new sources. Costs a second set of metrics and room to
     /// grow.
     ///
-    /// Without it, later sources are held against the graded field, and gradation starts from that.
-    /// Structures that keep sources do so in any case: trees pass on sources from all leaves again,
-    /// which gives a field close to that of all at once; `direct` builds its search anew.
+    /// Without it, later sources are compared with the graded field, and gradation starts from
+    /// that. Structures that keep sources always accept later ones: trees search the governing
+    /// sources of all leaves again, which gives a field close to that of all at once; `direct`
+    /// builds its search anew.
     bool takes_later_sources = false;
     /// Cap on memory, gradation included: grids get coarser, trees that outgrow it throw
     /// InputError.

@@ -56,7 +56,7 @@ struct Case {
     std::optional<double> prune_delta = {};   ///< OpenVDB only; none: nothing is pruned
     /// Trees only: adapted to this δ in place of insertion and gradation; none: they are not.
     std::optional<double> target_delta = {};
-    /// Grids only: δ_R, or memory [MB], that voxels are chosen for (study/equal_setting.h).
+    /// Grids only: δ_R, or memory [MB], that voxels are chosen for.
     std::optional<double> equal_delta = {};
     std::optional<double> equal_memory = {};
     std::optional<QuadraticForm> interpolation = {};  ///< trees with quadratic leaves only

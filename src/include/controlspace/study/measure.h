@@ -45,8 +45,8 @@ struct Finished {
     double source_accuracy = 0;     ///< δ_S
     AccessTime access_random = {};  ///< at random places
     AccessTime access_grid = {};    ///< at the coarse probes, x fastest
-    std::size_t access_batch =
-        0;  ///< first case of its batch, whose structures were timed in turns
+    /// First case of its batch, whose structures were timed in turns.
+    std::size_t access_batch = 0;
 };
 
 /// A value in a row of results: none where the measure does not apply.
@@ -80,7 +80,7 @@ std::vector<Measure> sampled_measure(const std::string& key, const std::string& 
                                      std::function<std::vector<double>(const Finished&)> samples,
                                      const Column& column);
 
-/// Files of sampled fields, relative to the folder of results (see study/sampled_fields.h).
+/// Files of sampled fields, relative to the folder of results.
 struct FieldFiles {
     Box domain;
     double z = 0;                                                    ///< height of the slice

@@ -66,7 +66,7 @@ public:
     const std::filesystem::path& path() const { return folder_; }
     std::span<const Row> rows() const { return written_; }
 
-    /// Samples the field of a structure of the first setting (see sampled_fields.h), and enters the
+    /// Samples the field of a structure of the first setting, and enters the
     /// files in `row`. For StudyObserver::case_checked.
     void sample_fields(const Finished& finished, Row& row);
     /// Throws InputError, naming the file, if it cannot be written.
@@ -86,7 +86,7 @@ private:
     GrowingFile csv_;
 };
 
-/// All tables: measures for each setting, and the fronts (see pareto.h).
+/// All tables: measures for each setting, and the Pareto fronts.
 std::string tables_text(std::span<const Row> rows, const StudyRows& columns, bool markdown);
 
 /// One line: program, machine, command line and date of results.

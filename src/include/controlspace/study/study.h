@@ -70,7 +70,7 @@ struct Study {
     int creation_repeats = 3;
     int probe_grid = 30;        ///< n of the n^3 cell centres for δ_R, and for access in order
     int fine_probe_grid = 101;  ///< n of the finer ones
-    double reference_tolerance = 0;  ///< of the exact reference, see cones/cone_field.h
+    double reference_tolerance = 0;  ///< see exact_reference (measure/reference.h)
     std::string output;              ///< folder; empty: results/NAME-DATE-TIME
     std::vector<Run> runs{Run{}};
 };

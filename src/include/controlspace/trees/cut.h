@@ -119,8 +119,8 @@ struct alignas(64) OctreeNode {
     }
 };
 
-/// How the error of the interpolation in a leaf depends on the place, which shows adaptation along
-/// which axis to cut it.
+/// Where in a leaf the error of the interpolation is largest: adaptation chooses the axis of a cut
+/// by it.
 enum class CutBy {
     corners,      ///< constant in a leaf: it differs between opposite corners
     faces,        ///< exact at the centre: it is large at the faces across the axis
@@ -128,8 +128,8 @@ enum class CutBy {
     longest_edge  ///< it does not show
 };
 
-/// Compiles for what is a cut, the inner node of a tree (KdNode, OctreeNode): how a box is divided,
-/// into how many parts, and which of them holds a place. Says otherwise what it lacks.
+/// Compiles if `Node` is a cut, the inner node of a tree (KdNode, OctreeNode): how a box is
+/// divided, into how many parts, and which of them holds a place. Otherwise says what is missing.
 template <class Node>
 consteval void check_cut() {
     static_assert(
@@ -137,6 +137,12 @@ consteval void check_cut() {
             { Node::arity } -> std::convertible_to<int>;
         },
         "a cut needs a constant `int arity`, 2 or 8");
+    static_assert(
+        requires {
+            { Node::is_octant } -> std::convertible_to<bool>;
+            Node();
+        },
+        "a cut needs a constant `bool is_octant` and a default constructor");
     static_assert(
         requires(const Subdivision& s) { Node(s); },
         "a cut needs a constructor from `const Subdivision&`");

@@ -15,6 +15,7 @@ class LeafMetrics {
 public:
     static constexpr int order = 0;
     static constexpr CutBy cut_by = CutBy::corners;
+    using constant_leaves = LeafMetrics;
 
     explicit LeafMetrics(const SpaceOptions& options)
         : metrics_(1, largest_metric(options.domain)) {}

@@ -5,6 +5,8 @@
 #include <span>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
+#include <utility>
 
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/space_options.h"
@@ -38,6 +40,9 @@ namespace controlspace {
 //   follows_neighbours  true where the value in a leaf depends on its neighbours' metrics;
 //                       otherwise it may be left out
 //
+// and, where the metric in a leaf is just that of its node, and insertion and adaptation need not
+// go through the functions below, `using constant_leaves = ` the storage itself (LeafMetrics).
+//
 // Members beside the NodeMetrics are listed in
 //
 //   static void data(auto& self, auto&& visit) { visit("mine.slopes", self.slopes_); ... }
@@ -52,12 +57,14 @@ namespace controlspace {
 //                          NodeMetrics::lower does not do: at the source, the field must not be
 //                          longer after it
 //   assigned()             metrics were set from outside
-//   graded(ratio)          metrics were graded with this ratio, or fitted to a field of it
+//   graded(ratio)          all metrics were graded with this ratio, or fitted to a field of it
+//                          (incremental gradation sets metrics alone)
 //   prefetch(leaf)         prefetches what value_in reads first
 //   ceiling(leaf, x)       upper bound of the requested isotropic length at x, now and after all
 //                          later insertions; infinity where there is none
 //   prepare(tree)          makes queries faster until a leaf is cut; they may come without it
-//   pack(tree, precision)  the compact form. Required for eight nodes a leaf.
+//   pack(tree, precision)  the compact form, in which leaves have other numbers. Required for eight
+//                          nodes a leaf, and with `loaded` or `prepare`.
 //   loaded(tree, state)    checks what was loaded, and makes what is not in files. Required where
 //                          an array does not have one entry for each leaf.
 //   describe(footprint), shrink_to_fit()
@@ -73,6 +80,11 @@ template <class Storage>
 concept HasData = requires(Storage& s) {
     Storage::data(s, [](std::string_view, auto&) {});
 };
+
+/// Whether the metric in a leaf is just that of its node. Not inherited: a storage made of another
+/// may say more about its leaves.
+template <class Storage>
+concept HasConstantLeaves = std::is_same_v<typename Storage::constant_leaves, Storage>;
 
 template <class Storage>
 consteval bool follows_neighbours() {

@@ -47,8 +47,8 @@ public:
     /// false where the leaf must stay as it is.
     ///
     /// Leaves are sampled in their LeafPlaces; if `proved`, those that pass also at other places.
-    /// Leaves above the target are fitted anew or cut, and sampled again. Returns the
-    /// largest departure that is left.
+    /// Leaves above the target are fitted anew or cut, and sampled again. Returns the largest
+    /// departure that is left.
     template <class Split>
     double run(bool proved, Split&& split) {
         states_.assign(tree_.leaves(), LeafState::fresh);
@@ -116,7 +116,7 @@ private:
             in_parallel(leaves.size(), [&](std::size_t i) { storage_.fit(leaves[i], field_); });
         } else {
             // Constant leaves are set by the bounds of the field in them, where these are known.
-            if (Storage::cut_by == CutBy::corners && field_.has_ranges()) return;
+            if (HasConstantLeaves<Storage> && field_.has_ranges()) return;
             fit_nodes(storage_, leaves, field_);
         }
         if constexpr (requires { storage_.graded(field_.ratio()); }) {
@@ -182,7 +182,7 @@ private:
         places_used_ = first.back();
         for (const LeafBox& l : leaves) departures_[l.leaf] = {};
         const LeafJudge judge(tree_, storage_, field_.target());
-        if constexpr (Storage::cut_by == CutBy::corners) {
+        if constexpr (HasConstantLeaves<Storage>) {
             if (field_.has_ranges()) {
                 fit_to_ranges(leaves, judge);
                 return;

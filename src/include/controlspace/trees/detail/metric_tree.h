@@ -30,7 +30,7 @@ public:
         is_finished_ = options_.takes_later_sources;
         InsertionReport report;
         // A leaf is its own metric alone: leaves grow at the same time.
-        if constexpr (Storage::order == 0 && !HasData<Storage>) {
+        if constexpr (HasConstantLeaves<Storage>) {
             if (!Base::balanced_ && !metrics().keeps_requested()) report = insert_by_leaf(sources);
         }
         insert_in_turn(sources, report);

@@ -105,6 +105,14 @@ private:
     Values values_;
 };
 
+/// Whether a storage derives members from its metrics and data, for the leaves as they are
+/// numbered.
+template <class Storage, class Node>
+concept HasDerivedData = requires(Storage& s, const Topology<Node>& tree) {
+    s.prepare(tree);
+}
+|| requires(Storage& s, const Topology<Node>& tree, const StateReader& r) { s.loaded(tree, r); };
+
 /// The compact form of a tree.
 template <class Node, class Storage>
 std::unique_ptr<ControlSpace> pack_tree(const Topology<Node>& tree, const Storage& storage,
@@ -112,8 +120,9 @@ std::unique_ptr<ControlSpace> pack_tree(const Topology<Node>& tree, const Storag
     if constexpr (requires { storage.pack(tree, precision); }) {
         return storage.pack(tree, precision);
     } else {
-        static_assert(nodes_per_leaf<Storage> == 1,
-                      "a storage with eight nodes a leaf needs `pack(tree, precision)`");
+        static_assert(nodes_per_leaf<Storage> == 1 && !HasDerivedData<Storage, Node>,
+                      "a storage with eight nodes a leaf, `loaded` or `prepare` needs `pack(tree, "
+                      "precision)`");
         std::vector<LeafIndex> former;
         Topology<Node> ordered = tree.depth_first(former);
         return with_number(precision, [&]<class Number>(Number) -> std::unique_ptr<ControlSpace> {

@@ -17,8 +17,8 @@ public:
     /// `options` must outlive it.
     explicit SourceCuts(const SpaceOptions& options) : options_(options) {}
 
-    /// The cut of the leaf that holds the source; none where the leaf is short
-    /// enough, or among the smallest allowed.
+    /// The cut of the leaf that holds the source; none where the leaf is short enough, or among the
+    /// smallest allowed.
     std::optional<Subdivision> cut(const LeafPlace& place, const PointSource& source) const {
         if (place.level >= max_depth() || !is_too_long(source.metric, place.box)) return {};
         const Subdivision subdivision = subdivide(place.box, source);
