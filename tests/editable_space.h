@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -15,7 +16,7 @@
 namespace controlspace {
 
 /// A builder with what it has built last, which is built anew when it is read after a change: tests
-/// change and read in turn. For one thread.
+/// change and read in turn. Several threads may read at once.
 class EditableSpace final : public ControlSpace, public HasControlNodes {
 public:
     explicit EditableSpace(std::unique_ptr<ControlSpaceBuilder> builder)
@@ -23,6 +24,7 @@ public:
 
     ControlSpaceBuilder& builder() const { return *builder_; }
     const ControlSpace& built() const {
+        const std::scoped_lock lock(reading_);
         if (!space_) space_ = builder_->build();
         return *space_;
     }
@@ -58,6 +60,7 @@ private:
 
     std::unique_ptr<ControlSpaceBuilder> builder_;
     mutable std::unique_ptr<ControlSpace> space_;
+    mutable std::mutex reading_;
 };
 
 inline std::unique_ptr<EditableSpace> editable(std::unique_ptr<ControlSpaceBuilder> builder) {

@@ -6,7 +6,6 @@
 
 #include "cli/command.h"
 #include "cli/filled_space.h"
-#include "cli/input_study.h"
 #include "cli/options.h"
 #include "cli/progress.h"
 #include "cli/standard_output.h"
@@ -28,11 +27,10 @@ int build(const Build& job) {
         throw InputError(
             fmt::format("cannot save to {}: name a file that ends in .ctrl", output.string()));
     }
-    require_no_input(output, {job.input});
     FilledSpace filled;
     {
         StepProgress progress(job.quiet, output);
-        filled = filled_space(job.input, given_settings(job.given), progress.observer());
+        filled = filled_space(job.input, output, given_settings(job.given), progress.observer());
         progress.started("writing");
         if (filled.origin && filled.origin->c.frozen == Frozen::no) {
             save_control_space(output, *filled.builder);

@@ -8,7 +8,6 @@
 #include <memory>
 
 #include "cli/command.h"
-#include "cli/input_study.h"
 #include "cli/standard_output.h"
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
@@ -61,12 +60,12 @@ const FieldFormat& chosen_format(const ExportJob& job, const Options& options) {
 
 int export_field(const ExportJob& job, const Options& options, const std::string& command_line) {
     const FieldFormat& format = chosen_format(job, options);
-    require_no_input(job.output, {job.input});
     std::string what;
     FilledSpace filled;
     {
         StepProgress progress(job.quiet, job.output);
-        filled = filled_space(job.input, given_settings(job.given), progress.observer());
+        filled =
+            filled_space(job.input, job.output, given_settings(job.given), progress.observer());
         progress.started("sampling and writing");
         what = format.write({job.input, job.output, command_line, filled, progress});
     }

@@ -25,8 +25,9 @@ void require_no_settings(const std::filesystem::path& space, const GivenSettings
                                  option_name(given.front().first), space.string()));
 }
 
-FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings& given,
-                         const StudyObserver& observer) {
+FilledSpace filled_space(const std::filesystem::path& input, const std::filesystem::path& output,
+                         const GivenSettings& given, const StudyObserver& observer) {
+    require_no_input(output, {input});
     FilledSpace filled;
     if (observer.phase_started) observer.phase_started("reading");
     if (is_control_space(input)) {
@@ -39,6 +40,7 @@ FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings
         return filled;
     }
     Study study = study_of_input(input, given);
+    require_no_input(output, {study.sources.file, study.sources.field.file});
     filled.threads = limit_threads(study.threads);
     const Case c = only_case(study);
     Workload workload = make_workload(study, c.sources, file_readers());

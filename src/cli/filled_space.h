@@ -39,10 +39,10 @@ bool is_control_space(const std::filesystem::path& input);
 void require_no_settings(const std::filesystem::path& space, const GivenSettings& given);
 
 /// The one structure of `input` (see study_of_input) and the settings, made and graded; or loaded
-/// from a .ctrl. Throws InputError, also for a .ctrl with settings. `observer` is notified of the
-/// steps.
-FilledSpace filled_space(const std::filesystem::path& input, const GivenSettings& given,
-                         const StudyObserver& observer);
+/// from a .ctrl. Throws InputError, also for a .ctrl with settings, and if `output` is one of the
+/// files that are read. `observer` is notified of the steps.
+FilledSpace filled_space(const std::filesystem::path& input, const std::filesystem::path& output,
+                         const GivenSettings& given, const StudyObserver& observer);
 
 /// Writes the remark on the structure to standard error. Returns the exit status: some_failed where
 /// the requested target was missed.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/formats.h"
@@ -9,6 +11,7 @@
 #include "cli/paper_reference.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
+#include "controlspace/io/read_sources.h"
 
 namespace controlspace {
 
@@ -45,13 +48,34 @@ void require_set_voxels(const Case& c) {
     throw InputError("equal_delta and equal_memory are for compare: give the voxel that it found");
 }
 
+namespace {
+
+// The file, and the one that belongs to it.
+std::vector<std::filesystem::path> with_partner(const std::filesystem::path& file) {
+    constexpr std::pair<const char*, const char*> pairs[] = {{".mesh", ".sol"},
+                                                             {".meshb", ".solb"}};
+    const std::string ending = lower_case_extension(file);
+    std::filesystem::path partner = file;
+    for (const auto& [mesh, solution] : pairs) {
+        if (ending == mesh) return {file, partner.replace_extension(solution)};
+        if (ending == solution) return {file, partner.replace_extension(mesh)};
+    }
+    return {file};
+}
+
+}  // namespace
+
 void require_no_input(const std::filesystem::path& output,
                       const std::vector<std::filesystem::path>& inputs) {
-    for (const std::filesystem::path& input : inputs) {
+    for (const std::filesystem::path& written : with_partner(output)) {
         std::error_code none;  // terminals and pipes are read and written alike
-        if (!std::filesystem::is_regular_file(output, none)) continue;
-        if (!std::filesystem::equivalent(output, input, none)) continue;
-        throw InputError(fmt::format("{} is read: name another output", output.string()));
+        if (!std::filesystem::is_regular_file(written, none)) continue;
+        for (const std::filesystem::path& input : inputs) {
+            for (const std::filesystem::path& read : with_partner(input)) {
+                if (!std::filesystem::equivalent(written, read, none)) continue;
+                throw InputError(fmt::format("{} is read: name another output", written.string()));
+            }
+        }
     }
 }
 

@@ -22,7 +22,8 @@ Case only_case(const Study& study);
 std::vector<PointSource> sources_of_input(const std::filesystem::path& file,
                                           const GivenSettings& given);
 
-/// Throws InputError if `output` is one of the files that are read.
+/// Throws InputError if `output` is one of the files that are read. A Medit mesh and its solution
+/// are read and written together.
 void require_no_input(const std::filesystem::path& output,
                       const std::vector<std::filesystem::path>& inputs);
 

@@ -22,7 +22,7 @@ struct Query {
 };
 
 int query(const Query& job) {
-    require_no_input(job.output, {job.input, job.points});
+    require_no_input(job.output, {job.points});
     if (is_control_space(job.output)) {
         throw InputError(
             fmt::format("{}: metrics are written as .csv: name such a file", job.output.string()));
@@ -32,7 +32,8 @@ int query(const Query& job) {
     FilledSpace filled;
     {
         StepProgress progress(job.quiet, job.output);
-        filled = filled_space(job.input, given_settings(job.given), progress.observer());
+        filled =
+            filled_space(job.input, job.output, given_settings(job.given), progress.observer());
         progress.started("sampling");
         filled.space->sample(points, metrics);
     }

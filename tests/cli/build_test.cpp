@@ -100,6 +100,11 @@ TEST_CASE("what is read is not written over") {
     check_refused(box.run("query f.ctrl places.csv -o ./places.csv"), "places.csv is read");
     check_refused(box.run("export s.csv -o s.csv"), "s.csv is read");
     check_refused(box.run("convert s.csv s.csv"), "s.csv is read");
+    CHECK(box.run("convert s.csv part.mesh").status == 0);
+    check_refused(box.run("convert part.mesh part.sol"), "is read");
+    check_refused(box.run("export part.sol --mesh part.mesh -o part.sol"), "is read");
+    box.write("study.toml", "sources = \"s.csv\"\n");
+    check_refused(box.run("export study.toml -o s.csv"), "s.csv is read");
     CHECK(file_text(box / "f.ctrl") == saved);
     CHECK(file_text(box / "s.csv") == sources_csv);
     CHECK(file_text(box / "places.csv") == places_csv);

@@ -108,7 +108,7 @@ TEST_CASE("files of control spaces: what is refused, and why") {
 
     std::vector<CatalogueEntry> octrees(structures().begin() + 3, structures().begin() + 6);
     CHECK_THAT(error_of([&] { load_control_space(scratch / "field.ctrl", octrees); }),
-               Contains("'K_V', which is not known"));
+               Contains("'K_V', which this program does not have"));
     const auto bare = editable(tree_named("K_L").construct({.domain = domain}));
     CHECK_THAT(error_of([&] { save_control_space(scratch / "bare.ctrl", *bare); }),
                Contains("an entry of the catalogue"));
