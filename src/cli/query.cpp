@@ -22,7 +22,7 @@ struct Query {
 };
 
 int query(const Query& job) {
-    require_no_input(job.output, {job.points});
+    require_no_input(job.output, {job.input, job.points});
     if (is_control_space(job.output)) {
         throw InputError(
             fmt::format("{}: metrics are written as .csv: name such a file", job.output.string()));
