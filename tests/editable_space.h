@@ -74,6 +74,12 @@ inline std::unique_ptr<EditableSpace> load_editable(const std::filesystem::path&
     return editable(load_builder(file, structures));
 }
 
+inline std::vector<Metric> answers(const ControlSpace& space, std::span<const Point> x) {
+    std::vector<Metric> out(x.size());
+    space.sample(x, out);
+    return out;
+}
+
 /// Trees whose control nodes carry metrics, then those whose leaves keep sources.
 inline std::vector<CatalogueEntry> all_trees() {
     std::vector<CatalogueEntry> all(tree_catalogue().begin(), tree_catalogue().end());

@@ -11,7 +11,7 @@
 #include "controlspace/io/write_vdb.h"
 #include "controlspace/study/provenance.h"
 #include "files/text_file.h"
-#include "mesh/stopwatch.h"
+#include "measure/stopwatch.h"
 
 namespace controlspace {
 namespace {

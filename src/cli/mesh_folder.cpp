@@ -56,9 +56,10 @@ void MeshFolder::add(MeshRow row, const Box& domain, const ControlSpace& referen
     const auto whole = interruption.postpone();
     rows_.push_back(row);
     record(false);
-    if (!row.error.empty()) {
-        spdlog::warn("{}: {}", mesh_label(row), row.error);
-    } else if (!quiet_) {
+    for (const std::string& why : {row.error, row.shortfall}) {
+        if (!why.empty()) spdlog::warn("{}: {}", mesh_label(row), why);
+    }
+    if (row.error.empty() && !quiet_) {
         print_error(fmt::format("mesh {}: {}, {}: {} tets, L_R {:.4f}, {:.1f} s\n", rows_.size(),
                                 mesh_label(row), mesh_setting(row), row.conformity.tets,
                                 row.conformity.l_r, row.seconds));

@@ -10,7 +10,7 @@
 
 #include "cli/signals.h"
 #include "controlspace/study/run.h"
-#include "mesh/stopwatch.h"
+#include "measure/stopwatch.h"
 #include "study/time_estimate.h"
 
 namespace controlspace {

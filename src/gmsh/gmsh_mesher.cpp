@@ -11,9 +11,9 @@
 
 #include "controlspace/error.h"
 #include "gmsh/gmsh_session.h"
+#include "measure/stopwatch.h"
 #include "mesh/estimate.h"
 #include "mesh/size_query.h"
-#include "mesh/stopwatch.h"
 
 namespace controlspace {
 namespace {

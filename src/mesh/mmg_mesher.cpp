@@ -14,9 +14,9 @@
 #include "controlspace/mesh/mesh_files.h"
 #include "controlspace/space/sample_parallel.h"
 #include "io/text/medit.h"
+#include "measure/stopwatch.h"
 #include "mesh/child_program.h"
 #include "mesh/size_query.h"
-#include "mesh/stopwatch.h"
 
 namespace controlspace {
 namespace {

@@ -306,7 +306,9 @@ OrderFreeIntersection order_free_intersection(std::span<const Metric> metrics, d
     }
     const double of_core = core.size() == metrics.size() ? tolerance : 0.75 * tolerance;
     int steps = 0;
-    for (;;) {
+    // A round adds the worst of those left out. Few are needed, but by rounding two may take turns.
+    constexpr int most_rounds = 200;
+    for (int round = 1;; ++round) {
         InteriorPoint solution(core.metrics(), near);
         solution.solve(of_core);
         steps += solution.steps();
@@ -317,7 +319,7 @@ OrderFreeIntersection order_free_intersection(std::span<const Metric> metrics, d
         if (core.size() == metrics.size()) return made_smaller(core, solution, 1, steps);
         const Excess worst = worst_excess(metrics, solution.factor());
         if (worst.growth <= 1 || solution.gap() + 3 * std::log(worst.growth) <= tolerance ||
-            core.has(worst.index)) {
+            core.has(worst.index) || round == most_rounds) {
             return made_smaller(core, solution, worst.growth, steps);
         }
         if (core.is_full()) core.drop(solution);

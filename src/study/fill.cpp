@@ -4,7 +4,7 @@
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/sample_parallel.h"
 #include "controlspace/study/run.h"
-#include "mesh/stopwatch.h"
+#include "measure/stopwatch.h"
 
 namespace controlspace {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/stopwatch.h"
+#include "measure/stopwatch.h"
 #include "study/text_table.h"
 #include "study/time_estimate.h"
 

@@ -132,7 +132,7 @@ TextTable measure_table(const std::string& title, const Rows& rows, std::span<co
                 row->error.empty() ? measure.value(*row, exact_beside(*row, all)) : MeasuredValue(),
                 measure.column));
         }
-        cells.push_back(row->error.empty() ? "" : "failed: " + row->error);
+        cells.push_back(row->error.empty() ? row->shortfall : "failed: " + row->error);
     }
     return table;
 }
@@ -169,6 +169,7 @@ Json json_of(const MeshRow& row) {
     json["mesher"] = name_of(row.mesher);
     json["error"] = row.error;
     if (!row.error.empty()) return json;
+    if (!row.shortfall.empty()) json["shortfall"] = row.shortfall;
     json["histogram"] = row.conformity.histogram;
     for (const MeshMeasure& measure : mesh_measures()) {
         const MeasuredValue value = measure.value(row, nullptr);

@@ -21,6 +21,7 @@ struct MeshRow {
     std::filesystem::path saved;  ///< the control space of this file was meshed: the reference too
     Mesher mesher = Mesher::delaunay;
     std::string error;
+    std::string shortfall;         ///< why a requested target was missed; empty where it was met
     Conformity conformity;         ///< to the reference
     double creation_s = 0;         ///< of the structure
     double seconds = 0;            ///< of meshing, by the clock

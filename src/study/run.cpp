@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "controlspace/error.h"
-#include "mesh/stopwatch.h"
+#include "measure/stopwatch.h"
 #include "study/equal_setting.h"
 
 namespace controlspace {

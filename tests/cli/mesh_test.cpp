@@ -46,6 +46,20 @@ TEST_CASE("one command makes meshes, and says how they conform") {
     }
 }
 
+TEST_CASE("a target that a meshed structure missed is told, with status 3") {
+    const Sandbox box("mesh-missed");
+    const Outcome outcome = box.run(
+        "mesh --h 0.1 --probe-grid 5 --structures K_oL --target-delta 0.001 --max-depth 2 "
+        "--exact no --files none --output out");
+    INFO(outcome.err);
+    CHECK(outcome.status == 3);
+    CHECK_THAT(outcome.err, Contains("K_oL: ") && Contains("target"));
+    const auto json = nlohmann::json::parse(file_text(box / "out" / "meshes.json"));
+    REQUIRE(json["rows"].size() == 1);
+    CHECK(json["rows"][0]["error"] == "");
+    CHECK_THAT(json["rows"][0]["shortfall"].get<std::string>(), Contains("target"));
+}
+
 TEST_CASE("a study's cases are meshed as its options say") {
     const Sandbox box("mesh-study");
     box.write("s.csv", "x,y,z,h\n0,0,0,0.1\n1,0,0,0.2\n0,1,0,0.2\n1,1,1,0.4\n");

@@ -16,12 +16,6 @@ namespace {
 
 constexpr double g = 1.25;
 
-std::vector<Metric> answers(const ControlSpace& space, std::span<const Point> x) {
-    std::vector<Metric> out(x.size());
-    space.sample(x, out);
-    return out;
-}
-
 // Upper bound of growth(m, by) for the metric m at x, from the metrics at the nodes of the cell:
 // σ_max(Σ w_i M_i by^-1) <= Σ w_i σ_max(M_i by^-1) for weights >= 0 whose sum is 1; quadratic
 // leaves are bounded by the cone of their own metric.

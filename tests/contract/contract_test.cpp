@@ -19,12 +19,6 @@ namespace {
 
 constexpr double g = 1.25;
 
-std::vector<Metric> answers(const ControlSpace& space, std::span<const Point> x) {
-    std::vector<Metric> out(x.size());
-    space.sample(x, out);
-    return out;
-}
-
 Work any_work() {
     return GENERATE(isotropic_sphere(), anisotropic_sphere(), oblong_box(),
                     anisotropic_oblong_box());

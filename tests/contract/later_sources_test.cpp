@@ -52,10 +52,7 @@ SpaceOptions later(SplitRule split) {
 }
 
 std::vector<Metric> answers(const ControlSpace& space) {
-    const std::vector<Point> x = random_points(space.domain(), 3000, 77);
-    std::vector<Metric> out(x.size());
-    space.sample(x, out);
-    return out;
+    return answers(space, random_points(space.domain(), 3000, 77));
 }
 
 std::vector<Metric> node_metrics(const ControlSpace& space) {

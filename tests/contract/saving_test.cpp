@@ -13,10 +13,7 @@ using namespace controlspace;
 namespace {
 
 std::vector<Metric> answers(const ControlSpace& space) {
-    const std::vector<Point> x = random_points(space.domain(), 2000, 1);
-    std::vector<Metric> out(x.size());
-    space.sample(x, out);
-    return out;
+    return answers(space, random_points(space.domain(), 2000, 1));
 }
 
 const PointSource later{Point(0.1, -0.2, 0.3), Metric::isotropic(0.06)};

@@ -66,12 +66,6 @@ std::vector<Point> places() {
     return x;
 }
 
-std::vector<Metric> answers(const ControlSpace& space, const std::vector<Point>& x) {
-    std::vector<Metric> out(x.size());
-    space.sample(x, out);
-    return out;
-}
-
 }  // namespace
 
 CASE_OF_EACH(tree, trees(),

@@ -14,12 +14,6 @@ namespace {
 
 const Box domain{Point::Constant(-1), Point::Constant(1)};
 
-std::vector<Metric> answers(const ControlSpace& space, const std::vector<Point>& x) {
-    std::vector<Metric> metrics(x.size());
-    space.sample(x, metrics);
-    return metrics;
-}
-
 void check_no_longer(const std::vector<Metric>& after, const std::vector<Metric>& before) {
     REQUIRE(after.size() == before.size());
     double longest = 0;

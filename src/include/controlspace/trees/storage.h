@@ -75,6 +75,10 @@ template <class Storage>
 inline constexpr std::size_t nodes_per_leaf =
     std::tuple_size_v<std::remove_cvref_t<decltype(std::declval<const Storage&>().nodes_of(0))>>;
 
+/// Whether control nodes are the vertices of the leaves, which share them.
+template <class Storage>
+inline constexpr bool has_vertices = nodes_per_leaf<Storage> == 8;
+
 /// Whether a storage lists data beside its metrics.
 template <class Storage>
 concept HasData = requires(Storage& s) {

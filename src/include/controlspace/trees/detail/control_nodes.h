@@ -93,7 +93,7 @@ void fit_nodes(Storage& storage, std::span<const LeafBox> leaves, const GoalFiel
             }
         }
     }
-    if constexpr (nodes_per_leaf < Storage >> 1) {
+    if constexpr (has_vertices<Storage>) {
         const auto number = [](const auto& node) { return node.first; };
         std::ranges::sort(nodes, {}, number);
         const auto repeated = std::ranges::unique(nodes, {}, number);

@@ -19,7 +19,7 @@ namespace controlspace {
 template <class TreeNode, class Storage>
 class RegradedNodes {
 public:
-    static constexpr bool at_vertices = nodes_per_leaf<Storage> > 1;
+    static constexpr bool at_vertices = has_vertices<Storage>;
     using Node = std::conditional_t<at_vertices, NodeIndex, LeafBox>;
 
     RegradedNodes(const Topology<TreeNode>& tree, Storage& storage, Neighbourhood neighbourhood)
@@ -82,7 +82,7 @@ private:
 /// last gradation, and the gradation of these and of what depends on them.
 template <class Storage>
 class TreeChanges {
-    static constexpr bool at_vertices = nodes_per_leaf<Storage> > 1;
+    static constexpr bool at_vertices = has_vertices<Storage>;
 
 public:
     void begin(std::size_t leaves, std::size_t nodes) {
