@@ -23,8 +23,7 @@ openvdb::GridBase::Ptr make_points_grid(std::span<const PointSource> sources,
         off_diagonals.emplace_back(m.xy, m.xz, m.yz);
     }
     const points::PointAttributeVector<openvdb::Vec3d> list(positions);
-    const auto index =
-        openvdb::tools::createPointIndexGrid<openvdb::tools::PointIndexGrid>(list, transform);
+    const auto index = point_index(positions, transform);
     const auto grid = points::createPointDataGrid<points::NullCodec, points::PointDataGrid>(
         *index, list, transform);
     add_attribute(*grid, *index, "pscale", smallest);

@@ -8,6 +8,10 @@
 
 namespace controlspace {
 
+/// Numbers points by voxel.
+openvdb::tools::PointIndexGrid::Ptr point_index(const std::vector<openvdb::Vec3d>& positions,
+                                                const openvdb::math::Transform& transform);
+
 /// Adds the attribute `name` to the points of `grid`, which `index` numbers. For float and Vec3s.
 template <class Value>
 void add_attribute(openvdb::points::PointDataGrid& grid,
