@@ -8,7 +8,7 @@ if(GIT_FOUND)
         RESULT_VARIABLE failed ERROR_QUIET)
     if(NOT failed)
         set(COMMIT ${commit})
-        execute_process(COMMAND ${GIT_EXECUTABLE} status --porcelain --untracked-files=no
+        execute_process(COMMAND ${GIT_EXECUTABLE} status --porcelain --untracked-files=no -- . :!bench/results
             WORKING_DIRECTORY ${SOURCE_DIR} OUTPUT_VARIABLE changes ERROR_QUIET)
         if(changes)
             set(DIRTY "true")
