@@ -49,7 +49,7 @@ TEST_CASE("one command makes meshes, and says how they conform") {
 TEST_CASE("a target that a meshed structure missed is told, with status 3") {
     const Sandbox box("mesh-missed");
     const Outcome outcome = box.run(
-        "mesh --h 0.1 --probe-grid 5 --structures K_oL --target-delta 0.001 --max-depth 2 "
+        "mesh --h 0.1 --probe-grid 5 --structures K_oL --target-delta 0.001 --octree-depth 2 "
         "--exact no --files none --output out");
     INFO(outcome.err);
     CHECK(outcome.status == 3);
