@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "cones/length_queue.h"
 #include "cones/tensor_tree.h"
+#include "cones/undominated.h"
 #include "controlspace/metric/metric.h"
 #include "controlspace/sources/point_source.h"
 
@@ -43,15 +43,12 @@ public:
     std::size_t bytes_topology() const { return tree_.bytes() - bytes_payload(); }
 
 private:
-    bool is_dominated(const PointSource& source, double length) const;
-    Lanes least_factors(const TensorNode& node, const Point& p) const;
-    Lanes factors(const TensorLeaf& leaf, const Point& p) const;
+    AnisotropicCones(UndominatedSources sources, double g);
 
     double g_;
-    double cap_;
-    double least_length_ = std::numeric_limits<double>::infinity();  ///< of all sources
-    std::size_t dropped_ = 0;
-    double uncertainty_ = 0;  ///< relative, of lengths computed from the metrics given
+    double least_length_;  ///< of all sources
+    std::size_t dropped_;
+    double uncertainty_;  ///< relative, of lengths computed from the metrics given
     TensorTree tree_;
 };
 

@@ -1,6 +1,7 @@
 #include "cones/cone_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 
 #include "cones/spatial_order.h"
@@ -9,29 +10,40 @@
 namespace controlspace {
 
 ConeField::ConeField(std::span<const PointSource> sources, double g, const Metric& largest,
-                     double tolerance)
+                     double tolerance, IntersectionRule rule)
     : largest_(largest),
       longest_(eigen_frame(largest).lengths[2]),
       tolerance_(tolerance),
-      cones_(make_cones(sources, g, largest)) {}
+      rule_(rule),
+      cones_(make_cones(sources, g)) {}
 
-ConeField::Cones ConeField::make_cones(std::span<const PointSource> sources, double g,
-                                       const Metric& largest) {
+ConeField::Cones ConeField::make_cones(std::span<const PointSource> sources, double g) const {
     const bool isotropic = std::all_of(sources.begin(), sources.end(), [](const PointSource& s) {
         return controlspace::is_isotropic(s.metric);
     });
-    const double cap = eigen_frame(largest).lengths[2];
-    if (isotropic) return IsotropicCones(sources, g, cap);
-    return AnisotropicCones(sources, g, cap);
+    if (isotropic) return IsotropicCones(sources, g, longest_);
+    if (rule_ == IntersectionRule::in_turn) return AnisotropicCones(sources, g, longest_);
+    return OrderFreeCones(sources, g, largest_, tolerance_);
 }
 
-Metric ConeField::at(const Point& x, Memory& memory) const {
-    if (const auto* isotropic = std::get_if<IsotropicCones>(&cones_)) {
-        const double h = isotropic->smallest_length(x, memory.hint);
-        return h < longest_ ? intersection(largest_, Metric::isotropic(h)) : largest_;
+Metric ConeField::at(const Point& x, const Metric* further, Memory& memory) const {
+    if (const auto* cones = std::get_if<OrderFreeCones>(&cones_)) {
+        return cones->intersect(x, further, memory.order_free).metric();
     }
-    return std::get<AnisotropicCones>(cones_).intersect(x, largest_, tolerance_, memory.search,
-                                                        nullptr);
+    Metric m = largest_;
+    if (const auto* isotropic = std::get_if<IsotropicCones>(&cones_)) {
+        const Metric cone = Metric::isotropic(isotropic->smallest_length(x, memory.hint));
+        const bool are_three = further != nullptr && !controlspace::is_isotropic(largest_);
+        if (are_three && rule_ == IntersectionRule::order_free) {
+            const std::array<Metric, 3> all{largest_, cone, *further};
+            return order_free_intersection(all, OrderFreeCones::gap_of(tolerance_)).metric();
+        }
+        if (cone.xx < longest_) m = intersection(largest_, cone);
+    } else {
+        m = std::get<AnisotropicCones>(cones_).intersect(x, largest_, tolerance_, memory.search,
+                                                         nullptr);
+    }
+    return further != nullptr ? intersection(m, *further) : m;
 }
 
 void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out) const {
@@ -39,23 +51,35 @@ void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out) const 
     Memory memory;
     if (std::holds_alternative<AnisotropicCones>(cones_)) return evaluate(x, out, memory);
     // Near the last place the hint is good, and the sources are in the caches.
-    for (const std::uint32_t i : spatial_order(x)) out[i] = at(x[i], memory);
+    for (const std::uint32_t i : spatial_order(x)) out[i] = at(x[i], nullptr, memory);
 }
 
-void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out, Memory& memory) const {
+void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out, Memory& memory,
+                         std::span<const Metric> further) const {
     assert(x.size() == out.size());
-    for (std::size_t i = 0; i < x.size(); ++i) out[i] = at(x[i], memory);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        out[i] = at(x[i], further.empty() ? nullptr : &further[i], memory);
+    }
 }
 
 void ConeField::governing(const Point& x, double tolerance, std::vector<std::uint32_t>& sources,
                           Metric& m, Memory& memory) const {
     sources.clear();
-    const auto* isotropic = std::get_if<IsotropicCones>(&cones_);
-    if (isotropic == nullptr) {
-        m = std::get<AnisotropicCones>(cones_).intersect(x, largest_, tolerance, memory.search,
-                                                         &sources);
+    if (const auto* cones = std::get_if<OrderFreeCones>(&cones_)) {
+        const OrderFreeIntersection answer = cones->intersect(x, nullptr, memory.order_free);
+        m = answer.metric();
+        constexpr double counts = 1e-3;  // all traces together are 3
+        for (const auto& [index, tensor] : answer.multipliers()) {
+            if (index == OrderFreeCones::index_of_largest) continue;
+            if (tensor.xx + tensor.yy + tensor.zz > counts) sources.push_back(index);
+        }
         return;
     }
+    if (const auto* cones = std::get_if<AnisotropicCones>(&cones_)) {
+        m = cones->intersect(x, largest_, tolerance, memory.search, &sources);
+        return;
+    }
+    const auto* isotropic = std::get_if<IsotropicCones>(&cones_);
     const double h = isotropic->smallest_length(x, memory.hint);
     m = largest_;
     if (h * (1 + tolerance) >= longest_) return;

@@ -10,12 +10,6 @@ namespace controlspace {
 
 namespace {
 
-Metric inverse(const Metric& m) {
-    EigenFrame frame = eigen_frame(m);
-    for (double& length : frame.lengths) length = 1 / length;
-    return metric_from_frame(frame.lengths, frame.directions);
-}
-
 // What holds for all of some sources.
 struct Bounds {
     Metric within;   // all metrics
@@ -58,18 +52,31 @@ double radius_of(std::span<const ConeTreeItem> items, const Point& centre, const
 
 }  // namespace
 
+Metric inverse(const Metric& m) {
+    EigenFrame frame = eigen_frame(m);
+    for (double& length : frame.lengths) length = 1 / length;
+    return metric_from_frame(frame.lengths, frame.directions);
+}
+
+TensorLeaf tensor_leaf(std::span<const ConeTreeItem> items, std::span<const PointSource> sources,
+                       std::span<const double> lengths) {
+    TensorLeaf leaf;
+    for (int lane = 0; lane < lane_count; ++lane) {
+        const auto i = static_cast<std::size_t>(lane);
+        const bool exists = i < items.size();
+        const std::uint32_t source = items[exists ? i : 0].index;
+        leaf.position.set(lane, sources[source].position);
+        leaf.metric.set(lane, sources[source].metric);
+        leaf.length[lane] = exists ? lengths[source] : std::numeric_limits<double>::infinity();
+    }
+    return leaf;
+}
+
 TensorTree build_tensor_tree(std::span<ConeTreeItem> items, std::span<const PointSource> sources,
                              std::span<const double> lengths) {
     using Items = std::span<const ConeTreeItem>;
     const auto make_leaf = [&](Items of_leaf, TensorLeaf& leaf) {
-        for (int lane = 0; lane < lane_count; ++lane) {
-            const auto i = static_cast<std::size_t>(lane);
-            const bool exists = i < of_leaf.size();
-            const std::uint32_t source = of_leaf[exists ? i : 0].index;
-            leaf.position.set(lane, sources[source].position);
-            leaf.metric.set(lane, sources[source].metric);
-            leaf.length[lane] = exists ? lengths[source] : std::numeric_limits<double>::infinity();
-        }
+        leaf = tensor_leaf(of_leaf, sources, lengths);
     };
     const auto bounds_of_leaf = [&](Items of_leaf) {
         std::array<Bounds, lane_count> parts;

@@ -31,6 +31,13 @@ struct TensorLeaf {
 
 using TensorTree = ConeTree<TensorNode, TensorLeaf>;
 
+/// M^-1.
+Metric inverse(const Metric& m);
+
+/// Up to eight sources. `lengths` are the smallest of each source.
+TensorLeaf tensor_leaf(std::span<const ConeTreeItem> items, std::span<const PointSource> sources,
+                       std::span<const double> lengths);
+
 /// Builds a tree over `items`, which are put in order. `lengths` are the smallest of each source.
 TensorTree build_tensor_tree(std::span<ConeTreeItem> items, std::span<const PointSource> sources,
                              std::span<const double> lengths);

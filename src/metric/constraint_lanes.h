@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -36,9 +37,11 @@ inline ConstraintLanes scaled(const ConstraintLanes& t, double factor) {
 }
 
 /// Any 3x3 matrices side by side.
-struct Matrices {
-    ConstraintNumbers xx, xy, xz, yx, yy, yz, zx, zy, zz;
+template <int n>
+struct MatricesOf {
+    LanesOf<n> xx, xy, xz, yx, yy, yz, zx, zy, zz;
 };
+using Matrices = MatricesOf<constraint_lanes>;
 
 /// S D.
 template <class Symmetric>
@@ -64,23 +67,25 @@ inline ConstraintLanes symmetric_product(const Matrices& w, const ConstraintLane
 /// Greatest eigenvalue of matrices with real eigenvalues, or a little more. Without their mean m
 /// the eigenvalues are the roots of x^3 - 3 p x - q, the greatest is at most 2 sqrt(p), and from
 /// there Newton's steps come down to it.
-inline ConstraintNumbers greatest_eigenvalues(const Matrices& w) {
+template <int n>
+LanesOf<n> greatest_eigenvalues(const MatricesOf<n>& w) {
+    using Number = LanesOf<n>;
     constexpr int newton_steps = 3;
-    const ConstraintNumbers m = (w.xx + w.yy + w.zz) * (1.0 / 3);
-    const ConstraintNumbers a = w.xx - m;
-    const ConstraintNumbers b = w.yy - m;
-    const ConstraintNumbers c = w.zz - m;
+    const Number m = (w.xx + w.yy + w.zz) * (1.0 / 3);
+    const Number a = w.xx - m;
+    const Number b = w.yy - m;
+    const Number c = w.zz - m;
     constexpr double rounding = 1e-28;
     constexpr double least = 1e-280;  // against division by 0
-    const ConstraintNumbers p =
+    const Number p =
         ((a.square() + b.square() + c.square() + 2 * (w.xy * w.yx + w.xz * w.zx + w.yz * w.zy)) *
          (1.0 / 6))
             .max(rounding * m.square() + least);
-    const ConstraintNumbers q = a * (b * c - w.yz * w.zy) - w.xy * (w.yx * c - w.yz * w.zx) +
-                                w.xz * (w.yx * w.zy - b * w.zx);
-    ConstraintNumbers x = 2 * p.sqrt();
+    const Number q = a * (b * c - w.yz * w.zy) - w.xy * (w.yx * c - w.yz * w.zx) +
+                     w.xz * (w.yx * w.zy - b * w.zx);
+    Number x = 2 * p.sqrt();
     for (int i = 0; i < newton_steps; ++i) {
-        const ConstraintNumbers squared = x.square();
+        const Number squared = x.square();
         x = (2 * x * squared + q) / (3 * (squared - p));
     }
     return m + x;
@@ -119,23 +124,25 @@ inline ConstraintLanes seen_from(const Triangle& f, const ConstraintLanes& t) {
 }
 
 /// P = (M^-1 H)^T (M^-1 H) for metrics M: H H^T is within M^2 where P <= I.
-inline ConstraintLanes seen_from(const Eigen::Matrix3d& h,
-                                 const CholeskyLanes<constraint_lanes>& metrics) {
-    std::array<VectorLanesOf<constraint_lanes>, 3> k;
+template <int n>
+TensorLanesOf<n> seen_from(const Eigen::Matrix3d& h, const CholeskyLanes<n>& metrics) {
+    using Number = LanesOf<n>;
+    std::array<VectorLanesOf<n>, 3> k;
     for (int c = 0; c < 3; ++c) {
-        k[static_cast<std::size_t>(c)] = metrics.solve({ConstraintNumbers::Constant(h(0, c)),
-                                                        ConstraintNumbers::Constant(h(1, c)),
-                                                        ConstraintNumbers::Constant(h(2, c))});
+        k[static_cast<std::size_t>(c)] = metrics.solve(
+            {Number::Constant(h(0, c)), Number::Constant(h(1, c)), Number::Constant(h(2, c))});
     }
-    const auto dot = [&](std::size_t a, std::size_t b) -> ConstraintNumbers {
+    const auto dot = [&](std::size_t a, std::size_t b) -> Number {
         return k[a].x * k[b].x + k[a].y * k[b].y + k[a].z * k[b].z;
     };
     return {dot(0, 0), dot(1, 1), dot(2, 2), dot(0, 1), dot(0, 2), dot(1, 2)};
 }
 
 /// Upper bounds of the greatest eigenvalues; sharp unless the two greatest are nearly equal.
-inline ConstraintNumbers greatest_eigenvalues(const ConstraintLanes& p) {
-    return greatest_eigenvalues(Matrices{p.xx, p.xy, p.xz, p.xy, p.yy, p.yz, p.xz, p.yz, p.zz});
+template <int n>
+LanesOf<n> greatest_eigenvalues(const TensorLanesOf<n>& p) {
+    return greatest_eigenvalues(
+        MatricesOf<n>{p.xx, p.xy, p.xz, p.xy, p.yy, p.yz, p.xz, p.yz, p.zz});
 }
 
 }  // namespace controlspace

@@ -1,5 +1,6 @@
 #include "metric/decompose.h"
 
+#include <limits>
 #include <utility>
 
 namespace controlspace {
@@ -122,6 +123,18 @@ Metric left_polar_factor(const Eigen::Matrix3d& b) {
 
 double condition(const Metric& m, const Cholesky& factor) {
     return (m.xx + m.yy + m.zz) * factor.trace_of_inverse() / 9;
+}
+
+bool is_below(const Metric& a2, double factor, const Metric& b2) {
+    constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+    const double doubt = rounding * factor * (b2.xx + b2.yy + b2.zz);
+    const double xx = factor * b2.xx - a2.xx - doubt;
+    const double yy = factor * b2.yy - a2.yy - doubt;
+    const double zz = factor * b2.zz - a2.zz - doubt;
+    if (!(xx > 0 && yy > 0 && zz > 0)) return false;
+    return Cholesky(
+               {xx, yy, zz, factor * b2.xy - a2.xy, factor * b2.xz - a2.xz, factor * b2.yz - a2.yz})
+        .is_positive_definite();
 }
 
 }  // namespace controlspace

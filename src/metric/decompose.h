@@ -63,4 +63,7 @@ private:
 /// `condition * 1e-16` only: no algorithm gives more.
 double condition(const Metric& m, const Cholesky& factor);
 
+/// Whether factor * b2 - a2 is positive definite beyond doubt, as in `room_below`.
+bool is_below(const Metric& a2, double factor, const Metric& b2);
+
 }  // namespace controlspace

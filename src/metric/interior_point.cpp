@@ -271,4 +271,38 @@ double InteriorPoint::advance(double centring) {
     return std::min(primal, dual);
 }
 
+// Of more than six tensors some combination is 0. Adding it to their sum until the first weight is
+// 0 leaves the sum, and so the certificate, as it is, with one tensor less.
+std::uint32_t needed_multipliers(std::span<const Metric> tensors) {
+    constexpr int room = static_cast<int>(InteriorPoint::room);
+    using Columns = Eigen::Matrix<double, entries, Eigen::Dynamic, Eigen::ColMajor, entries, room>;
+    std::array<int, InteriorPoint::room> left{};
+    int count = 0;
+    for (; count < static_cast<int>(tensors.size()); ++count) {
+        left[static_cast<std::size_t>(count)] = count;
+    }
+    Columns columns(entries, count);
+    for (int k = 0; k < count; ++k) {
+        const Metric& l = tensors[static_cast<std::size_t>(k)];
+        columns.col(k) << l.xx, l.yy, l.zz, l.xy, l.xz, l.yz;
+    }
+    for (; count > entries; --count) {
+        // Zeros fill it up: its greatest coefficient is positive.
+        Eigen::Matrix<double, room, 1> change = Eigen::Matrix<double, room, 1>::Zero();
+        change.head(count) = columns.fullPivLu().kernel().col(0);
+        if (change.maxCoeff() <= 0) change = -change;
+        Eigen::Index last = 0;
+        const double most = change.maxCoeff(&last);
+        for (int k = 0; k < count; ++k) columns.col(k) *= 1 - change[k] / most;
+        for (auto k = static_cast<int>(last); k + 1 < count; ++k) {
+            left[static_cast<std::size_t>(k)] = left[static_cast<std::size_t>(k) + 1];
+            columns.col(k) = columns.col(k + 1);
+        }
+        columns.conservativeResize(Eigen::NoChange, count - 1);
+    }
+    std::uint32_t needed = 0;
+    for (int k = 0; k < count; ++k) needed |= 1u << left[static_cast<std::size_t>(k)];
+    return needed;
+}
+
 }  // namespace controlspace

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "controlspace/metric/metric.h"
@@ -64,5 +65,9 @@ private:
     double gap_ = 0;
     int steps_ = 0;
 };
+
+/// Caratheodory: of any number of symmetric tensors, six at most have combinations of the same sum
+/// with weights >= 0. Returns them as bits. At most `InteriorPoint::room` tensors.
+std::uint32_t needed_multipliers(std::span<const Metric> tensors);
 
 }  // namespace controlspace

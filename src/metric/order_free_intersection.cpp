@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -220,34 +219,15 @@ private:
     std::array<std::size_t, InteriorPoint::room> indices_{};
 };
 
-// Caratheodory: of more than six tensors some combination is 0. Adding it to their sum until the
-// first weight is 0 leaves the sum, and so the certificate, as it is, with one tensor less.
 void CoreSet::drop(const InteriorPoint& solution) {
-    constexpr int needed = 6;
-    constexpr int room = static_cast<int>(InteriorPoint::room);
-    Eigen::Matrix<double, needed, Eigen::Dynamic, Eigen::ColMajor, needed, room> tensors(
-        needed, static_cast<Eigen::Index>(size_));
+    std::array<Metric, InteriorPoint::room> tensors;
+    for (std::size_t k = 0; k < size_; ++k) tensors[k] = solution.multiplier(k);
+    const std::uint32_t needed = needed_multipliers({tensors.data(), size_});
+    std::size_t size = 0;
     for (std::size_t k = 0; k < size_; ++k) {
-        const Metric l = solution.multiplier(k);
-        tensors.col(static_cast<Eigen::Index>(k)) << l.xx, l.yy, l.zz, l.xy, l.xz, l.yz;
+        if ((needed >> k & 1) != 0) move(k, size++);
     }
-    while (size_ > needed) {
-        // Zeros fill it up: its greatest coefficient is positive.
-        Eigen::Matrix<double, room, 1> change = Eigen::Matrix<double, room, 1>::Zero();
-        change.head(tensors.cols()) = tensors.fullPivLu().kernel().col(0);
-        if (change.maxCoeff() <= 0) change = -change;
-        Eigen::Index last = 0;
-        const double most = change.maxCoeff(&last);
-        for (Eigen::Index k = 0; k < tensors.cols(); ++k) tensors.col(k) *= 1 - change[k] / most;
-        const auto gone = static_cast<std::size_t>(last);
-        --size_;
-        for (std::size_t k = gone; k < size_; ++k) {
-            move(k + 1, k);
-            tensors.col(static_cast<Eigen::Index>(k)) =
-                tensors.col(static_cast<Eigen::Index>(k) + 1);
-        }
-        tensors.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(size_));
-    }
+    size_ = size;
 }
 
 // The solution of a core set, made smaller until it exceeds the others by no factor.

@@ -6,6 +6,14 @@
 
 namespace controlspace {
 
+/// How three metrics or more are intersected; of two there is one intersection.
+enum class IntersectionRule {
+    order_free,  ///< the largest metric within all of them (`order_free_intersection`)
+    /// As published: one after the other, which depends on their order. Cones are taken by their
+    /// smallest length.
+    in_turn,
+};
+
 /// The general case of `intersection`.
 Metric intersection_of_tensors(const Metric& a, const Metric& b);
 

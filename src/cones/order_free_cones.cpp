@@ -1,0 +1,412 @@
+#include "cones/order_free_cones.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "cones/cone.h"
+#include "cones/undominated.h"
+#include "controlspace/error.h"
+#include "metric/constraint_lanes.h"
+#include "metric/decompose.h"
+#include "metric/interior_point.h"
+
+namespace controlspace {
+
+// What an answer proves
+// ---------------------
+// Let H be the factor of an answer of the core set, whose duality gap is e, and let all cones be
+// exceeded by factors of at most s in squared lengths, s >= 1. Then H H^T / s is within all cones,
+// and its log det is below that of the best by e + 3 ln s at most, since the best of all cones is
+// no larger than the best of the core set. Together they are 6 ln(1 + t), so that log det M, half
+// of it, is within 3 ln(1 + t).
+//
+// Why the search ends: a core set keeps its optimum when it is reduced to the six cones that a
+// certificate needs (Caratheodory), and the optimum decreases with each exceeded cone that joins.
+//
+// Cells are dyadic: those of a level have half the edge of the level before. The answer at the
+// centre of a cell starts from that of the cell which contains it, so all depend on places alone.
+// A cell is small enough if no cone's factor varies much in it: by the law of gradation, by the
+// length of half its diagonal in the metric at its centre, times g - 1. Larger cells lead to
+// smaller ones only, and are answered loosely.
+
+namespace {
+
+constexpr std::uint32_t lanes_of_leaf = lane_count;
+constexpr double tolerance_of_start = 0.1;  // of cells that lead to smaller ones
+
+// Cones that an answer exceeds: the worst ones of different directions.
+class Exceeded {
+public:
+    struct Cone {
+        double growth;  ///< of squared lengths; a little too large where eigenvalues are equal
+        std::uint32_t member;
+        Vector direction = Vector::Zero();  ///< as seen from H
+    };
+
+    explicit Exceeded(double limit) : limit_(limit) {}
+
+    /// What is exceeded by less is of no interest. It rises with the worst cone found.
+    double limit() const { return limit_; }
+
+    void enter(const Cone& cone) {
+        constexpr double like = 0.75;
+        limit_ = std::max(limit_, 1 + 0.7 * (cone.growth - 1));
+        const auto end = cones_.begin() + static_cast<std::ptrdiff_t>(count_);
+        auto place = std::find_if(cones_.begin(), end, [&](const Cone& other) {
+            const double cosine = other.direction.dot(cone.direction);
+            return cosine * cosine > like;
+        });
+        if (place == end && count_ < cones_.size()) {
+            cones_[count_++] = cone;
+            return;
+        }
+        if (place == end) place = std::min_element(cones_.begin(), end, is_less);
+        if (is_less(*place, cone)) *place = cone;
+    }
+    std::span<const Cone> cones() const { return {cones_.data(), count_}; }
+    double worst() const {
+        double worst = 0;
+        for (const Cone& cone : cones()) worst = std::max(worst, cone.growth);
+        return worst;
+    }
+    bool empty() const { return count_ == 0; }
+
+private:
+    static bool is_less(const Cone& a, const Cone& b) {
+        return a.growth < b.growth || (a.growth == b.growth && a.member > b.member);
+    }
+
+    double limit_;
+    std::array<Cone, 4> cones_{};
+    std::size_t count_ = 0;
+};
+
+// Nearly the direction of the greatest eigenvalue, if that is much greater than the others.
+Vector main_direction(const Metric& tensor) {
+    const Eigen::Matrix3d squared = square(tensor).matrix();
+    Eigen::Index most = 0;
+    squared.diagonal().maxCoeff(&most);
+    return squared.col(most).normalized();
+}
+
+void find_in_leaf(const TensorLeaf& leaf, std::uint32_t first_member, const Point& p,
+                  const Eigen::Matrix3d& h, double slope, Exceeded& exceeded) {
+    const CholeskyLanes<lane_count> factorisation(leaf.metric);
+    const auto [x, y, z] = factorisation.solve(displacements(leaf.position, p));
+    const Lanes factor = 1 + slope * (x.square() + y.square() + z.square()).sqrt();
+    const Lanes squared = factor.square();
+    const TensorLanes seen = seen_from(h, factorisation);
+    const Lanes most = exceeded.limit() * squared;
+    if ((seen.xx + seen.yy + seen.zz <= most).all()) return;
+    const Lanes room = least_minor(most, seen);
+    if ((room > 0).all()) return;
+    const Lanes growths = greatest_eigenvalues(seen) / squared;
+    for (int lane = 0; lane < lane_count; ++lane) {
+        if (room[lane] > 0 || !(growths[lane] > exceeded.limit())) continue;
+        if (!std::isfinite(leaf.length[lane])) continue;
+        exceeded.enter({growths[lane], first_member + static_cast<std::uint32_t>(lane),
+                        main_direction(seen[lane])});
+    }
+}
+
+// Below `root`.
+void find_exceeded(const QuadricTree& tree, std::uint32_t root, const Point& p,
+                   const Eigen::Matrix3d& h, double slope, Exceeded& exceeded) {
+    // Seven siblings wait at each of at most eleven levels.
+    std::array<std::uint32_t, 96> stack;
+    std::size_t height = 0;
+    stack[height++] = root;
+    while (height > 0) {
+        const std::uint32_t number = stack[--height];
+        if (tree.is_leaf(number)) {
+            find_in_leaf(tree.leaf(number), number * lanes_of_leaf, p, h, slope, exceeded);
+            continue;
+        }
+        const std::uint32_t first = tree.first_child(number);
+        auto [children, bounds] =
+            children_exceeded(tree.node(number), p, h, exceeded.limit(), slope);
+        const std::size_t floor = height;
+        for (; children != 0; children &= children - 1) {
+            const auto c = static_cast<std::uint32_t>(std::countr_zero(children));
+            // The greatest on top: what is found there raises the limit.
+            std::size_t place = height++;
+            for (; place > floor && bounds[stack[place - 1] - first] > bounds[c]; --place) {
+                stack[place] = stack[place - 1];
+            }
+            stack[place] = first + c;
+        }
+    }
+}
+
+}  // namespace
+
+// Cones that are intersected, the largest metric first.
+class OrderFreeCones::Core {
+public:
+    void add(std::uint32_t member, const Metric& cone) {
+        members_[size_] = member;
+        cones_[size_++] = cone;
+    }
+    bool has(std::uint32_t member) const {
+        const auto end = members_.begin() + static_cast<std::ptrdiff_t>(size_);
+        return std::find(members_.begin(), end, member) != end;
+    }
+    std::size_t size() const { return size_; }
+    bool has_room_for(std::size_t more) const { return size_ + more <= members_.size(); }
+    std::uint32_t member(std::size_t k) const { return members_[k]; }
+    std::span<const Metric> cones() const { return {cones_.data(), size_}; }
+
+    OrderFreeIntersection intersection(double gap, const Eigen::Matrix3d* near) const {
+        if (near == nullptr || size_ < 3) return order_free_intersection(cones(), gap);
+        InteriorPoint solution(cones(), near);
+        solution.solve(gap);
+        if (!(std::abs(solution.gap()) <= gap)) return order_free_intersection(cones(), gap);
+        OrderFreeIntersection answer{
+            .factor = solution.factor(), .gap = solution.gap(), .steps = solution.steps()};
+        answer.count = size_;
+        for (std::size_t k = 0; k < size_; ++k) {
+            answer.multiplier[k] = {static_cast<std::uint32_t>(k), solution.multiplier(k)};
+        }
+        return answer;
+    }
+    /// Below nodes of the tree that are not far above its members: what exceeds H most at a place
+    /// is often near to what did so elsewhere.
+    void find_exceeded_nearby(const QuadricTree& tree, const Point& p, const Eigen::Matrix3d& h,
+                              double slope, Exceeded& exceeded) const {
+        std::array<std::uint32_t, OrderFreeIntersection::most_multipliers> roots;
+        std::size_t count = 0;
+        for (std::size_t k = 0; k < size_; ++k) {
+            if (members_[k] >= index_of_further) continue;
+            const std::uint32_t leaf = members_[k] / lanes_of_leaf;
+            const std::uint32_t root = tree.parent(tree.parent(leaf));
+            const auto end = roots.begin() + static_cast<std::ptrdiff_t>(count);
+            if (std::find(roots.begin(), end, root) != end) continue;
+            roots[count++] = root;
+            find_exceeded(tree, root, p, h, slope, exceeded);
+        }
+    }
+    /// Leaves the first `fixed`, and those that the certificate of an answer needs.
+    void reduce(const OrderFreeIntersection& answer, std::size_t fixed) {
+        std::array<Metric, OrderFreeIntersection::most_multipliers> tensors;
+        const auto multipliers = answer.multipliers();
+        std::transform(multipliers.begin(), multipliers.end(), tensors.begin(),
+                       [](const auto& multiplier) { return multiplier.tensor; });
+        const std::uint32_t needed = needed_multipliers({tensors.data(), answer.count});
+        std::uint32_t kept = (1u << fixed) - 1;
+        for (std::size_t k = 0; k < answer.count; ++k) {
+            if ((needed >> k & 1) != 0) kept |= 1u << multipliers[k].index;
+        }
+        std::size_t size = 0;
+        for (std::size_t k = 0; k < size_; ++k) {
+            if ((kept >> k & 1) == 0) continue;
+            members_[size] = members_[k];
+            cones_[size++] = cones_[k];
+        }
+        size_ = size;
+    }
+
+private:
+    std::size_t size_ = 0;
+    std::array<std::uint32_t, OrderFreeIntersection::most_multipliers> members_;
+    std::array<Metric, OrderFreeIntersection::most_multipliers> cones_;
+};
+
+OrderFreeCones::OrderFreeCones(std::span<const PointSource> sources, double g,
+                               const Metric& largest, double tolerance)
+    : g_(g), largest_(largest), tolerance_(tolerance) {
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        try {
+            order_free_intersection({&sources[i].metric, 1});
+        } catch (const InputError& error) {
+            throw InputError(fmt::format("source {}: {}", i, error.what()));
+        }
+    }
+    const auto lengths_of_largest = eigen_frame(largest).lengths;
+    UndominatedSources kept = undominated_sources(sources, g, lengths_of_largest[2]);
+    dropped_ = kept.dropped;
+    if (kept.items.empty()) return;
+    Point low = kept.items.front().position();
+    Point high = low;
+    for (const ConeTreeItem& item : kept.items) {
+        low = low.cwiseMin(item.position());
+        high = high.cwiseMax(item.position());
+    }
+    kept.tree = {};
+    rounding_ = std::max(0.1 * kept.uncertainty, 1e-13);
+    tree_ = build_quadric_tree(kept.items, sources, kept.lengths, kept.uncertainty);
+    origin_ = low;
+    edge_ = std::max((high - low).maxCoeff(), lengths_of_largest[0]);
+    answer(0.5 * (low + high), nullptr, {}, tolerance_of_start, &start_);
+}
+
+double OrderFreeCones::gap_of(double tolerance) {
+    constexpr double least_tolerance = 1e-7;
+    return 6 * std::log1p(std::max(tolerance, least_tolerance));
+}
+
+std::uint32_t OrderFreeCones::index_of(std::uint32_t member) const {
+    const std::uint32_t leaf = tree_.leaf_number(member / lanes_of_leaf);
+    return tree_.indices()[leaf * lanes_of_leaf + member % lanes_of_leaf];
+}
+
+PointSource OrderFreeCones::member(std::uint32_t number) const {
+    const TensorLeaf& leaf = tree_.leaf(number / lanes_of_leaf);
+    const auto lane = static_cast<Eigen::Index>(number % lanes_of_leaf);
+    return {leaf.position[lane], leaf.metric[lane]};
+}
+
+double OrderFreeCones::growth(const Point& p, const Eigen::Matrix3d& h,
+                              const PointSource& source) const {
+    const Eigen::Matrix3d k = Cholesky(source.metric).solve(h) / cone_factor(source, g_, p);
+    return eigen_frame(Metric::from_matrix(k.transpose() * k)).lengths[2];
+}
+
+OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* further,
+                                             const Start& start, double tolerance,
+                                             Start* found) const {
+    const double allowed_gap = gap_of(tolerance);
+    const double allowed = std::exp(0.9 * allowed_gap / 3);
+    const double gap = 0.1 * allowed_gap;
+    Core core;
+    core.add(index_of_largest, largest_);
+    if (further != nullptr) core.add(index_of_further, *further);
+    const std::size_t fixed = core.size();
+    const auto add = [&](std::uint32_t number) {
+        const PointSource source = member(number);
+        core.add(number, cone_factor(source, g_, p) * source.metric);
+    };
+    for (std::uint32_t k = 0; k < start.count; ++k) add(start.members[k]);
+    Eigen::Matrix3d last = start.factor;
+    bool is_near = start.count > 0;
+    constexpr int most_rounds = 200;  // against rounding
+    for (int round = 0;; ++round) {
+        OrderFreeIntersection answer = core.intersection(gap, is_near ? &last : nullptr);
+        // Of one metric or two, exactly: so it stays if it exceeds no cone.
+        bool is_exact = answer.gap == 0;
+        double limit = is_exact ? 1 + rounding_ : allowed;
+        if (!tree_.empty()) {
+            Exceeded exceeded(limit);
+            core.find_exceeded_nearby(tree_, p, answer.factor, g_ - 1, exceeded);
+            const auto is_new = [&](const Exceeded::Cone& cone) { return !core.has(cone.member); };
+            if (std::ranges::none_of(exceeded.cones(), is_new)) {
+                exceeded = Exceeded(limit);
+                find_exceeded(tree_, 0, p, answer.factor, g_ - 1, exceeded);
+            }
+            if (std::ranges::any_of(exceeded.cones(), is_new) && round < most_rounds) {
+                if (!core.has_room_for(exceeded.cones().size())) core.reduce(answer, fixed);
+                for (const Exceeded::Cone& cone : exceeded.cones()) {
+                    if (is_new(cone)) add(cone.member);
+                }
+                constexpr double far = 4;
+                is_near = exceeded.worst() < far;
+                last = answer.factor;
+                continue;
+            }
+            // Exceeded cones of the core set itself: that is rounding.
+            for (const Exceeded::Cone& cone : exceeded.cones()) {
+                limit = std::max(limit, growth(p, answer.factor, member(cone.member)));
+            }
+            is_exact = is_exact && exceeded.empty();
+        }
+        if (found != nullptr) {
+            found->factor = answer.factor;
+            found->count = 0;
+            constexpr double counts = 0.01;  // all traces together are 3
+            for (const auto& [index, tensor] : answer.multipliers()) {
+                if (index < fixed || !(trace(tensor) > counts)) continue;
+                if (found->count < most_members)
+                    found->members[found->count++] = core.member(index);
+            }
+        }
+        for (std::size_t k = 0; k < answer.count; ++k) {
+            auto& [index, tensor] = answer.multiplier[k];
+            const std::uint32_t number = core.member(index);
+            index = index < fixed ? number : index_of(number);
+            if (!is_exact) tensor = 1 / limit * tensor;
+        }
+        if (is_exact) return answer;
+        answer.factor /= std::sqrt(limit);
+        answer.gap += 3 * std::log(limit);
+        return answer;
+    }
+}
+
+std::array<std::int64_t, 4> OrderFreeCones::cell_at(const Point& p, int level) const {
+    constexpr double most = 4e18;
+    std::array<std::int64_t, 4> key{level, 0, 0, 0};
+    const double scale = std::ldexp(1 / edge_, level);
+    for (int a = 0; a < 3; ++a) {
+        const double place = std::floor((p[a] - origin_[a]) * scale);
+        key[static_cast<std::size_t>(a) + 1] =
+            static_cast<std::int64_t>(place > -most ? std::min(place, most) : -most);
+    }
+    return key;
+}
+
+OrderFreeCones::Cell OrderFreeCones::made_cell(const std::array<std::int64_t, 4>& key,
+                                               const Start& from) const {
+    constexpr double most_variation = 0.4;
+    constexpr int most_level = 40;
+    const double edge = std::ldexp(edge_, -static_cast<int>(key[0]));
+    const Vector place(static_cast<double>(key[1]), static_cast<double>(key[2]),
+                       static_cast<double>(key[3]));
+    const Point centre = origin_ + edge * (place + Vector::Constant(0.5));
+    Cell cell;
+    cell.key = key;
+    answer(centre, nullptr, from, std::max(tolerance_, tolerance_of_start), &cell.start);
+    const Eigen::Matrix3d& h = cell.start.factor;
+    const double shortest =
+        std::sqrt(eigen_frame(Metric::from_matrix(h * h.transpose())).lengths[0]);
+    const double half_diagonal = 0.5 * std::sqrt(3.0) * edge;
+    cell.is_small = !((g_ - 1) * half_diagonal > most_variation * shortest) || key[0] >= most_level;
+    if (cell.is_small) answer(centre, nullptr, Start(cell.start), tolerance_, &cell.start);
+    return cell;
+}
+
+const OrderFreeCones::Start& OrderFreeCones::start_near(const Point& p, Search& search) const {
+    constexpr std::size_t least_cells = 64;
+    constexpr std::size_t most_cells = 4096;
+    if (search.last.is_small &&
+        search.last.key == cell_at(p, static_cast<int>(search.last.key[0]))) {
+        return search.last.start;
+    }
+    const auto slot = [](std::vector<Cell>& cells, const auto& key) -> Cell& {
+        std::uint64_t hash = 0;
+        for (const std::int64_t k : key) {
+            hash = (hash ^ static_cast<std::uint64_t>(k)) * 0x9e3779b97f4a7c15;
+            hash ^= hash >> 32;
+        }
+        return cells[hash & (cells.size() - 1)];
+    };
+    search.last.start = start_;
+    for (int level = 0;; ++level) {
+        if (2 * search.filled >= search.cells.size() && search.cells.size() < most_cells) {
+            std::vector<Cell> more(std::max(least_cells, 4 * search.cells.size()));
+            for (const Cell& cell : search.cells) {
+                if (cell.key[0] != Cell::none) slot(more, cell.key) = cell;
+            }
+            search.cells = std::move(more);
+        }
+        const auto key = cell_at(p, level);
+        Cell& cell = slot(search.cells, key);
+        if (cell.key != key) {
+            search.filled += cell.key[0] == Cell::none ? 1 : 0;
+            cell = made_cell(key, search.last.start);
+        }
+        search.last = cell;
+        if (cell.is_small) return search.last.start;
+    }
+}
+
+OrderFreeIntersection OrderFreeCones::intersect(const Point& p, const Metric* further,
+                                                Search& search) const {
+    if (tree_.empty() || !p.allFinite()) return answer(p, further, {}, tolerance_, nullptr);
+    return answer(p, further, start_near(p, search), tolerance_, nullptr);
+}
+
+}  // namespace controlspace
