@@ -15,24 +15,34 @@
 #include "metric/decompose.h"
 #include "metric/interior_point.h"
 
+#ifdef TUNE
+long tn[40], tl, tf, ts, tst;
+#define COUNT(x, n) (x += (n))
+#else
+#define COUNT(x, n) (void)0
+#endif
+
 namespace controlspace {
 
 // What an answer proves
 // ---------------------
-// Let H be the factor of an answer of the core set, whose duality gap is e, and let all cones be
-// exceeded by factors of at most s in squared lengths, s >= 1. Then H H^T / s is within all cones,
-// and its log det is below that of the best by e + 3 ln s at most, since the best of all cones is
-// no larger than the best of the core set. Together they are 6 ln(1 + t), so that log det M, half
-// of it, is within 3 ln(1 + t).
+// Let H be the factor of an answer of the core set, whose duality gap is e, and
+// let all cones be exceeded by factors of at most s in squared lengths, s >= 1.
+// Then H H^T / s is within all cones, and its log det is below that of the best
+// by e + 3 ln s at most, since the best of all cones is no larger than the best
+// of the core set. Together they are 6 ln(1 + t), so that log det M, half of
+// it, is within 3 ln(1 + t).
 //
-// Why the search ends: a core set keeps its optimum when it is reduced to the six cones that a
-// certificate needs (Caratheodory), and the optimum decreases with each exceeded cone that joins.
+// Why the search ends: a core set keeps its optimum when it is reduced to the
+// six cones that a certificate needs (Caratheodory), and the optimum decreases
+// with each exceeded cone that joins.
 //
-// Cells are dyadic: those of a level have half the edge of the level before. The answer at the
-// centre of a cell starts from that of the cell which contains it, so all depend on places alone.
-// A cell is small enough if no cone's factor varies much in it: by the law of gradation, by the
-// length of half its diagonal in the metric at its centre, times g - 1. Larger cells lead to
-// smaller ones only, and are answered loosely.
+// Cells are dyadic: those of a level have half the edge of the level before.
+// The answer at the centre of a cell starts from that of the cell which
+// contains it, so all depend on places alone. A cell is small enough if no
+// cone's factor varies much in it: by the law of gradation, by the length of
+// half its diagonal in the metric at its centre, times g - 1. Larger cells lead
+// to smaller ones only, and are answered loosely.
 
 namespace {
 
@@ -43,19 +53,23 @@ constexpr double tolerance_of_start = 0.1;  // of cells that lead to smaller one
 class Exceeded {
 public:
     struct Cone {
-        double growth;  ///< of squared lengths; a little too large where eigenvalues are equal
+        double growth;  ///< of squared lengths; a little too large where eigenvalues
+                        ///< are equal
         std::uint32_t member;
         Vector direction = Vector::Zero();  ///< as seen from H
     };
 
     explicit Exceeded(double limit) : limit_(limit) {}
 
-    /// What is exceeded by less is of no interest. It rises with the worst cone found.
+    /// What is exceeded by less is of no interest. It rises with the worst cone
+    /// found.
     double limit() const { return limit_; }
 
     void enter(const Cone& cone) {
         constexpr double like = 0.75;
-        limit_ = std::max(limit_, 1 + 0.7 * (cone.growth - 1));
+        // Of dense sources thousands may be nearly as bad.
+        const double share = std::min(0.7 + 0.01 * entered_++, 0.98);
+        limit_ = std::max(limit_, 1 + share * (cone.growth - 1));
         const auto end = cones_.begin() + static_cast<std::ptrdiff_t>(count_);
         auto place = std::find_if(cones_.begin(), end, [&](const Cone& other) {
             const double cosine = other.direction.dot(cone.direction);
@@ -82,11 +96,13 @@ private:
     }
 
     double limit_;
+    int entered_ = 0;
     std::array<Cone, 4> cones_{};
     std::size_t count_ = 0;
 };
 
-// Nearly the direction of the greatest eigenvalue, if that is much greater than the others.
+// Nearly the direction of the greatest eigenvalue, if that is much greater than
+// the others.
 Vector main_direction(const Metric& tensor) {
     const Eigen::Matrix3d squared = square(tensor).matrix();
     Eigen::Index most = 0;
@@ -119,6 +135,7 @@ void find_exceeded(const QuadricTree& tree, std::uint32_t root, const Point& p,
                    const Eigen::Matrix3d& h, double slope, Exceeded& exceeded) {
     // Seven siblings wait at each of at most eleven levels.
     std::array<std::uint32_t, 96> stack;
+    const Exceeding exceeding(p, h, slope);
     std::size_t height = 0;
     stack[height++] = root;
     while (height > 0) {
@@ -128,14 +145,13 @@ void find_exceeded(const QuadricTree& tree, std::uint32_t root, const Point& p,
             continue;
         }
         const std::uint32_t first = tree.first_child(number);
-        auto [children, bounds] =
-            children_exceeded(tree.node(number), p, h, exceeded.limit(), slope);
+        auto [children, rooms] = children_exceeded(tree.node(number), exceeding, exceeded.limit());
         const std::size_t floor = height;
         for (; children != 0; children &= children - 1) {
             const auto c = static_cast<std::uint32_t>(std::countr_zero(children));
             // The greatest on top: what is found there raises the limit.
             std::size_t place = height++;
-            for (; place > floor && bounds[stack[place - 1] - first] > bounds[c]; --place) {
+            for (; place > floor && rooms[stack[place - 1] - first] < rooms[c]; --place) {
                 stack[place] = stack[place - 1];
             }
             stack[place] = first + c;
@@ -174,8 +190,8 @@ public:
         }
         return answer;
     }
-    /// Below nodes of the tree that are not far above its members: what exceeds H most at a place
-    /// is often near to what did so elsewhere.
+    /// Below nodes of the tree that are not far above its members: what exceeds H
+    /// most at a place is often near to what did so elsewhere.
     void find_exceeded_nearby(const QuadricTree& tree, const Point& p, const Eigen::Matrix3d& h,
                               double slope, Exceeded& exceeded) const {
         std::array<std::uint32_t, OrderFreeIntersection::most_multipliers> roots;
@@ -190,7 +206,8 @@ public:
             find_exceeded(tree, root, p, h, slope, exceeded);
         }
     }
-    /// Leaves the first `fixed`, and those that the certificate of an answer needs.
+    /// Leaves the first `fixed`, and those that the certificate of an answer
+    /// needs.
     void reduce(const OrderFreeIntersection& answer, std::size_t fixed) {
         std::array<Metric, OrderFreeIntersection::most_multipliers> tensors;
         const auto multipliers = answer.multipliers();

@@ -2,7 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -13,16 +13,19 @@ namespace controlspace {
 
 // The bound of a node
 // -------------------
-// Write a source's quadratic function at y as q(y) = |M^-1 (p - Q)|^2, and P = H^T M^-2 H: both are
-// linear in its ten coefficients. H is within sqrt(limit) times its cone if
+// Write a source's quadratic function at y as q(y) = |M^-1 (p - Q)|^2, and P =
+// H^T M^-2 H: both are linear in its ten coefficients. H is within sqrt(limit)
+// times its cone if
 //     x P x <= limit (1 + (g-1) sqrt(q(y)))^2    for all unit vectors x.
-// For each x the left side is linear, and the right side concave, in the coefficients where q >= 0.
-// So the inequality is true in a parallelogram of coefficients if it is true at its four corners,
-// and the variation of P, that of q, and their correlation count as they are: where sources vary
-// smoothly, only the square of their variation, in `rest`, makes the bound less than sharp. (A
-// bound of each of the two sides by itself would lose the first order.) `rest` makes P greater and
-// q smaller: in the coordinates of the axes h_j, the rows of H, x P x gains no more than sum
-// rest_jk |h_j| |h_k|. If q may be negative at a corner, all factors count as 1, the least.
+// For each x the left side is linear, and the right side concave, in the
+// coefficients where q >= 0. So the inequality is true in a parallelogram of
+// coefficients if it is true at its four corners, and the variation of P, that
+// of q, and their correlation count as they are: where sources vary smoothly,
+// only the square of their variation, in `rest`, makes the bound less than
+// sharp. (A bound of each of the two sides by itself would lose the first
+// order.) `rest` makes P greater and q smaller: in the coordinates of the axes
+// h_j, the rows of H, x P x gains no more than sum rest_jk |h_j| |h_k|. If q
+// may be negative at a corner, all factors count as 1, the least.
 
 namespace {
 
@@ -37,14 +40,13 @@ Coefficients coefficients_of(const Eigen::Matrix3d& a, const Vector& w) {
 
 struct Bounds {
     Point centre = Point::Zero();
-    Eigen::Matrix3d axes;  // columns
     Coefficients middle;
     std::array<Coefficients, 2> slopes;
-    Coefficients rest = Coefficients::Zero();
+    std::array<double, 8> rest;
 };
 
-// The two directions along which some places vary most, and the sums and bounds of their
-// coordinates.
+// The two directions along which some places vary most, and the sums and bounds
+// of their coordinates.
 struct Parameters {
     std::array<Vector, 2> directions;
     std::array<double, 2> squares{}, low{}, high{};
@@ -63,8 +65,8 @@ Bounds bounds_of(std::span<const ConeTreeItem> items, std::span<const Metric> in
     }
     const double share = 1 / static_cast<double>(items.size());
     bounds.centre *= share;
-    bounds.axes = eigen_frame(Metric::from_matrix(sum)).directions;
-    const Eigen::Matrix3d& axes = bounds.axes;
+    // Least variation of second order in its own axes.
+    const Eigen::Matrix3d axes = eigen_frame(Metric::from_matrix(sum)).directions;
     const auto place = [&](const ConeTreeItem& item) -> Vector {
         return axes.transpose() * (item.position() - bounds.centre);
     };
@@ -107,6 +109,7 @@ Bounds bounds_of(std::span<const ConeTreeItem> items, std::span<const Metric> in
         bounds.slopes[k] = along.reach(k) * slope;
     }
 
+    Coefficients rest = Coefficients::Zero();
     Coefficients greatest = Coefficients::Zero();
     double greatest_trace = 0;
     double farthest = 0;
@@ -120,71 +123,37 @@ Bounds bounds_of(std::span<const ConeTreeItem> items, std::span<const Metric> in
             const double x = (along.directions[k].dot(w) - along.middle(k)) / reach;
             here -= std::clamp(x, -1.0, 1.0) * bounds.slopes[k];
         }
-        bounds.rest = bounds.rest.max(here.abs());
+        rest = rest.max(here.abs());
         greatest = greatest.max(q.abs());
         greatest_trace = std::max(greatest_trace, q[0] + q[1] + q[2]);
         farthest = std::max(farthest, w.squaredNorm());
     }
     // Rounding of A and of the sums here and in `children_exceeded`.
     const double rounding = 64 * std::numeric_limits<double>::epsilon() * greatest_trace;
-    for (int j = 0; j < 3; ++j) bounds.rest[j] += rounding + 6 * uncertainty * greatest[j];
-    bounds.rest[9] += rounding * farthest + 6 * uncertainty * greatest[9];
+    for (int j = 0; j < 3; ++j) rest[j] += rounding + 6 * uncertainty * greatest[j];
+    rest[9] += rounding * farthest + 6 * uncertainty * greatest[9];
+    // |x_j x_k| <= (x_j^2 + x_k^2) / 2: a tensor of the rows' sums is no less.
+    const Vector sums(rest[0] + rest[3] + rest[4], rest[1] + rest[3] + rest[5],
+                      rest[2] + rest[4] + rest[5]);
+    const Metric g = Metric::from_matrix(axes * sums.asDiagonal() * axes.transpose());
+    bounds.rest = {g.xx, g.yy, g.zz, g.xy, g.xz, g.yz, rest.segment<3>(6).matrix().norm(), rest[9]};
+    const auto unrotated = [&](const Coefficients& q) -> Coefficients {
+        const Eigen::Matrix3d a =
+            axes * Metric{q[0], q[1], q[2], q[3], q[4], q[5]}.matrix() * axes.transpose();
+        const Vector b = axes * Vector(q[6], q[7], q[8]);
+        Coefficients rotated;
+        rotated << a(0, 0), a(1, 1), a(2, 2), a(1, 0), a(2, 0), a(2, 1), b.array(), q[9];
+        return rotated;
+    };
+    bounds.middle = unrotated(bounds.middle);
+    for (Coefficients& slope : bounds.slopes) slope = unrotated(slope);
     return bounds;
 }
 
-// What follows is plain arithmetic, lane by lane, for the compiler to turn into vectors.
+// What follows is plain arithmetic, lane by lane, for the compiler to turn into
+// vectors.
 
-struct Symmetric {
-    double xx, yy, zz, xy, xz, yz;
-};
-
-// A place or a factor as seen along the axes of a child.
-struct Frame {
-    double x0, x1, x2, y0, y1, y2, z0, z1, z2;  // rows, one for each axis
-
-    [[gnu::always_inline]] inline Frame(const std::array<std::array<QuadricNode::Row, 3>, 3>& axes,
-                                        std::size_t l, const std::array<double, 9>& h)
-        : x0(axes[0][0][l] * h[0] + axes[0][1][l] * h[3] + axes[0][2][l] * h[6]),
-          x1(axes[0][0][l] * h[1] + axes[0][1][l] * h[4] + axes[0][2][l] * h[7]),
-          x2(axes[0][0][l] * h[2] + axes[0][1][l] * h[5] + axes[0][2][l] * h[8]),
-          y0(axes[1][0][l] * h[0] + axes[1][1][l] * h[3] + axes[1][2][l] * h[6]),
-          y1(axes[1][0][l] * h[1] + axes[1][1][l] * h[4] + axes[1][2][l] * h[7]),
-          y2(axes[1][0][l] * h[2] + axes[1][1][l] * h[5] + axes[1][2][l] * h[8]),
-          z0(axes[2][0][l] * h[0] + axes[2][1][l] * h[3] + axes[2][2][l] * h[6]),
-          z1(axes[2][0][l] * h[1] + axes[2][1][l] * h[4] + axes[2][2][l] * h[7]),
-          z2(axes[2][0][l] * h[2] + axes[2][1][l] * h[5] + axes[2][2][l] * h[8]) {}
-
-    // Products of the rows.
-    [[gnu::always_inline]] inline Symmetric products() const {
-        return {x0 * x0 + x1 * x1 + x2 * x2, y0 * y0 + y1 * y1 + y2 * y2,
-                z0 * z0 + z1 * z1 + z2 * z2, x0 * y0 + x1 * y1 + x2 * y2,
-                x0 * z0 + x1 * z1 + x2 * z2, y0 * z0 + y1 * z1 + y2 * z2};
-    }
-    // H^T A H.
-    [[gnu::always_inline]] inline Symmetric seen(const QuadricNode::Rows& a, std::size_t l) const {
-        const double xx = a[0][l], yy = a[1][l], zz = a[2][l];
-        const double xy = a[3][l], xz = a[4][l], yz = a[5][l];
-        const double u0 = xx * x0 + xy * y0 + xz * z0;
-        const double v0 = xy * x0 + yy * y0 + yz * z0;
-        const double w0 = xz * x0 + yz * y0 + zz * z0;
-        const double u1 = xx * x1 + xy * y1 + xz * z1;
-        const double v1 = xy * x1 + yy * y1 + yz * z1;
-        const double w1 = xz * x1 + yz * y1 + zz * z1;
-        const double u2 = xx * x2 + xy * y2 + xz * z2;
-        const double v2 = xy * x2 + yy * y2 + yz * z2;
-        const double w2 = xz * x2 + yz * y2 + zz * z2;
-        return {x0 * u0 + y0 * v0 + z0 * w0, x1 * u1 + y1 * v1 + z1 * w1,
-                x2 * u2 + y2 * v2 + z2 * w2, x0 * u1 + y0 * v1 + z0 * w1,
-                x0 * u2 + y0 * v2 + z0 * w2, x1 * u2 + y1 * v2 + z1 * w2};
-    }
-};
-
-// Sum of the products of all nine entries.
-[[gnu::always_inline]] inline double inner_product(const QuadricNode::Rows& a, std::size_t l,
-                                                   const Symmetric& b) {
-    return a[0][l] * b.xx + a[1][l] * b.yy + a[2][l] * b.zz +
-           2 * (a[3][l] * b.xy + a[4][l] * b.xz + a[5][l] * b.yz);
-}
+using Row = QuadricNode::Row;
 
 // y A y + 2 b y + c.
 [[gnu::always_inline]] inline double value(const QuadricNode::Rows& q, std::size_t l, double x,
@@ -194,98 +163,128 @@ struct Frame {
            q[9][l];
 }
 
+// Sum of the products of all nine entries.
+[[gnu::always_inline]] inline double inner_product(const Row* a, std::size_t l, const Metric& b) {
+    return a[0][l] * b.xx + a[1][l] * b.yy + a[2][l] * b.zz +
+           2 * (a[3][l] * b.xy + a[4][l] * b.xz + a[5][l] * b.yz);
+}
+
 [[gnu::always_inline]] inline double positive(double x) { return x > 0 ? x : 0; }
 [[gnu::always_inline]] inline double less(double a, double b) { return a < b ? a : b; }
 
-// The least of three numbers that are all positive where most I - P is positive definite, and not
-// all where it is not.
-[[gnu::always_inline]] inline double least_minor(double most, const Symmetric& p) {
-    const double x = most - p.xx;
-    const double y = most - p.yy;
-    const double z = most - p.zz;
-    const double xy = x * y - p.xy * p.xy;
-    const double determinant = z * xy - x * p.yz * p.yz - y * p.xz * p.xz - 2 * p.xy * p.xz * p.yz;
-    return less(less(x, xy), determinant);
-}
+// What is asked of a node: Y = H H^T, its inverse W, and so on.
+struct Question {
+    double x, y, z;
+    Metric square, inverse;
+    double limit, slope;
+};
 
-// A parallelogram of quadratic functions, and P of its middle and of its variation.
-struct Corners {
+// (g-1)^2 q of all children, and whether traces decide.
+struct Measured {
+    Row middle, first, second;
+    Row rooms;  // positive where no trace at any corner is greater than the limit
+};
+
+// Of a parallelogram, the trace of P over the limit, and (g-1)^2 q.
+struct Traces {
     double middle, first, second;
-    double rest_seen, limit, slope;
-    Symmetric p, p_first, p_second;
+    double q_middle, q_first, q_second;
 
+    // Positive where trace / limit < (1 + sqrt(q))^2.
     [[gnu::always_inline]] inline double room(double s, double t) const {
-        const double factor = 1 + slope * std::sqrt(positive(middle + s * first + t * second));
-        const double most = limit * factor * factor - rest_seen;
-        return least_minor(
-            most,
-            {p.xx + s * p_first.xx + t * p_second.xx, p.yy + s * p_first.yy + t * p_second.yy,
-             p.zz + s * p_first.zz + t * p_second.zz, p.xy + s * p_first.xy + t * p_second.xy,
-             p.xz + s * p_first.xz + t * p_second.xz, p.yz + s * p_first.yz + t * p_second.yz});
+        const double q = q_middle + s * q_first + t * q_second;
+        const double more = middle + s * first + t * second - 1 - q;
+        return 4 * q - more * std::abs(more);
     }
 };
 
-// q and its variation, and what the rest adds to P, of all children.
-struct Measured {
-    QuadricNode::Row middle, first, second, rest_seen;
-    QuadricNode::Row bounds;  // of the eigenvalues, by the trace
-};
-
 CONTROLSPACE_VECTOR_CLONES
-void measure(const QuadricNode& __restrict node, const std::array<double, 3>& p,
-             const std::array<double, 9>& h, double slope, Measured& __restrict measured) {
+void measure(const QuadricNode& __restrict node, const Question& __restrict question,
+             Measured& __restrict measured) {
+    const double squared_slope = question.slope * question.slope;
+    const double over_limit = 1 / question.limit;
     for (std::size_t l = 0; l < lane_count; ++l) {
-        const double ux = p[0] - node.centre[0][l];
-        const double uy = p[1] - node.centre[1][l];
-        const double uz = p[2] - node.centre[2][l];
-        const double x =
-            node.axes[0][0][l] * ux + node.axes[0][1][l] * uy + node.axes[0][2][l] * uz;
-        const double y =
-            node.axes[1][0][l] * ux + node.axes[1][1][l] * uy + node.axes[1][2][l] * uz;
-        const double z =
-            node.axes[2][0][l] * ux + node.axes[2][1][l] * uy + node.axes[2][2][l] * uz;
-        const double middle = value(node.middle, l, x, y, z) -
-                              value(node.rest, l, std::abs(x), std::abs(y), std::abs(z));
+        const double x = question.x - node.centre[0][l];
+        const double y = question.y - node.centre[1][l];
+        const double z = question.z - node.centre[2][l];
+        const double rest =
+            x * (node.rest[0][l] * x + 2 * (node.rest[3][l] * y + node.rest[4][l] * z)) +
+            y * (node.rest[1][l] * y + 2 * node.rest[5][l] * z) + z * node.rest[2][l] * z +
+            2 * node.rest[6][l] * std::sqrt(x * x + y * y + z * z) + node.rest[7][l];
+        const double middle = value(node.middle, l, x, y, z) - rest;
         const double first = value(node.slopes[0], l, x, y, z);
         const double second = value(node.slopes[1], l, x, y, z);
-        const Symmetric products = Frame(node.axes, l, h).products();
-        const double sx = std::sqrt(products.xx);
-        const double sy = std::sqrt(products.yy);
-        const double sz = std::sqrt(products.zz);
-        const Symmetric sizes{products.xx, products.yy, products.zz, sx * sy, sx * sz, sy * sz};
-        const double rest_seen = inner_product(node.rest, l, sizes);
-        // The trace is no less than the greatest eigenvalue.
-        const double trace = inner_product(node.middle, l, products) +
-                             std::abs(inner_product(node.slopes[0], l, products)) +
-                             std::abs(inner_product(node.slopes[1], l, products));
-        const double least =
-            1 + slope * std::sqrt(positive(middle - std::abs(first) - std::abs(second)));
-        measured.middle[l] = middle;
-        measured.first[l] = first;
-        measured.second[l] = second;
-        measured.rest_seen[l] = rest_seen;
-        measured.bounds[l] = (trace + rest_seen) / (least * least);
+        // If q may be negative, it counts as 0.
+        const double counts = middle - std::abs(first) - std::abs(second) > 0 ? squared_slope : 0;
+        const Metric& square = question.square;
+        const Traces traces{over_limit * (inner_product(node.middle.data(), l, square) +
+                                          inner_product(node.rest.data(), l, square)),
+                            over_limit * inner_product(node.slopes[0].data(), l, square),
+                            over_limit * inner_product(node.slopes[1].data(), l, square),
+                            counts * middle,
+                            counts * first,
+                            counts * second};
+        measured.middle[l] = traces.q_middle;
+        measured.first[l] = traces.q_first;
+        measured.second[l] = traces.q_second;
+        measured.rooms[l] = less(less(traces.room(-1, -1), traces.room(-1, 1)),
+                                 less(traces.room(1, -1), traces.room(1, 1)));
     }
 }
 
-// Numbers that are positive where no eigenvalue at any corner is greater than the limit.
+struct Symmetric {
+    double xx, yy, zz, xy, xz, yz;
+};
+
+// The least pivot of most W - A, made less by what rounding leaves in doubt.
+[[gnu::always_inline]] inline double least_pivot(double most, const Metric& w, const Symmetric& a) {
+    constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+    const double doubt = rounding * most * (w.xx + w.yy + w.zz);
+    const double xx = most * w.xx - a.xx - doubt;
+    const double xy = most * w.xy - a.xy;
+    const double xz = most * w.xz - a.xz;
+    const double over_x = 1 / xx;
+    const double yy = most * w.yy - a.yy - doubt - xy * xy * over_x;
+    const double yz = most * w.yz - a.yz - xz * xy * over_x;
+    const double zz = most * w.zz - a.zz - doubt - xz * xz * over_x - yz * yz / yy;
+    return less(less(xx, yy), zz);
+}
+
+// A parallelogram: (g-1)^2 q, and A, of its middle and of its variation.
+struct Corners {
+    double q_middle, q_first, q_second;
+    Symmetric middle, first, second;
+
+    [[gnu::always_inline]] inline double room(const Question& question, double s, double t) const {
+        const double factor = 1 + std::sqrt(positive(q_middle + s * q_first + t * q_second));
+        return least_pivot(
+            question.limit * factor * factor, question.inverse,
+            {middle.xx + s * first.xx + t * second.xx, middle.yy + s * first.yy + t * second.yy,
+             middle.zz + s * first.zz + t * second.zz, middle.xy + s * first.xy + t * second.xy,
+             middle.xz + s * first.xz + t * second.xz, middle.yz + s * first.yz + t * second.yz});
+    }
+};
+
+// Numbers that are positive where no eigenvalue at any corner is greater than
+// the limit.
 CONTROLSPACE_VECTOR_CLONES
-void measure_corners(const QuadricNode& __restrict node, const std::array<double, 9>& h,
-                     double limit, double slope, const Measured& __restrict measured,
-                     QuadricNode::Row& __restrict rooms) {
+void measure_corners(const QuadricNode& __restrict node, const Question& __restrict question,
+                     const Measured& __restrict measured, Row& __restrict rooms) {
     for (std::size_t l = 0; l < lane_count; ++l) {
-        const double middle = measured.middle[l];
-        const double first = measured.first[l];
-        const double second = measured.second[l];
-        // Where q may be negative, factors count as 1.
-        const double counts = middle - std::abs(first) - std::abs(second) > 0 ? slope : 0;
-        const Frame frame(node.axes, l, h);
-        const Symmetric p = frame.seen(node.middle, l);
-        const Symmetric a = frame.seen(node.slopes[0], l);
-        const Symmetric b = frame.seen(node.slopes[1], l);
-        const Corners corners{middle, first, second, measured.rest_seen[l], limit, counts, p, a, b};
-        rooms[l] = less(less(corners.room(-1, -1), corners.room(-1, 1)),
-                        less(corners.room(1, -1), corners.room(1, 1)));
+        const Symmetric middle{
+            node.middle[0][l] + node.rest[0][l], node.middle[1][l] + node.rest[1][l],
+            node.middle[2][l] + node.rest[2][l], node.middle[3][l] + node.rest[3][l],
+            node.middle[4][l] + node.rest[4][l], node.middle[5][l] + node.rest[5][l]};
+        const QuadricNode::Rows& first = node.slopes[0];
+        const QuadricNode::Rows& second = node.slopes[1];
+        const Symmetric a{first[0][l], first[1][l], first[2][l],
+                          first[3][l], first[4][l], first[5][l]};
+        const Symmetric b{second[0][l], second[1][l], second[2][l],
+                          second[3][l], second[4][l], second[5][l]};
+        const Corners corners{
+            measured.middle[l], measured.first[l], measured.second[l], middle, a, b};
+        rooms[l] = less(less(corners.room(question, -1, -1), corners.room(question, -1, 1)),
+                        less(corners.room(question, 1, -1), corners.room(question, 1, 1)));
     }
 }
 
@@ -295,20 +294,23 @@ void set(QuadricNode::Rows& rows, std::size_t lane, const Coefficients& q) {
 
 }  // namespace
 
-ExceededChildren children_exceeded(const QuadricNode& node, const Point& p,
-                                   const Eigen::Matrix3d& h, double limit, double slope) {
-    const std::array<double, 9> rows{h(0, 0), h(0, 1), h(0, 2), h(1, 0), h(1, 1),
-                                     h(1, 2), h(2, 0), h(2, 1), h(2, 2)};
+Exceeding::Exceeding(const Point& place, const Eigen::Matrix3d& h, double slope_of_cones)
+    : p(place), slope(slope_of_cones), square(Metric::from_matrix(h * h.transpose())) {
+    const Eigen::Matrix3d inverse_factor = h.inverse();
+    inverse = Metric::from_matrix(inverse_factor.transpose() * inverse_factor);
+}
+
+ExceededChildren children_exceeded(const QuadricNode& node, const Exceeding& y, double limit) {
+    const Question question{y.p.x(), y.p.y(), y.p.z(), y.square, y.inverse, limit, y.slope};
     Measured measured;
-    measure(node, {p.x(), p.y(), p.z()}, rows, slope, measured);
-    ExceededChildren children{.bits = 0, .bounds = measured.bounds};
-    if (std::ranges::all_of(children.bounds, [&](double bound) { return bound < limit; })) {
-        return children;
-    }
-    QuadricNode::Row rooms;
-    measure_corners(node, rows, limit, slope, measured, rooms);
-    for (std::size_t l = 0; l < rooms.size(); ++l) {
-        children.bits |= (rooms[l] > 0 ? 0u : 1u) << l;
+    measure(node, question, measured);
+    const auto is_positive = [](double room) { return room > 0; };
+    if (std::ranges::all_of(measured.rooms, is_positive)) return {};
+    ExceededChildren children;
+    measure_corners(node, question, measured, children.rooms);
+    for (std::size_t l = 0; l < lane_count; ++l) {
+        const bool is_there = node.middle[0][l] > 0;
+        children.bits |= (!is_there || children.rooms[l] > 0 ? 0u : 1u) << l;
     }
     return children;
 }
@@ -331,15 +333,11 @@ QuadricTree build_quadric_tree(std::span<ConeTreeItem> items, std::span<const Po
                 if (children[i].items.empty()) continue;
                 const Bounds bounds = bounds_of(children[i].items, inverse_squares, uncertainty);
                 for (int a = 0; a < 3; ++a) {
-                    const auto row = static_cast<std::size_t>(a);
-                    node.centre[row][i] = bounds.centre[a];
-                    for (int j = 0; j < 3; ++j) {
-                        node.axes[static_cast<std::size_t>(j)][row][i] = bounds.axes(a, j);
-                    }
+                    node.centre[static_cast<std::size_t>(a)][i] = bounds.centre[a];
                 }
                 set(node.middle, i, bounds.middle);
                 for (std::size_t k = 0; k < 2; ++k) set(node.slopes[k], i, bounds.slopes[k]);
-                set(node.rest, i, bounds.rest);
+                for (std::size_t k = 0; k < 8; ++k) node.rest[k][i] = bounds.rest[k];
             }
         });
     return tree;
