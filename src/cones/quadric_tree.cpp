@@ -172,13 +172,6 @@ using Row = QuadricNode::Row;
 [[gnu::always_inline]] inline double positive(double x) { return x > 0 ? x : 0; }
 [[gnu::always_inline]] inline double less(double a, double b) { return a < b ? a : b; }
 
-// What is asked of a node: Y = H H^T, its inverse W, and so on.
-struct Question {
-    double x, y, z;
-    Metric square, inverse;
-    double limit, slope;
-};
-
 // (g-1)^2 q of all children, and whether traces decide.
 struct Measured {
     Row middle, first, second;
@@ -199,14 +192,14 @@ struct Traces {
 };
 
 CONTROLSPACE_VECTOR_CLONES
-void measure(const QuadricNode& __restrict node, const Question& __restrict question,
+void measure(const QuadricNode& __restrict node, const Exceeding& __restrict h, double limit,
              Measured& __restrict measured) {
-    const double squared_slope = question.slope * question.slope;
-    const double over_limit = 1 / question.limit;
+    const double squared_slope = h.slope * h.slope;
+    const double over_limit = 1 / limit;
     for (std::size_t l = 0; l < lane_count; ++l) {
-        const double x = question.x - node.centre[0][l];
-        const double y = question.y - node.centre[1][l];
-        const double z = question.z - node.centre[2][l];
+        const double x = h.p.x() - node.centre[0][l];
+        const double y = h.p.y() - node.centre[1][l];
+        const double z = h.p.z() - node.centre[2][l];
         const double rest =
             x * (node.rest[0][l] * x + 2 * (node.rest[3][l] * y + node.rest[4][l] * z)) +
             y * (node.rest[1][l] * y + 2 * node.rest[5][l] * z) + z * node.rest[2][l] * z +
@@ -216,7 +209,7 @@ void measure(const QuadricNode& __restrict node, const Question& __restrict ques
         const double second = value(node.slopes[1], l, x, y, z);
         // If q may be negative, it counts as 0.
         const double counts = middle - std::abs(first) - std::abs(second) > 0 ? squared_slope : 0;
-        const Metric& square = question.square;
+        const Metric& square = h.square;
         const Traces traces{over_limit * (inner_product(node.middle.data(), l, square) +
                                           inner_product(node.rest.data(), l, square)),
                             over_limit * inner_product(node.slopes[0].data(), l, square),
@@ -236,18 +229,19 @@ struct Symmetric {
     double xx, yy, zz, xy, xz, yz;
 };
 
-// The least pivot of most W - A, made less by what rounding leaves in doubt.
-[[gnu::always_inline]] inline double least_pivot(double most, const Metric& w, const Symmetric& a) {
+// The least of three numbers that are all positive where most W - A is positive definite, and not
+// all where it is not, made less by what rounding leaves in doubt. Its pivots, times those before
+// them: as stable, without divisions.
+[[gnu::always_inline]] inline double least_minor(double most, const Metric& w, const Symmetric& a) {
     constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
     const double doubt = rounding * most * (w.xx + w.yy + w.zz);
     const double xx = most * w.xx - a.xx - doubt;
     const double xy = most * w.xy - a.xy;
     const double xz = most * w.xz - a.xz;
-    const double over_x = 1 / xx;
-    const double yy = most * w.yy - a.yy - doubt - xy * xy * over_x;
-    const double yz = most * w.yz - a.yz - xz * xy * over_x;
-    const double zz = most * w.zz - a.zz - doubt - xz * xz * over_x - yz * yz / yy;
-    return less(less(xx, yy), zz);
+    const double yy = xx * (most * w.yy - a.yy - doubt) - xy * xy;
+    const double yz = xx * (most * w.yz - a.yz) - xy * xz;
+    const double zz = xx * (most * w.zz - a.zz - doubt) - xz * xz;
+    return less(less(xx, yy), yy * zz - yz * yz);
 }
 
 // A parallelogram: (g-1)^2 q, and A, of its middle and of its variation.
@@ -255,10 +249,11 @@ struct Corners {
     double q_middle, q_first, q_second;
     Symmetric middle, first, second;
 
-    [[gnu::always_inline]] inline double room(const Question& question, double s, double t) const {
+    [[gnu::always_inline]] inline double room(const Exceeding& h, double limit, double s,
+                                              double t) const {
         const double factor = 1 + std::sqrt(positive(q_middle + s * q_first + t * q_second));
-        return least_pivot(
-            question.limit * factor * factor, question.inverse,
+        return least_minor(
+            limit * factor * factor, h.inverse,
             {middle.xx + s * first.xx + t * second.xx, middle.yy + s * first.yy + t * second.yy,
              middle.zz + s * first.zz + t * second.zz, middle.xy + s * first.xy + t * second.xy,
              middle.xz + s * first.xz + t * second.xz, middle.yz + s * first.yz + t * second.yz});
@@ -268,8 +263,8 @@ struct Corners {
 // Numbers that are positive where no eigenvalue at any corner is greater than
 // the limit.
 CONTROLSPACE_VECTOR_CLONES
-void measure_corners(const QuadricNode& __restrict node, const Question& __restrict question,
-                     const Measured& __restrict measured, Row& __restrict rooms) {
+void measure_corners(const QuadricNode& __restrict node, const Exceeding& __restrict h,
+                     double limit, const Measured& __restrict measured, Row& __restrict rooms) {
     for (std::size_t l = 0; l < lane_count; ++l) {
         const Symmetric middle{
             node.middle[0][l] + node.rest[0][l], node.middle[1][l] + node.rest[1][l],
@@ -283,8 +278,8 @@ void measure_corners(const QuadricNode& __restrict node, const Question& __restr
                           second[3][l], second[4][l], second[5][l]};
         const Corners corners{
             measured.middle[l], measured.first[l], measured.second[l], middle, a, b};
-        rooms[l] = less(less(corners.room(question, -1, -1), corners.room(question, -1, 1)),
-                        less(corners.room(question, 1, -1), corners.room(question, 1, 1)));
+        rooms[l] = less(less(corners.room(h, limit, -1, -1), corners.room(h, limit, -1, 1)),
+                        less(corners.room(h, limit, 1, -1), corners.room(h, limit, 1, 1)));
     }
 }
 
@@ -300,14 +295,13 @@ Exceeding::Exceeding(const Point& place, const Eigen::Matrix3d& h, double slope_
     inverse = Metric::from_matrix(inverse_factor.transpose() * inverse_factor);
 }
 
-ExceededChildren children_exceeded(const QuadricNode& node, const Exceeding& y, double limit) {
-    const Question question{y.p.x(), y.p.y(), y.p.z(), y.square, y.inverse, limit, y.slope};
+ExceededChildren children_exceeded(const QuadricNode& node, const Exceeding& h, double limit) {
     Measured measured;
-    measure(node, question, measured);
+    measure(node, h, limit, measured);
     const auto is_positive = [](double room) { return room > 0; };
     if (std::ranges::all_of(measured.rooms, is_positive)) return {};
     ExceededChildren children;
-    measure_corners(node, question, measured, children.rooms);
+    measure_corners(node, h, limit, measured, children.rooms);
     for (std::size_t l = 0; l < lane_count; ++l) {
         const bool is_there = node.middle[0][l] > 0;
         children.bits |= (!is_there || children.rooms[l] > 0 ? 0u : 1u) << l;
