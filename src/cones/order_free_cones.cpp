@@ -47,7 +47,7 @@ namespace controlspace {
 namespace {
 
 constexpr std::uint32_t lanes_of_leaf = lane_count;
-constexpr double tolerance_of_start = 0.1;  // of cells that lead to smaller ones
+constexpr double tolerance_of_start = 0.3;  // of cells that lead to smaller ones
 
 // Cones that an answer exceeds: the worst ones of different directions.
 class Exceeded {
