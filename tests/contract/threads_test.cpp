@@ -36,8 +36,7 @@ Answers answers(const Structure& structure, const Work& work, const GradationOpt
 
 }  // namespace
 
-STRUCTURE_CASE(splits_in_the_middle, "one, two and seven threads make the same field, to the bit",
-               "[threads]") {
+STRUCTURE_CASE(splits_in_the_middle, "one, two and seven threads make the same field, to the bit") {
     const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
     const GradationOptions options =
         GENERATE(GradationOptions{}, GradationOptions{.law = GradationLaw::mean_length},
