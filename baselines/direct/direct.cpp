@@ -10,7 +10,6 @@
 
 #include "cones/cone_field.h"
 #include "controlspace/error.h"
-#include "controlspace/metric/intersection.h"
 #include "controlspace/space/detail/goal_field.h"
 #include "controlspace/space/detail/saved.h"
 #include "controlspace/space/detail/shared_builder.h"
@@ -23,7 +22,8 @@ namespace {
 /// The sources as inserted.
 class Sources {
 public:
-    explicit Sources(const SpaceOptions& options) : domain_(options.domain), ratio_(options.ratio) {
+    explicit Sources(const SpaceOptions& options)
+        : domain_(options.domain), ratio_(options.ratio), intersection_(options.intersection) {
         require_valid(options);
     }
 
@@ -64,6 +64,7 @@ public:
         state("sources.positions", positions(nodes.graph));
         state("sources.metrics", nodes.metrics);
         state("sources.ratio", ratio_);
+        state("sources.intersection", intersection_, IntersectionRule::in_turn);
     }
     void load(const StateReader& state) {
         std::vector<Point> positions;
@@ -71,6 +72,9 @@ public:
         state("sources.positions", positions);
         state("sources.metrics", metrics);
         state("sources.ratio", ratio_);
+        if (state.has("sources.intersection")) {
+            state("sources.intersection", intersection_, IntersectionRule::in_turn);
+        }
         state.require(positions.size() == metrics.size(), "sources.metrics", "has another length");
         require_valid(GradationOptions{.ratio = ratio_});
         sources_.clear();
@@ -80,6 +84,7 @@ public:
 
     const Box& domain() const { return domain_; }
     double ratio() const { return ratio_; }
+    IntersectionRule rule() const { return intersection_; }
     const std::vector<PointSource>& all() const { return sources_; }
     const ControlSpace* continuous() const { return continuous_.get(); }
 
@@ -94,6 +99,7 @@ private:
 
     Box domain_;
     double ratio_;
+    IntersectionRule intersection_;
     std::vector<PointSource> sources_;
     std::shared_ptr<const ControlSpace> continuous_;
 };
@@ -103,7 +109,9 @@ class Direct final : public ControlSpace, public HasControlNodes, public Saved {
 public:
     explicit Direct(std::shared_ptr<const Sources> sources)
         : sources_(std::move(sources)),
-          cones_(sources_->all(), sources_->ratio(), largest_metric(sources_->domain())) {}
+          cones_(sources_->all(), sources_->ratio(), largest_metric(sources_->domain()),
+                 sources_->rule() == IntersectionRule::order_free ? tolerance : 0,
+                 sources_->rule()) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         const Box& box = sources_->domain();
@@ -113,11 +121,12 @@ public:
             for (Point& p : moved) p = p.cwiseMax(box.low).cwiseMin(box.high);
             x = moved;
         }
-        cones_.evaluate(x, out);
-        if (sources_->continuous() == nullptr) return;
-        std::vector<Metric> own(x.size());
-        sources_->continuous()->sample(x, own);
-        for (std::size_t i = 0; i < x.size(); ++i) out[i] = intersection(out[i], own[i]);
+        std::vector<Metric> own;
+        if (sources_->continuous() != nullptr) {
+            own.resize(x.size());
+            sources_->continuous()->sample(x, own);
+        }
+        cones_.evaluate(x, out, own);
     }
     Box domain() const override { return sources_->domain(); }
     std::optional<Box> cell_at(const Point&) const override { return domain(); }
@@ -140,6 +149,8 @@ public:
     void save(StateWriter& state) const override { sources_->save(state); }
 
 private:
+    static constexpr double tolerance = 1e-3;  // of order-free intersections
+
     std::shared_ptr<const Sources> sources_;
     ConeField cones_;
 };
@@ -151,6 +162,7 @@ std::unique_ptr<ControlSpace> Sources::finished(std::shared_ptr<const Sources> s
 AdaptationReport Sources::adapt(const AdaptationGoal& goal) {
     const GoalField wanted(goal, domain_);
     ratio_ = goal.ratio;
+    intersection_ = goal.intersection;
     sources_.assign(goal.sources.begin(), goal.sources.end());
     continuous_ = goal.continuous;
     const Direct direct(std::make_shared<Sources>(*this));

@@ -43,6 +43,7 @@ Study study_of(const Compare& job) {
             run["law"] = {"mean-length"};
             run["schedule"] = {"passes"};
             run["reference"] = {"published-sphere"};
+            run["intersection"] = {"in-turn"};
         }
     }
     return study;
@@ -73,10 +74,10 @@ Action add_compare(Options& options) {
     options.add_case_parameters(Run{}, group, job->given);
     options.add({"--as-published", " ",
                  "As for the paper's tables: --law mean-length --schedule passes --reference "
-                 "published-sphere",
+                 "published-sphere --intersection in-turn",
                  group},
                 job->as_published);
-    for (const char* name : {"--law", "--schedule", "--reference"}) {
+    for (const char* name : {"--law", "--schedule", "--reference", "--intersection"}) {
         options.exclude("--as-published", name);
     }
     options.add_parameters(study_parameters(), Study{}, "Settings of the study", job->given);

@@ -75,7 +75,10 @@ std::string options_text(const CatalogueEntry& entry, const SpaceOptions& o) {
     add("epsilon", o.tolerance);
     if (is_tree) add("maximum depth", entry.has<SplitRules>() ? o.kd_depth : o.octree_depth);
     if (entry.has<QuadraticLeaves>()) add("interpolation", name_of(o.quadratic_form));
-    if (entry.has<KeptSources>()) add("g_r", o.ratio);
+    if (entry.has<KeptSources>()) {
+        add("intersection", name_of(o.intersection));
+        add("g_r", o.ratio);
+    }
     if (entry.has<VoxelSize>() && o.voxel > 0) add("voxel", o.voxel);
     if (entry.has<VoxelLevels>()) add("voxel_factor", o.voxel_factor);
     if (entry.has<Pruning>()) add("prune_delta", o.prune_delta);

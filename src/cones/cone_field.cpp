@@ -46,12 +46,15 @@ Metric ConeField::at(const Point& x, const Metric* further, Memory& memory) cons
     return further != nullptr ? intersection(m, *further) : m;
 }
 
-void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out) const {
+void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out,
+                         std::span<const Metric> further) const {
     assert(x.size() == out.size());
     Memory memory;
-    if (std::holds_alternative<AnisotropicCones>(cones_)) return evaluate(x, out, memory);
+    if (std::holds_alternative<AnisotropicCones>(cones_)) return evaluate(x, out, memory, further);
     // Near the last place the hint is good, and the sources are in the caches.
-    for (const std::uint32_t i : spatial_order(x)) out[i] = at(x[i], nullptr, memory);
+    for (const std::uint32_t i : spatial_order(x)) {
+        out[i] = at(x[i], further.empty() ? nullptr : &further[i], memory);
+    }
 }
 
 void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out, Memory& memory,

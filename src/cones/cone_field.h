@@ -49,10 +49,11 @@ public:
         OrderFreeCones::Search order_free;
     };
 
-    /// Metrics at `x`, on the calling thread. Thread-safe.
-    void evaluate(std::span<const Point> x, std::span<Metric> out) const;
-    /// The same for places that come in an order in which neighbours are near to each other; with
-    /// further metrics, one for each place or none, intersected as well.
+    /// Metrics at `x`, intersected with `further` metrics, one for each place or none. On the
+    /// calling thread; thread-safe.
+    void evaluate(std::span<const Point> x, std::span<Metric> out,
+                  std::span<const Metric> further = {}) const;
+    /// The same for places that come in an order in which neighbours are near to each other.
     void evaluate(std::span<const Point> x, std::span<Metric> out, Memory& memory,
                   std::span<const Metric> further = {}) const;
     /// The same of an isotropic field, or lengths up to the fraction `tolerance` more.

@@ -47,15 +47,22 @@ void require_usable(std::span<const PointSource> sources, double g, const Metric
 class ExactReference final : public ControlSpace {
 public:
     ExactReference(std::span<const PointSource> sources, double g, const Metric& largest,
-                   double tolerance)
-        : field_(sources, g, largest, tolerance) {}
+                   double tolerance, IntersectionRule rule,
+                   std::shared_ptr<const ControlSpace> continuous)
+        : field_(sources, g, largest, tolerance, rule), continuous_(std::move(continuous)) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
-        field_.evaluate(x, out);
+        std::vector<Metric> further;
+        if (continuous_) {
+            further.resize(x.size());
+            continuous_->sample(x, further);
+        }
+        field_.evaluate(x, out, further);
     }
 
 private:
     ConeField field_;
+    std::shared_ptr<const ControlSpace> continuous_;
 };
 
 class BruteForceReference final : public ControlSpace {
@@ -96,13 +103,16 @@ private:
 }  // namespace
 
 std::unique_ptr<ControlSpace> exact_reference(std::vector<PointSource> sources, double g,
-                                              const Metric& largest, double tolerance) {
+                                              const Metric& largest, double tolerance,
+                                              IntersectionRule rule,
+                                              std::shared_ptr<const ControlSpace> continuous) {
     require_usable(sources, g, largest);
     if (!std::isfinite(tolerance) || tolerance < 0) {
         throw InputError(
             fmt::format("tolerance {} of the reference: give a finite one >= 0", tolerance));
     }
-    return std::make_unique<ExactReference>(sources, g, largest, tolerance);
+    return std::make_unique<ExactReference>(sources, g, largest, tolerance, rule,
+                                            std::move(continuous));
 }
 
 std::unique_ptr<ControlSpace> brute_force_reference(std::vector<PointSource> sources, double g,

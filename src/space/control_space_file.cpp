@@ -133,6 +133,7 @@ void save(const std::filesystem::path& file, const Saved* saved) {
     state("written_by", "controlspace " + std::string(version()));
     state("structure", recipe.structure);
     exchange(recipe.options, state);
+    state("options.intersection", recipe.options.intersection, IntersectionRule::in_turn);
     if (recipe.precision) state("compact.precision", *recipe.precision, Precision::floats);
     saved->save(state);
 
@@ -172,6 +173,11 @@ SavedControlSpace open_control_space(const std::filesystem::path& file,
     std::string structure;
     state("structure", structure);
     exchange(saved.recipe.options, state);
+    // Files from before there was a choice lack it.
+    saved.recipe.options.intersection = IntersectionRule::in_turn;
+    if (state.has("options.intersection")) {
+        state("options.intersection", saved.recipe.options.intersection, IntersectionRule::in_turn);
+    }
     const CatalogueEntry* entry = find_entry(structures, structure);
     if (entry == nullptr) {
         throw InputError(fmt::format(

@@ -8,7 +8,6 @@
 #include "cones/cone_field.h"
 #include "controlspace/error.h"
 #include "controlspace/geometry/detail/place_sequence.h"
-#include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/control_space_builder.h"
 #include "controlspace/space/sample_parallel.h"
@@ -33,6 +32,11 @@ const AdaptationGoal& require_valid(const AdaptationGoal& goal, const Box& domai
 // Some hundredth of the target, as δ.
 double negligible_for(double target) { return 0.1 * std::sqrt(target); }
 
+double tolerance_for(const AdaptationGoal& goal) {
+    const bool is_order_free = goal.intersection == IntersectionRule::order_free;
+    return is_order_free ? std::min(0.1 * goal.target, 0.1) : negligible_for(goal.target);
+}
+
 }  // namespace
 
 GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
@@ -41,8 +45,8 @@ GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
       sources_(goal.sources),
       continuous_(goal.continuous),
       largest_(largest_metric(domain)),
-      cones_(std::make_unique<ConeField>(goal.sources, goal.ratio, largest_,
-                                         negligible_for(goal.target))) {}
+      cones_(std::make_unique<ConeField>(goal.sources, goal.ratio, largest_, tolerance_for(goal),
+                                         goal.intersection)) {}
 
 GoalField::~GoalField() = default;
 
@@ -51,15 +55,14 @@ std::span<const std::uint32_t> GoalField::kept() const { return cones_->kept(); 
 double GoalField::negligible() const { return negligible_for(target_); }
 
 void GoalField::sample(std::span<const Point> x, std::span<Metric> out) const {
-    cones_->evaluate(x, out);
-    add_continuous(x, out);
+    cones_->evaluate(x, out, continuous_at(x));
 }
 
-void GoalField::add_continuous(std::span<const Point> x, std::span<Metric> out) const {
-    if (!continuous_) return;
+std::vector<Metric> GoalField::continuous_at(std::span<const Point> x) const {
+    if (!continuous_) return {};
     std::vector<Metric> own(x.size());
     continuous_->sample(x, own);
-    for (std::size_t i = 0; i < x.size(); ++i) out[i] = intersection(out[i], own[i]);
+    return own;
 }
 
 double GoalField::largest_departure(const Box& domain, const Sample& sample_space) const {

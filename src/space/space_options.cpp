@@ -36,6 +36,7 @@ void require_valid(const SpaceOptions& options) {
     require_volume(options.domain);
     require_known("split", options.split, SplitRule::exact_golden);
     require_known("quadratic_form", options.quadratic_form, QuadraticForm::published);
+    require_known("intersection", options.intersection, IntersectionRule::in_turn);
     require_valid(GradationOptions{.ratio = options.ratio});
     require_positive("l_min (tau)", options.l_min);
     require_positive("the insertion tolerance (epsilon)", options.tolerance);

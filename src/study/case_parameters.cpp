@@ -165,6 +165,12 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
         work("reference", "", "Field to compare with", reference_of(references),
              {references.front()->name},
              [](const Case& c) { return c.reference->name + " reference"; }),
+        work(
+            "intersection", "",
+            "Intersection of the cones of anisotropic sources, in the exact reference, adaptation, "
+            "and structures that keep sources",
+            word<Case>(&Case::intersection), {"in-turn"},
+            if_chosen("{} intersection", &Case::intersection)),
         work("law", "", "Law of gradation", word<Case>(&Case::law), {"cone"},
              word_label("{} law", &Case::law)),
         method("schedule", "", "Order of gradation", word<Case>(&Case::schedule), {"queue"},

@@ -16,7 +16,10 @@ void require_follows(const Case& c, const CatalogueEntry& entry) {
 }
 
 void adapt(Filled& filled, const Case& c, const Workload& workload) {
-    AdaptationGoal goal{workload.sources, workload.field.field, c.g_r};
+    AdaptationGoal goal{.sources = workload.sources,
+                        .continuous = workload.field.field,
+                        .ratio = c.g_r,
+                        .intersection = c.intersection};
     if (c.target_delta) goal.target = *c.target_delta;
     const AdaptationReport report = filled.builder->adapt(goal);
     if (c.target_delta) {

@@ -220,8 +220,9 @@ std::vector<Parameter<Study>> table() {
         {"fine_probe_grid", "", "The same for the finer probes of delta_R_fine and coarser_fine",
          number_of(&Study::fine_probe_grid, within(1, 300)), Use::timing},
         {"reference_tolerance", "",
-         "Exact reference: skip anisotropic sources that would shorten a length by less than this "
-         "fraction t: faster, with an error of about delta = 2 t^2",
+         "t of the exact reference of anisotropic sources. Order-free: log det within 3 ln(1 + t) "
+         "of the best. In turn: skip those that would shorten a length by less than this fraction: "
+         "faster, with an error of about delta = 2 t^2",
          number_of(&Study::reference_tolerance, within(0, 0.1))},
         {"output", "", "New folder for the results; left out: results/NAME-DATE-TIME",
          text_of(&Study::output), Use::results},

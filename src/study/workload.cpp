@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "controlspace/error.h"
-#include "controlspace/fields/mixture.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/space/control_space.h"
@@ -117,6 +116,7 @@ SpaceOptions space_options(const Study& study, const Case& c, const Workload& wo
     if (c.voxel_factor) options.voxel_factor = *c.voxel_factor;
     options.prune_delta = c.prune_delta.value_or(0);
     if (c.interpolation) options.quadratic_form = *c.interpolation;
+    options.intersection = c.intersection;
     for (const CaseParameter& parameter : parameters) {
         if (parameter.apply && !values_of(parameter, c).empty()) parameter.apply(c, options);
     }
@@ -134,11 +134,8 @@ const ReferenceKind& exact_reference_kind() {
         "exact", "intersection of the cones of all sources",
         [](const Study& study, const Case& c,
            const Workload& workload) -> std::shared_ptr<const ControlSpace> {
-            std::shared_ptr<const ControlSpace> cones =
-                exact_reference(workload.sources, c.g_r, largest_metric(workload.domain),
-                                study.reference_tolerance);
-            if (!workload.field.field) return cones;
-            return mixture({std::move(cones), workload.field.field});
+            return exact_reference(workload.sources, c.g_r, largest_metric(workload.domain),
+                                   study.reference_tolerance, c.intersection, workload.field.field);
         }};
     return exact;
 }

@@ -99,8 +99,9 @@ TEST_CASE("help, version and list") {
     const Sandbox box("help");
     const Outcome help = box.run("compare --help");
     CHECK(help.status == 0);
-    for (const char* text : {"--tau", "--mmg-hgrad", "--refine-beta", "--as-published", "--domain",
-                             "--max-memory", "(default: 4)", "GiB", "--quiet", "(default: 1.25)"}) {
+    for (const char* text :
+         {"--tau", "--mmg-hgrad", "--refine-beta", "--as-published", "--intersection", "--domain",
+          "--max-memory", "(default: 4)", "GiB", "--quiet", "(default: 1.25)"}) {
         CHECK_THAT(help.out, Contains(text));
     }
     CHECK_THAT(box.run("--version").out, Catch::Matchers::StartsWith("controlspace 0."));
@@ -129,6 +130,7 @@ TEST_CASE("bad input ends with one line and status 2, and writes nothing") {
         {"compare --tau 0", "--tau: 0 is not positive"},
         {"compare --g-r 1.2 --mmg-hgrad 1.3", "excludes"},
         {"compare --law cone --as-published", "excludes"},
+        {"compare --intersection order-free --as-published", "excludes"},
         {"compare --law cones", "--law: unknown value 'cones'"},
         {"compare --structures K_X", "unknown structure 'K_X'"},
         {"compare --kd-depth 1000", "depth"},

@@ -93,6 +93,16 @@ CASE_OF_EACH(
     }
 }
 
+CASE_OF_EACH(entry, all_trees(), "trees keep the target of an order-free field") {
+    constexpr double target = 0.3;
+    constexpr auto order_free = IntersectionRule::order_free;
+    const std::vector<PointSource> sources = tensors(12);
+    const auto field = exact_reference(sources, g, largest_metric(domain), 1e-3, order_free);
+    const auto space = editable(entry.make({.domain = domain, .intersection = order_free}));
+    CHECK(space->adapt({sources, nullptr, g, target, order_free}).met);
+    CHECK(share_beyond(target, *space, *field) <= 5e-4);
+}
+
 TEST_CASE("sphere at a tenth: the paper's trees and the anchored ones, on 101^3 places") {
     const std::vector<PointSource> sources = sample_sphere({.rho = 1});
     const auto field = exact_reference(sources, g, largest_metric(domain));

@@ -6,6 +6,7 @@
 #include "controlspace/error.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/metric/intersection.h"
+#include "controlspace/metric/order_free_intersection.h"
 #include "fields/values.h"
 #include "metric/draw.h"
 
@@ -96,6 +97,31 @@ TEST_CASE("the reference of a field with sources is the intersection of both") {
     const auto field = make_reference(study, c, alone);
     CHECK(value_at(*field, {-0.5, 0.9, 0}).xx == Approx(0.02).epsilon(1e-12));
     CHECK(difference(value_at(*field, {1, 1, 1}), Metric::isotropic(largest)) < 1e-12);
+}
+
+TEST_CASE("the order-free reference is the largest metric within all cones and the field") {
+    Study study = small_study();
+    study.reference_tolerance = 1e-3;
+    Case c;
+    c.sources = study.sources;
+    c.sources.s_n = 0.25;
+    c.sources.field.kind = FieldKind::planes;
+    c.sources.field.lengths = {.across = 0.02, .along = 0.3};
+    c.intersection = IntersectionRule::order_free;
+    const Workload mixed = make_workload(study, c.sources);
+    const auto reference = make_reference(study, c, mixed);
+    Draw draw(1);
+    for (int i = 0; i < 30; ++i) {
+        const Point p(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
+        std::vector<Metric> all{largest_metric(mixed.domain), value_at(*mixed.field.field, p)};
+        for (const PointSource& s : mixed.sources) {
+            all.push_back((1 + (c.g_r - 1) * metric_length(s.metric, p - s.position)) * s.metric);
+        }
+        const Metric m = value_at(*reference, p);
+        for (const Metric& other : all) CHECK(is_within(m, 1 + 1e-12, other));
+        const double best = order_free_intersection(all).metric().matrix().determinant();
+        CHECK(m.matrix().determinant() >= best * (1 - 3.1 * study.reference_tolerance));
+    }
 }
 
 TEST_CASE("the reference of the paper's Table 4 grows with the distance from the sphere") {

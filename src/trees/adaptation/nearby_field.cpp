@@ -2,6 +2,7 @@
 
 #include "cones/cone_field.h"
 #include "cones/nearby_cones.h"
+#include "controlspace/metric/intersection.h"
 
 namespace controlspace {
 
@@ -20,14 +21,14 @@ struct NearbyField::Search {
         if (are_few) cones.narrow(gathered, box);
     }
     void by_memory(std::span<const Point> x, std::span<Metric> out) {
-        field.cones().evaluate(x, out, memory);
-        field.add_continuous(x, out);
+        field.cones().evaluate(x, out, memory, field.continuous_at(x));
     }
     void by_few(std::span<const Point> x, std::span<Metric> out) const {
+        const std::vector<Metric> further = field.continuous_at(x);
         for (std::size_t i = 0; i < x.size(); ++i) {
             out[i] = Metric::isotropic(cones.smallest_length(x[i]));
+            if (!further.empty()) out[i] = intersection(out[i], further[i]);
         }
-        field.add_continuous(x, out);
     }
 };
 

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "cones/cone_field.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
+#include "controlspace/metric/order_free_intersection.h"
 #include "controlspace/trees/detail/in_parallel.h"
 
 namespace controlspace {
@@ -26,7 +28,9 @@ double negligible_shortening(double target) { return 0.5 * std::sqrt(target); }
 }  // namespace
 
 AnchoredValues::AnchoredValues(const SpaceOptions& options)
-    : largest_(largest_metric(options.domain)), ratio_(options.ratio) {}
+    : largest_(largest_metric(options.domain)),
+      ratio_(options.ratio),
+      intersection_(options.intersection) {}
 
 Metric AnchoredValues::cones_at(const Point& x, std::span<const SourceIndex> anchors) const {
     if (sources_.all_isotropic()) {
@@ -37,7 +41,28 @@ Metric AnchoredValues::cones_at(const Point& x, std::span<const SourceIndex> anc
         }
         return Metric::isotropic(h);
     }
-    // Cones of tensors by their smallest lengths at the place, as in the exact field.
+    const bool is_order_free = intersection_ == IntersectionRule::order_free;
+    return is_order_free ? largest_within_cones(x, anchors, nullptr) : cones_in_turn(x, anchors);
+}
+
+Metric AnchoredValues::largest_within_cones(const Point& x, std::span<const SourceIndex> anchors,
+                                            const Metric* further) const {
+    constexpr double gap = 6e-3;  // 0.1 % of the lengths, on average
+    std::array<Metric, most + 2> few;
+    std::vector<Metric> many;
+    if (anchors.size() > most) many.resize(anchors.size() + 2);
+    const std::span<Metric> cones = many.empty() ? std::span<Metric>(few) : many;
+    std::size_t n = 0;
+    cones[n++] = largest_;
+    if (further != nullptr) cones[n++] = *further;
+    for (const SourceIndex s : anchors) {
+        cones[n++] = sources_.factor(s, ratio_, x) * sources_.metric(s);
+    }
+    return order_free_intersection(cones.first(n), gap).metric();
+}
+
+// Cones of tensors by their smallest lengths at the place, as in the exact field.
+Metric AnchoredValues::cones_in_turn(const Point& x, std::span<const SourceIndex> anchors) const {
     struct Cone {
         double smallest, factor;
         SourceIndex source;
@@ -63,8 +88,13 @@ Metric AnchoredValues::cones_at(const Point& x, std::span<const SourceIndex> anc
 
 Metric AnchoredValues::value(const Box& domain, LeafIndex leaf, const Point& place) const {
     const Point x = place.cwiseMax(domain.low).cwiseMin(domain.high);
-    const Metric m = cones_at(x, anchors_.of(leaf));
-    return continuous_ ? intersection(m, sample_at(*continuous_, x)) : m;
+    const auto anchors = anchors_.of(leaf);
+    if (!continuous_) return cones_at(x, anchors);
+    const Metric further = sample_at(*continuous_, x);
+    if (intersection_ == IntersectionRule::order_free && !sources_.all_isotropic()) {
+        return largest_within_cones(x, anchors, &further);
+    }
+    return intersection(cones_at(x, anchors), further);
 }
 
 void AnchoredValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex) {
@@ -77,6 +107,7 @@ void AnchoredValues::add(LeafIndex leaf, const PointSource& source) {
 
 void AnchoredValues::take_over(const AdaptationGoal& goal) {
     ratio_ = goal.ratio;
+    intersection_ = goal.intersection;
     continuous_ = goal.continuous;
     sources_ = {};
     for (const PointSource& source : goal.sources) sources_.add(source);
@@ -220,6 +251,7 @@ void AnchoredValues::save(StateWriter& state) const {
     sources_.save(state);
     anchors_.save(state);
     state("anchors.ratio", ratio_);
+    state("anchors.intersection", intersection_, IntersectionRule::in_turn);
     state("anchors.fits_tensors_loosely", fits_tensors_loosely_);
 }
 
@@ -227,6 +259,9 @@ void AnchoredValues::load(std::size_t leaves, const StateReader& state) {
     sources_.load(state);
     anchors_.load(state, leaves, sources_.size());
     state("anchors.ratio", ratio_);
+    if (state.has("anchors.intersection")) {
+        state("anchors.intersection", intersection_, IntersectionRule::in_turn);
+    }
     state("anchors.fits_tensors_loosely", fits_tensors_loosely_);
 }
 

@@ -42,6 +42,7 @@ public:
 
     const SourceTable& sources() const { return sources_; }
     double ratio() const { return ratio_; }
+    IntersectionRule rule() const { return intersection_; }
     const std::shared_ptr<const ControlSpace>& continuous() const { return continuous_; }
     /// Anchors are from now on taken from the sources of `goal`, with its ratio.
     void take_over(const AdaptationGoal& goal);
@@ -92,12 +93,16 @@ private:
     // At the nearest point of the domain.
     Metric value(const Box& domain, LeafIndex leaf, const Point& place) const;
     Metric cones_at(const Point& x, std::span<const SourceIndex> anchors) const;
+    Metric largest_within_cones(const Point& x, std::span<const SourceIndex> anchors,
+                                const Metric* further) const;
+    Metric cones_in_turn(const Point& x, std::span<const SourceIndex> anchors) const;
 
     AnchorLists anchors_;
     SourceTable sources_;
     std::shared_ptr<const ControlSpace> continuous_;
     Metric largest_;
     double ratio_;
+    IntersectionRule intersection_;
     bool fits_tensors_loosely_ = false;
 };
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "controlspace/geometry/box.h"
+#include "controlspace/metric/intersection.h"
 #include "controlspace/metric/metric.h"
 #include "controlspace/space/split_rule.h"
 
@@ -32,6 +33,8 @@ struct SpaceOptions {
     /// leaves, whose interpolation it bounds until they are graded.
     double ratio = 1.25;
     QuadraticForm quadratic_form = QuadraticForm::corrected;
+    /// Of cones, in structures that keep sources.
+    IntersectionRule intersection = IntersectionRule::in_turn;
     /// Sources may come after gradation. What they request is then kept beside the graded field:
     /// insertion goes by it, and grading again gives the field of all sources at once, to the bit.
     /// Of isotropic sources, under the cone law and by the queue, that costs in proportion to what

@@ -65,6 +65,8 @@ struct Case {
     GradationLaw law = GradationLaw::cone;
     GradationSchedule schedule = GradationSchedule::queue;
     Neighbourhood neighbourhood = Neighbourhood::faces;  ///< structures that hold metrics only
+    /// Of cones: in the exact reference, adaptation, and structures that keep sources.
+    IntersectionRule intersection = IntersectionRule::in_turn;
     const ReferenceKind* reference = &exact_reference_kind();
     /// Values of parameters that are defined outside the library, by key.
     std::map<std::string, Value> other = {};
@@ -90,6 +92,13 @@ struct Words<Neighbourhood> {
     static constexpr Word<Neighbourhood> table[] = {
         {Neighbourhood::faces, "faces", "nodes across faces, at vertices along edges"},
         {Neighbourhood::all, "all", "those across edges and corners too"}};
+};
+template <>
+struct Words<IntersectionRule> {
+    static constexpr Word<IntersectionRule> table[] = {
+        {IntersectionRule::order_free, "order-free", "the largest metric within all cones"},
+        {IntersectionRule::in_turn, "in-turn",
+         "one cone after the other, as in the paper: depends on their order"}};
 };
 template <>
 struct Words<QuadraticForm> {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "controlspace/geometry/box.h"
 #include "controlspace/space/adaptation.h"
@@ -13,8 +14,9 @@ namespace controlspace {
 
 class ConeField;
 
-/// The field of a goal, whose sources must outlive it, as exact as the target needs: cones of
-/// tensors that would change it by some hundredth of the target are left out.
+/// The field of a goal, whose sources must outlive it, as exact as the target needs: order-free, to
+/// a tenth of the target; in turn, cones of tensors that would change it by some hundredth of the
+/// target are left out.
 class GoalField final : public ControlSpace {
 public:
     /// Throws InputError for sources outside of `domain` or with bad metrics, a ratio below 1, a
@@ -23,8 +25,8 @@ public:
     ~GoalField() override;
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override;
-    /// Intersects `out`, the metrics of the sources' cones at `x`, with the continuous field.
-    void add_continuous(std::span<const Point> x, std::span<Metric> out) const;
+    /// The continuous field at `x`; empty if there is none.
+    std::vector<Metric> continuous_at(std::span<const Point> x) const;
 
     /// Whether the field has bounds in every box: all is isotropic, and no source continuous.
     bool has_ranges() const;
