@@ -15,13 +15,6 @@
 #include "metric/decompose.h"
 #include "metric/interior_point.h"
 
-#ifdef TUNE
-long tn[40], tl, tf, ts, tst;
-#define COUNT(x, n) (x += (n))
-#else
-#define COUNT(x, n) (void)0
-#endif
-
 namespace controlspace {
 
 // What an answer proves
