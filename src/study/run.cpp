@@ -269,4 +269,12 @@ void PreparedStudy::run(const StudyObserver& observer) && {
     });
 }
 
+std::vector<Row> PreparedStudy::run() && {
+    std::vector<Row> rows;
+    StudyObserver observer;
+    observer.case_finished = [&](const Row& row) { rows.push_back(row); };
+    std::move(*this).run(observer);
+    return rows;
+}
+
 }  // namespace controlspace

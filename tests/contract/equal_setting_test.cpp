@@ -19,11 +19,7 @@ std::vector<Row> rows_of(const Run& run) {
     study.probe_grid = 12;
     study.fine_probe_grid = 3;
     study.runs = {run};
-    std::vector<Row> rows;
-    StudyObserver observer;
-    observer.case_finished = [&](const Row& row) { rows.push_back(row); };
-    PreparedStudy(study, {structures()}).run(observer);
-    return rows;
+    return PreparedStudy(study, {structures()}).run();
 }
 
 }  // namespace

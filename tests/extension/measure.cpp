@@ -32,10 +32,8 @@ int main() {
         structures = ["K_oL", "K_oV", "brute-force"]
     )",
                               "measure.toml");
-    std::vector<Row> results;
-    StudyObserver observer;
-    observer.case_finished = [&](const Row& row) { results.push_back(row); };
-    PreparedStudy(study, StudyRows{all, case_parameters(), rows}).run(observer);
+    const std::vector<Row> results =
+        PreparedStudy(study, StudyRows{all, case_parameters(), rows}).run();
 
     check(results.size() == 3, "three structures are three rows");
     for (const Row& row : results) check(row.is_measured(), row.error.c_str());

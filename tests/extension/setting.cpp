@@ -34,10 +34,8 @@ int main() {
         stretch = [1, 0.25]
     )",
                                     "setting.toml", parameters);
-    std::vector<Row> results;
-    StudyObserver observer;
-    observer.case_finished = [&](const Row& row) { results.push_back(row); };
-    PreparedStudy(study, StudyRows{structures(), parameters}).run(observer);
+    const std::vector<Row> results =
+        PreparedStudy(study, StudyRows{structures(), parameters}).run();
 
     check(results.size() == 3, "it multiplies the tree, not the grid");
     for (const Row& row : results) check(row.is_measured(), row.error.c_str());

@@ -111,10 +111,8 @@ void check_study() {
         structures = ["K_oL", "K_LG", "K_oLG"]
     )",
                               "storage.toml");
-    std::vector<Row> results;
-    StudyObserver observer;
-    observer.case_finished = [&](const Row& row) { results.push_back(row); };
-    PreparedStudy(study, StudyRows{all, case_parameters(), measures()}).run(observer);
+    const std::vector<Row> results =
+        PreparedStudy(study, StudyRows{all, case_parameters(), measures()}).run();
     check(results.size() == 3, "three structures are three rows");
     for (const Row& row : results) check(row.is_measured(), row.error.c_str());
     check(results[2].number("cells") < results[0].number("cells"), "fewer leaves than K_oL");

@@ -27,10 +27,7 @@ TEST_CASE("memory is foretold within a factor of 1.5, for every structure") {
     PreparedStudy prepared(study, {structures()});
     const auto forecasts = forecast(prepared);
     REQUIRE(forecasts.size() == structures().size());
-    std::vector<Row> rows;
-    StudyObserver observer;
-    observer.case_finished = [&](const Row& row) { rows.push_back(row); };
-    std::move(prepared).run(observer);
+    const std::vector<Row> rows = std::move(prepared).run();
     REQUIRE(rows.size() == forecasts.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
         INFO(structure_label(rows[i].setting));

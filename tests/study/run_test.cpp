@@ -32,11 +32,7 @@ std::vector<double> samples(const Row& row, const std::string& key) {
 }
 
 std::vector<Row> run(const Study& study, std::span<const CatalogueEntry> catalogue) {
-    std::vector<Row> rows;
-    StudyObserver observer;
-    observer.case_finished = [&](const Row& row) { rows.push_back(row); };
-    PreparedStudy(study, {catalogue}).run(observer);
-    return rows;
+    return PreparedStudy(study, {catalogue}).run();
 }
 
 /// The trees, and two that cannot be made.
@@ -268,10 +264,8 @@ TEST_CASE("a study takes rows of measures and parameters from outside") {
     };
     stretch.label = [](const Case& c) { return "stretch " + to_string({c.other.at("stretch")}); };
     parameters.push_back(stretch);
-    std::vector<Row> rows;
-    StudyObserver observer;
-    observer.case_finished = [&](const Row& row) { rows.push_back(row); };
-    PreparedStudy(small_study({"K_oL"}), {tree_catalogue(), parameters, more}).run(observer);
+    const std::vector<Row> rows =
+        PreparedStudy(small_study({"K_oL"}), {tree_catalogue(), parameters, more}).run();
     REQUIRE(rows.size() == 2);
     CHECK(structure_label(rows[1].setting, parameters) == "K_oL, stretch 2");
     CHECK(rows[1].number("cells") < rows[0].number("cells"));

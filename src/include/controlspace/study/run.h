@@ -46,6 +46,8 @@ public:
     /// gives a row with the reason. Sources and probes are freed after the last case that needs
     /// them; hence a study runs once.
     void run(const StudyObserver& observer) &&;
+    /// The same, for the rows of all cases, in their order.
+    std::vector<Row> run() &&;
 
 private:
     struct SharedSources {
