@@ -22,6 +22,7 @@ namespace {
 using Factorisation = CholeskyLanes<constraint_lanes>;
 
 constexpr double largest_anisotropy = 1e7;
+constexpr double largest_size = 1e80;  // of lengths: products of six stay in range
 
 auto key(const Metric& m) { return std::tie(m.xx, m.yy, m.zz, m.xy, m.xz, m.yz); }
 
@@ -44,6 +45,12 @@ void in_groups(std::span<const Metric> metrics, const Visit& visit) {
             "intersection: metric {}, {}, is not positive definite: give finite, positive lengths",
             index, to_string(m)));
     }
+    const double trace = m.xx + m.yy + m.zz;
+    if (!(trace > 1 / largest_size && trace < largest_size)) {
+        throw InputError(fmt::format(
+            "intersection: metric {}, {}, has lengths beyond {} to {}: use another unit of length",
+            index, to_string(m), 1 / largest_size, largest_size));
+    }
     throw InputError(fmt::format(
         "intersection: metric {}, {}, has an anisotropy above {}: make its largest length smaller",
         index, to_string(m), largest_anisotropy));
@@ -56,13 +63,14 @@ std::size_t smallest_of_valid(std::span<const Metric> metrics) {
     double least = std::numeric_limits<double>::infinity();
     in_groups(metrics, [&](std::size_t first, std::size_t count, const ConstraintLanes& m) {
         const Factorisation factorisation(m);
-        const ConstraintNumbers conditions =
-            (m.xx + m.yy + m.zz) * factorisation.trace_of_inverse() / 9;
+        const ConstraintNumbers traces = m.xx + m.yy + m.zz;
+        const ConstraintNumbers conditions = traces * factorisation.trace_of_inverse() / 9;
         const ConstraintNumbers pivots = factorisation.least_pivot();
         const ConstraintNumbers determinants = factorisation.determinant();
         for (std::size_t i = 0; i < count; ++i) {
             const auto lane = static_cast<Eigen::Index>(i);
-            if (!(pivots[lane] > 0 && conditions[lane] <= largest_anisotropy)) {
+            if (!(pivots[lane] > 0 && conditions[lane] <= largest_anisotropy &&
+                  traces[lane] > 1 / largest_size && traces[lane] < largest_size)) {
                 refuse(first + i, metrics[first + i]);
             }
             const double here = determinants[lane];
@@ -97,8 +105,10 @@ public:
         }
         found_[place] = entered;
     }
-    bool might_enter(double growth) const {
-        return size_ < count_ || growth >= found_[size_ - 1].growth;
+    // Given an upper bound, but for rounding, of its growth.
+    bool might_enter(double bound) const {
+        constexpr double rounding = 1e-12;
+        return size_ < count_ || (1 + rounding) * bound >= found_[size_ - 1].growth;
     }
     std::span<const Excess> found() const { return {found_.data(), size_}; }
 
@@ -192,9 +202,9 @@ public:
     std::size_t size() const { return size_; }
     std::span<const Metric> metrics() const { return {metrics_.data(), size_}; }
     std::size_t index(std::size_t k) const { return indices_[k]; }
-    bool has(std::size_t index) const {
-        return std::find(indices_.begin(), indices_.begin() + size_, index) !=
-               indices_.begin() + size_;
+    // Or one equal to it: of equal ones the first found would depend on the order.
+    bool has(const Metric& metric) const {
+        return std::ranges::find(metrics(), metric) != metrics().end();
     }
     void add(std::size_t index) {
         std::size_t place = size_++;
@@ -248,7 +258,10 @@ OrderFreeIntersection made_smaller(const CoreSet& core, const InteriorPoint& sol
 }  // namespace
 
 Metric OrderFreeIntersection::metric() const {
-    return factor == factor.transpose() ? Metric::from_matrix(factor) : left_polar_factor(factor);
+    // Of one metric the factor is that metric; other symmetric factors may be indefinite.
+    const Metric own = Metric::from_matrix(factor);
+    return factor == factor.transpose() && is_positive_definite(own) ? own
+                                                                     : left_polar_factor(factor);
 }
 
 OrderFreeIntersection order_free_intersection(std::span<const Metric> metrics, double tolerance,
@@ -299,7 +312,7 @@ OrderFreeIntersection order_free_intersection(std::span<const Metric> metrics, d
         if (core.size() == metrics.size()) return made_smaller(core, solution, 1, steps);
         const Excess worst = worst_excess(metrics, solution.factor());
         if (worst.growth <= 1 || solution.gap() + 3 * std::log(worst.growth) <= tolerance ||
-            core.has(worst.index) || round == most_rounds) {
+            core.has(metrics[worst.index]) || round == most_rounds) {
             return made_smaller(core, solution, worst.growth, steps);
         }
         if (core.is_full()) core.drop(solution);

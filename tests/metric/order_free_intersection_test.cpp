@@ -137,6 +137,26 @@ TEST_CASE("order-free intersection: of two metrics it is their intersection") {
     }
 }
 
+TEST_CASE("order-free intersection: of metrics along the axes, the smallest length along each") {
+    Draw draw(50);
+    const auto length = [&] { return std::floor(draw.uniform(1, 5)); };  // equal ones, too
+    for (int i = 0; i < 3000; ++i) {
+        Metrics metrics;
+        Metric least = Metric::isotropic(5);
+        for (int k = 0; k < 2 + i % 30; ++k) {
+            metrics.push_back({length(), length(), length(), 0, 0, 0});
+            least.xx = std::min(least.xx, metrics.back().xx);
+            least.yy = std::min(least.yy, metrics.back().yy);
+            least.zz = std::min(least.zz, metrics.back().zz);
+        }
+        const Metric m = order_free_intersection(metrics).metric();
+        CAPTURE(i, m, least);
+        REQUIRE(is_positive_definite(m));
+        CHECK(length_difference(m, least) <= (metrics.size() == 2 ? 1e-14 : lengths_within(1e-6)));
+        CHECK(order_free_intersection(shuffled(metrics, 7)).metric() == m);
+    }
+}
+
 TEST_CASE("order-free intersection: a metric within all others is the answer, to the bit") {
     Draw draw(44);
     Metrics isotropic;
@@ -318,5 +338,7 @@ TEST_CASE("order-free intersection: bad input is refused, and its place named") 
         }
         check({1e9, 1, 1, 0, 0, 0}, "anisotropy");
         check({1e12, 1e3, 1, 0, 0, 0}, "anisotropy");
+        check(Metric::isotropic(1e90), "unit of length");
+        check(Metric::isotropic(1e-90), "unit of length");
     }
 }

@@ -53,8 +53,9 @@ struct OrderFreeIntersection {
 /// to be close to the answer (its matrix will do).
 ///
 /// Allocates nothing. Throws InputError if there are no metrics, or if one is not positive
-/// definite, has numbers that are not finite, or where tr(M) tr(M^-1) / 9 exceeds 1e7 (anisotropies
-/// above 9e7, and none below 1e7): round-off then hides the shortest lengths of M^2.
+/// definite, has numbers that are not finite, lengths beyond 1e-80 to 1e80, or where tr(M) tr(M^-1)
+/// / 9 exceeds 1e7 (anisotropies above 9e7, and none below 1e7): round-off then hides the shortest
+/// lengths of M^2.
 OrderFreeIntersection order_free_intersection(std::span<const Metric> metrics,
                                               double tolerance = 1e-6,
                                               const Eigen::Matrix3d* near = nullptr);
