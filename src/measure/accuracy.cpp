@@ -42,6 +42,23 @@ double percentile(std::vector<double>& values, std::size_t percent) {
     return *nth;
 }
 
+// By how much lengths exceed others, at most, and at how many points.
+struct Excess {
+    double max = 0;
+    std::size_t count = 0;
+
+    void note(const Metric& m, const Metric& other) {
+        // The ratio itself is expensive for tensors: computed where it may be the largest.
+        if (!is_within(m, max, other)) max = std::max(max, growth(m, other));
+        if (!is_within(m, 1 + coarser_tolerance, other)) ++count;
+    }
+    void note_infinite() { join({std::numeric_limits<double>::infinity(), 1}); }
+    void join(const Excess& more) {
+        max = std::max(max, more.max);
+        count += more.count;
+    }
+};
+
 }  // namespace
 
 std::vector<Point> cell_centres(const Box& box, int n) {
@@ -79,8 +96,7 @@ Accuracy accuracy(const ControlSpace& space, const Probes& probes) {
     struct Partial {
         double sum = 0;
         double riemannian_max = 0;
-        double coarser_max = 0;
-        std::size_t coarser = 0;
+        Excess coarser, finer;
     };
     std::vector<double> deltas(n);
     std::vector<Partial> partials((n + block_size - 1) / block_size);
@@ -95,29 +111,29 @@ Accuracy accuracy(const ControlSpace& space, const Probes& probes) {
             partial.sum += deltas[i];
             partial.riemannian_max = std::max(
                 partial.riemannian_max, or_infinite(riemannian_nonconformity(value, reference)));
-            if (!is_positive_definite(value)) {
-                partial.coarser_max = std::numeric_limits<double>::infinity();
-                ++partial.coarser;
-                continue;
+            if (is_positive_definite(value)) {
+                partial.coarser.note(value, reference);
+                partial.finer.note(reference, value);
+            } else {
+                partial.coarser.note_infinite();
+                partial.finer.note_infinite();
             }
-            // The ratio itself is expensive for tensors: computed where it may be the largest.
-            if (!is_within(value, partial.coarser_max, reference)) {
-                partial.coarser_max = std::max(partial.coarser_max, growth(value, reference));
-            }
-            if (!is_within(value, 1 + coarser_tolerance, reference)) ++partial.coarser;
         }
     });
 
     Accuracy result;
-    std::size_t coarser = 0;
+    Excess coarser, finer;
     for (const Partial& partial : partials) {
         result.mean += partial.sum;
         result.riemannian_max = std::max(result.riemannian_max, partial.riemannian_max);
-        result.coarser_max = std::max(result.coarser_max, partial.coarser_max);
-        coarser += partial.coarser;
+        coarser.join(partial.coarser);
+        finer.join(partial.finer);
     }
     result.mean /= static_cast<double>(n);
-    result.coarser_share = static_cast<double>(coarser) / static_cast<double>(n);
+    result.coarser_max = coarser.max;
+    result.coarser_share = static_cast<double>(coarser.count) / static_cast<double>(n);
+    result.finer_max = finer.max;
+    result.finer_share = static_cast<double>(finer.count) / static_cast<double>(n);
     const auto worst = std::max_element(deltas.begin(), deltas.end());
     result.max = *worst;
     result.worst = probes.points[static_cast<std::size_t>(worst - deltas.begin())];

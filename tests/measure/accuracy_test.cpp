@@ -136,6 +136,8 @@ TEST_CASE("Accuracy does not depend on the number of threads") {
     CHECK(many.worst == single.worst);
     CHECK(many.coarser_max == single.coarser_max);
     CHECK(many.coarser_share == single.coarser_share);
+    CHECK(many.finer_max == single.finer_max);
+    CHECK(many.finer_share == single.finer_share);
 }
 
 TEST_CASE("An answer that is no metric is infinitely wrong") {
@@ -150,6 +152,8 @@ TEST_CASE("An answer that is no metric is infinitely wrong") {
     CHECK(a.worst == Point(3, 0, 0));
     CHECK(a.coarser_max == infinity);
     CHECK(a.coarser_share == Approx(0.1));
+    CHECK(a.finer_max == infinity);
+    CHECK(a.finer_share == Approx(0.1));
     const std::vector<PointSource> sources{{Point(3, 0, 0), Metric::isotropic(1)}};
     CHECK(source_accuracy(broken, sources) == infinity);
 }
@@ -187,6 +191,18 @@ TEST_CASE("The ratio of lengths is the largest over all directions") {
             const Vector d = draw.vector();
             CHECK(metric_length(asked, d) <= k * (1 + 1e-9) * metric_length(held, d));
         }
+    }
+}
+
+TEST_CASE("Smaller lengths are counted as larger ones of the reference are") {
+    Draw draw(32);
+    for (int i = 0; i < 20; ++i) {
+        const Metric a = draw.metric(1, 3);
+        const Metric b = draw.metric(1, 3);
+        const Accuracy of_a = accuracy(constant(a), probes_of(along_x(3), b));
+        const Accuracy of_b = accuracy(constant(b), probes_of(along_x(3), a));
+        CHECK(of_a.finer_max == of_b.coarser_max);
+        CHECK(of_a.finer_share == of_b.coarser_share);
     }
 }
 

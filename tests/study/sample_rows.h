@@ -43,14 +43,19 @@ inline Finished sample_finished(const Case& setting) {
                   .p99 = 0.4,
                   .riemannian_max = 9.5,
                   .coarser_max = 1.3,
-                  .coarser_share = 0.06};
+                  .coarser_share = 0.06,
+                  .finer_max = 1.2,
+                  .finer_share = 0.08};
     f.accuracy_fine = {.max = 2.78,
                        .mean = 0.09,
                        .p95 = 0.31,
                        .p99 = 0.41,
                        .coarser_max = 1.4,
-                       .coarser_share = 0.07};
+                       .coarser_share = 0.07,
+                       .finer_max = 1.25,
+                       .finer_share = 0.09};
     f.source_accuracy = 0.19;
+    f.steepness = {1.31, 1.62};
     return f;
 }
 

@@ -62,6 +62,10 @@ TEST_CASE("every row is in one table of measures that names its mode") {
     CHECK(cell(tables[0], "K_L s_L", "fine max") == "2.7800");
     CHECK(cell(tables[0], "K_L s_L", "fine coarser") == "7.00 %");
     CHECK(cell(tables[0], "K_L s_L", "worst") == "1.400");
+    CHECK(cell(tables[0], "K_L s_L", "fine finer") == "9.00 %");
+    CHECK(cell(tables[0], "K_L s_L", "shortest") == "1.250");
+    CHECK(cell(tables[0], "K_L s_L", "G_det") == "1.310");
+    CHECK(cell(tables[0], "K_L s_L", "G_dir") == "1.620");
     CHECK(cell(tables[0], "K_L s_L", "G left") == "1.2499");
     CHECK(cell(tables[0], "uniform-nearest", "MB") == "–");
     CHECK(cell(tables[0], "uniform-nearest", "remark") == "failed: no memory");

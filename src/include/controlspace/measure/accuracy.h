@@ -23,12 +23,13 @@ struct Probes {
 Probes make_probes(const ControlSpace& field, std::vector<Point> points);
 
 /// A point counts as coarser if a length of the structure's metric exceeds the reference's by more
-/// than this fraction. Beyond rounding, and far below the scatter of a mesh's edge lengths.
+/// than this fraction, as finer if the reference's exceeds the structure's. Beyond rounding, and
+/// far below the scatter of a mesh's edge lengths.
 constexpr double coarser_tolerance = 0.01;
 
 /// Non-conformity δ between a structure and its reference over a set of points; since δ is
-/// symmetric, lengths larger than those of the reference are reported separately. Where the
-/// structure's answer is not positive definite, all errors are infinite.
+/// symmetric, lengths larger and smaller than those of the reference are reported separately. Where
+/// the structure's answer is not positive definite, all errors are infinite.
 struct Accuracy {
     double max = 0;
     double mean = 0;
@@ -41,6 +42,10 @@ struct Accuracy {
     double coarser_max = 0;
     /// Fraction of the points where that ratio exceeds 1 + coarser_tolerance in some direction.
     double coarser_share = 0;
+    /// The same for the reference's lengths to the structure's: a point may be coarser along one
+    /// direction and finer along another.
+    double finer_max = 0;
+    double finer_share = 0;
 };
 
 /// δ_R of the paper (§5.2). Runs on all of TBB's threads, with the same result whatever their

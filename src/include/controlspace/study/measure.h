@@ -11,6 +11,7 @@
 
 #include "controlspace/measure/access_time.h"
 #include "controlspace/measure/accuracy.h"
+#include "controlspace/measure/steepness.h"
 #include "controlspace/space/control_space.h"
 #include "controlspace/study/workload.h"
 
@@ -43,6 +44,7 @@ struct Finished {
     Accuracy accuracy = {};         ///< δ_R at the coarse probes
     Accuracy accuracy_fine = {};    ///< δ_R at the fine probes
     double source_accuracy = 0;     ///< δ_S
+    Steepness steepness = {};       ///< G_det and G_dir
     AccessTime access_random = {};  ///< at random places
     AccessTime access_grid = {};    ///< at the coarse probes, x fastest
     /// First case of its batch, whose structures were timed in turns.
