@@ -103,6 +103,28 @@ CASE_OF_EACH(entry, all_trees(), "trees keep the target of an order-free field")
     CHECK(share_beyond(target, *space, *field) <= 5e-4);
 }
 
+TEST_CASE("trees that keep sources keep the target of thin layers") {
+    constexpr double target = 0.3;
+    constexpr auto order_free = IntersectionRule::order_free;
+    const std::vector<PointSource> sources = sample_sphere({.h = 0.12, .s_a = 4, .s_n = 0.25});
+    const auto field = exact_reference(sources, g, largest_metric(domain), 1e-3, order_free);
+    const std::vector<Point> x = random_points(domain, 1000, 11);
+    std::vector<Metric> exact(x.size());
+    std::vector<Metric> own(x.size());
+    field->sample(x, exact);
+    for (const char* id : {"K_LA", "K_oLA"}) {
+        CAPTURE(id);
+        const auto space = editable(tree_named(id).make({.domain = domain}));
+        CHECK(space->adapt({sources, nullptr, g, target, order_free}).met);
+        space->sample(x, own);
+        double worst = 0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            worst = std::max(worst, nonconformity(own[i], exact[i]));
+        }
+        CHECK(worst <= target);
+    }
+}
+
 TEST_CASE("sphere at a tenth: the paper's trees and the anchored ones, on 101^3 places") {
     const std::vector<PointSource> sources = sample_sphere({.rho = 1});
     const auto field = exact_reference(sources, g, largest_metric(domain));

@@ -13,6 +13,7 @@
 
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/fields/formula_field.h"
+#include "controlspace/measure/access_time.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "damaged_files.h"
 #include "editable_space.h"
@@ -169,6 +170,18 @@ TEST_CASE("an array that is said to be huge is refused before memory is requeste
     put(forged, count, std::uint64_t{1} << 40);
     sign(forged);
     CHECK_THAT(loading_error(scratch, forged), Contains("nodes.field has a chunk"));
+}
+
+TEST_CASE("intersections without an order are answered by a loaded tree as by the saved one") {
+    const ScratchDirectory scratch("ctrl");
+    const std::vector<PointSource> sources = sample_sphere({.h = 0.3, .s_a = 4, .s_n = 0.25});
+    const auto space = small_tree("K_oLA");
+    space->adapt({sources, nullptr, 1.25, 1.0, IntersectionRule::order_free});
+    save_control_space(scratch / "field.ctrl", *space);
+    const auto loaded = load_control_space(scratch / "field.ctrl", structures());
+    for (const Point& x : random_points(domain, 100, 5)) {
+        REQUIRE(sample_at(*loaded, x) == sample_at(*space, x));
+    }
 }
 
 TEST_CASE("a program's own continuous field cannot be saved") {

@@ -6,10 +6,13 @@
 #include <vector>
 
 #include "cones/cone_field.h"
+#include "cones/order_free_cones.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/metric/order_free_intersection.h"
 #include "controlspace/trees/detail/in_parallel.h"
+#include "metric/decompose.h"
+#include "metric/interior_point.h"
 
 namespace controlspace {
 
@@ -41,16 +44,14 @@ Metric AnchoredValues::cones_at(const Point& x, std::span<const SourceIndex> anc
         }
         return Metric::isotropic(h);
     }
-    const bool is_order_free = intersection_ == IntersectionRule::order_free;
-    return is_order_free ? largest_within_cones(x, anchors, nullptr) : cones_in_turn(x, anchors);
+    return are_order_free() ? largest_within_cones(x, anchors, nullptr) : cones_in_turn(x, anchors);
 }
 
 Metric AnchoredValues::largest_within_cones(const Point& x, std::span<const SourceIndex> anchors,
                                             const Metric* further) const {
-    constexpr double gap = 6e-3;  // 0.1 % of the lengths, on average
-    std::array<Metric, most + 2> few;
+    std::array<Metric, InteriorPoint::room> few;
     std::vector<Metric> many;
-    if (anchors.size() > most) many.resize(anchors.size() + 2);
+    if (anchors.size() + 2 > few.size()) many.resize(anchors.size() + 2);
     const std::span<Metric> cones = many.empty() ? std::span<Metric>(few) : many;
     std::size_t n = 0;
     cones[n++] = largest_;
@@ -58,7 +59,13 @@ Metric AnchoredValues::largest_within_cones(const Point& x, std::span<const Sour
     for (const SourceIndex s : anchors) {
         cones[n++] = sources_.factor(s, ratio_, x) * sources_.metric(s);
     }
-    return order_free_intersection(cones.first(n), gap).metric();
+    // All of few at once: a search for those that matter would take longer.
+    if (many.empty() && n > 2) {
+        InteriorPoint solution(cones.first(n));
+        solution.solve(gap_);
+        if (std::abs(solution.gap()) <= gap_) return left_polar_factor(solution.factor());
+    }
+    return order_free_intersection(cones.first(n), gap_).metric();
 }
 
 // Cones of tensors by their smallest lengths at the place, as in the exact field.
@@ -91,7 +98,7 @@ Metric AnchoredValues::value(const Box& domain, LeafIndex leaf, const Point& pla
     const auto anchors = anchors_.of(leaf);
     if (!continuous_) return cones_at(x, anchors);
     const Metric further = sample_at(*continuous_, x);
-    if (intersection_ == IntersectionRule::order_free && !sources_.all_isotropic()) {
+    if (are_order_free()) {
         return largest_within_cones(x, anchors, &further);
     }
     return intersection(cones_at(x, anchors), further);
@@ -108,6 +115,7 @@ void AnchoredValues::add(LeafIndex leaf, const PointSource& source) {
 void AnchoredValues::take_over(const AdaptationGoal& goal) {
     ratio_ = goal.ratio;
     intersection_ = goal.intersection;
+    gap_ = OrderFreeCones::gap_of(std::min(0.1 * goal.target, 0.1));  // as the goal's field
     continuous_ = goal.continuous;
     sources_ = {};
     for (const PointSource& source : goal.sources) sources_.add(source);
@@ -154,6 +162,32 @@ bool AnchoredValues::is_covered(SourceIndex source, std::span<const SourceIndex>
     return true;
 }
 
+std::size_t AnchoredValues::drop_needless(std::span<SourceIndex> list, std::span<const Point> x,
+                                          std::span<const Metric> exact, double tolerance) const {
+    std::size_t n = list.size();
+    for (std::size_t k = 0; k < n;) {
+        std::array<SourceIndex, most> others{};
+        std::copy_n(list.begin(), k, others.begin());
+        std::copy(list.begin() + static_cast<std::ptrdiff_t>(k) + 1,
+                  list.begin() + static_cast<std::ptrdiff_t>(n),
+                  others.begin() + static_cast<std::ptrdiff_t>(k));
+        const auto without = std::span<const SourceIndex>(others).first(n - 1);
+        bool is_needed = false;
+        for (std::size_t i = 0; i < x.size() && !is_needed; ++i) {
+            const double most_left =
+                std::max(tolerance, nonconformity(cones_at(x[i], list.first(n)), exact[i]));
+            is_needed = nonconformity(cones_at(x[i], without), exact[i]) > most_left;
+        }
+        if (is_needed) {
+            ++k;
+        } else {
+            std::ranges::copy(without, list.begin());
+            --n;
+        }
+    }
+    return n;
+}
+
 void AnchoredValues::fit(std::span<const LeafBox> leaves, const GoalField& field,
                          std::size_t places, bool beside_old) {
     const double well_within = 0.25 * field.target();
@@ -166,6 +200,8 @@ void AnchoredValues::fit(std::span<const LeafBox> leaves, const GoalField& field
         const std::span<SourceIndex> list(chosen.data() + i * most, most);
         std::size_t& n = count[i];
         memory.hint = 0;  // of several sources that are equally near the same is found always
+        std::array<Point, LeafPlaces::all> at;
+        std::array<Metric, LeafPlaces::all> exact;
         for (std::size_t k = 0; k < places; ++k) {
             const std::size_t p = (LeafPlaces::centre + k) % LeafPlaces::all;  // the centre first
             const Point x = leaf_places().in(leaves[i].box, p);
@@ -177,11 +213,16 @@ void AnchoredValues::fit(std::span<const LeafBox> leaves, const GoalField& field
             }
             Metric m;
             field.cones().governing(x, negligible, governing, m, memory);
+            at[k] = x;
+            exact[k] = m;
             if (nonconformity(own, m) <= well_within) continue;
             for (const SourceIndex s : governing) {
                 const auto end = list.begin() + static_cast<std::ptrdiff_t>(n);
-                if (n < most && std::find(list.begin(), end, s) == end) list[n++] = s;
+                if (n < most_anchors() && std::find(list.begin(), end, s) == end) list[n++] = s;
             }
+        }
+        if (are_order_free() && places == LeafPlaces::all) {
+            n = drop_needless(list.first(n), std::span(at).first(places), exact, well_within);
         }
     });
     std::vector<std::vector<SourceIndex>> kept(beside_old ? leaves.size() : 0);
@@ -233,7 +274,7 @@ bool AnchoredValues::learn(LeafIndex leaf, const Point& x, const GoalField& fiel
     for (const SourceIndex s : governing) {
         if (std::find(list.begin(), list.end(), s) == list.end()) list.push_back(s);
     }
-    if (list.size() == old.size() || list.size() > most) return false;
+    if (list.size() == old.size() || list.size() > most_anchors()) return false;
     anchors_.set(leaf, list);
     return true;
 }
@@ -253,6 +294,7 @@ void AnchoredValues::save(StateWriter& state) const {
     state("anchors.ratio", ratio_);
     state("anchors.intersection", intersection_, IntersectionRule::in_turn);
     state("anchors.fits_tensors_loosely", fits_tensors_loosely_);
+    state("anchors.gap", gap_);
 }
 
 void AnchoredValues::load(std::size_t leaves, const StateReader& state) {
@@ -263,6 +305,8 @@ void AnchoredValues::load(std::size_t leaves, const StateReader& state) {
         state("anchors.intersection", intersection_, IntersectionRule::in_turn);
     }
     state("anchors.fits_tensors_loosely", fits_tensors_loosely_);
+    if (state.has("anchors.gap")) state("anchors.gap", gap_);
+    state.require(gap_ >= 1e-10 && gap_ <= 1, "anchors.gap", "is out of range");
 }
 
 void AnchoredValues::describe(Footprint& footprint) const {

@@ -12,6 +12,7 @@
 #include "controlspace/space/space_options.h"
 #include "controlspace/trees/detail/leaf_judge.h"
 #include "controlspace/trees/topology.h"
+#include "metric/interior_point.h"
 #include "trees/values/anchors.h"
 #include "trees/values/source_table.h"
 
@@ -61,7 +62,7 @@ public:
                std::span<std::uint8_t> is_kept);
     bool is_fitted(LeafIndex leaf) const {
         return (fits_tensors_loosely_ && !sources_.all_isotropic()) ||
-               anchors_.of(leaf).size() < most;
+               anchors_.of(leaf).size() < most_anchors();
     }
     /// Enters the sources that govern the field at `x`, unless the leaf has enough anchors.
     bool learn(LeafIndex leaf, const Point& x, const GoalField& field);
@@ -81,6 +82,13 @@ public:
 private:
     // Anchors of a leaf. Longer lists would make queries slow where one more cut makes them short.
     static constexpr std::size_t most = ConeCover::room;
+    // Of tensors without an order, what one solve takes beside the largest metric and a further
+    // one.
+    static constexpr std::size_t most_order_free = InteriorPoint::room - 2;
+    bool are_order_free() const {
+        return intersection_ == IntersectionRule::order_free && !sources_.all_isotropic();
+    }
+    std::size_t most_anchors() const { return are_order_free() ? most_order_free : most; }
 
     // At so many places, the centre first.
     void fit(std::span<const LeafBox> leaves, const GoalField& field, std::size_t places,
@@ -89,6 +97,10 @@ private:
     // the largest metric, in any direction; as far as parts of the box show.
     bool is_covered(SourceIndex source, std::span<const SourceIndex> others, const Box& box,
                     int halvings) const;
+    // Leaves out sources without which the list keeps to the metrics at `x`, as far as it did, or
+    // up to the tolerance. Returns how many are left, at the front.
+    std::size_t drop_needless(std::span<SourceIndex> list, std::span<const Point> x,
+                              std::span<const Metric> exact, double tolerance) const;
     void load(std::size_t leaves, const StateReader& state);
     // At the nearest point of the domain.
     Metric value(const Box& domain, LeafIndex leaf, const Point& place) const;
@@ -103,6 +115,7 @@ private:
     Metric largest_;
     double ratio_;
     IntersectionRule intersection_;
+    double gap_ = 6e-3;  // of intersections without an order
     bool fits_tensors_loosely_ = false;
 };
 
