@@ -74,9 +74,10 @@ def is_paper_sphere(settings):
 
 
 def is_as_published(row):
-    """Whether a case was run as the paper's, with nothing else that is not the default."""
+    """Whether a case was run as the paper's, with nothing else that is not the default. Of its
+    isotropic sources all intersections are alike."""
     ours = {**AS_PUBLISHED, **{key: None for key in ("structure", "split", "rho", "tau",
-                                                     "max_depth")}}
+                                                     "max_depth", "intersection")}}
     return all(row.setting.get(k) == v for k, v in AS_PUBLISHED.items()) and all(
         key in ours for key, _ in row.key)
 

@@ -39,7 +39,7 @@ public:
     /// places, t from 1e-6 to 1e-2) the non-conformity to the exact field was at most 2.3 t^2; 1e-3
     /// takes 60 % of the time, 1e-2 half.
     ConeField(std::span<const PointSource> sources, double g, const Metric& largest,
-              double tolerance = 0, IntersectionRule rule = IntersectionRule::in_turn);
+              double tolerance = 0, IntersectionRule rule = IntersectionRule::order_free);
 
     /// What a search remembers from one call to the next: best kept from place to nearby place,
     /// by one thread for one field.

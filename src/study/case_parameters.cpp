@@ -169,7 +169,7 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
             "intersection", "",
             "Intersection of the cones of anisotropic sources, in the exact reference, adaptation, "
             "and structures that keep sources",
-            word<Case>(&Case::intersection), {"in-turn"},
+            word<Case>(&Case::intersection), {"order-free"},
             if_chosen("{} intersection", &Case::intersection)),
         work("law", "", "Law of gradation", word<Case>(&Case::law), {"cone"},
              word_label("{} law", &Case::law)),

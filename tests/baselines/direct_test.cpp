@@ -54,7 +54,8 @@ double largest_difference(const std::vector<Metric>& a, const std::vector<Metric
 
 TEST_CASE("direct answers the exact field, for the ratio it is graded with") {
     const bool isotropic = GENERATE(true, false);
-    const SpaceOptions options = with_ratio(1.25);
+    SpaceOptions options = with_ratio(1.25);
+    options.intersection = IntersectionRule::in_turn;
     const auto sources = sources_for(options, 300, isotropic);
     const auto x = places(options, 300);
     const auto space = make_structure("direct", options);
@@ -66,6 +67,23 @@ TEST_CASE("direct answers the exact field, for the ratio it is graded with") {
     space->grade({.ratio = 1.6});
     CHECK(largest_difference(sample(*space, x), by_definition(options, sources, 1.6, x)) < 1e-12);
     CHECK_THROWS_AS(space->grade({.ratio = 0.9}), InputError);
+}
+
+TEST_CASE("direct answers the order-free field unless told otherwise") {
+    const SpaceOptions options = with_ratio(1.25);
+    const auto sources = sources_for(options, 300, false);
+    const auto x = places(options, 300);
+    const auto space = make_structure("direct", options);
+    space->insert(sources);
+    const Metric largest = largest_metric(options.domain);
+    for (const double ratio : {1.25, 1.6}) {
+        space->grade({.ratio = ratio});
+        std::vector<Metric> expected(x.size());
+        exact_reference(sources, ratio, largest, 1e-3)->sample(x, expected);
+        CHECK(sample(*space, x) == expected);
+        exact_reference(sources, ratio, largest, 0, IntersectionRule::in_turn)->sample(x, expected);
+        CHECK(largest_difference(sample(*space, x), expected) > 0.01);
+    }
 }
 
 TEST_CASE("sources that come later, between readings, count as all others do") {

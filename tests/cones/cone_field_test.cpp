@@ -17,6 +17,7 @@ namespace {
 
 constexpr double g = 1.25;
 const Metric wide = Metric::isotropic(2);
+constexpr auto in_turn = IntersectionRule::in_turn;
 
 std::vector<Point> places(Draw& draw, int n) {
     std::vector<Point> points;
@@ -59,7 +60,7 @@ TEST_CASE("Isotropic sources that another's cone reaches are dropped, and no oth
         });
     };
     const auto count = std::count_if(sources.begin(), sources.end(), reached);
-    const ConeField field(sources, g, wide);
+    const ConeField field(sources, g, wide, 0, in_turn);
     CHECK(count > 100);
     CHECK(count < 900);
     CHECK(field.dropped() == static_cast<std::size_t>(count));
@@ -77,7 +78,7 @@ TEST_CASE("Sources that are there twice are dropped once") {
     }
     const std::size_t twice = sources.size() - different.size();
     CHECK(twice > 0);
-    CHECK(ConeField(sources, g, wide).dropped() == twice);
+    CHECK(ConeField(sources, g, wide, 0, in_turn).dropped() == twice);
 }
 
 TEST_CASE("Anisotropic sources that cannot matter are dropped, and the field stays") {
@@ -87,7 +88,7 @@ TEST_CASE("Anisotropic sources that cannot matter are dropped, and the field sta
     const double k = cone_factor(governs, g, away);
     const auto dropped = [&](const PointSource& other) {
         const std::vector<PointSource> sources{governs, other};
-        const ConeField field(sources, g, wide);
+        const ConeField field(sources, g, wide, 0, in_turn);
         Draw draw(3);
         const auto points = places(draw, 100);
         const auto now = evaluated(field, points);
@@ -118,7 +119,7 @@ TEST_CASE("Dropping anisotropic sources of many sizes leaves the field as it is"
     Draw draw(5);
     auto sources = scattered(draw, 400, anisotropy);
     const auto points = places(draw, 200);
-    const ConeField field(sources, g, wide);
+    const ConeField field(sources, g, wide, 0, in_turn);
     const auto now = evaluated(field, points);
     const auto wanted = by_definition(sources, points);
     double worst = 0;
@@ -133,9 +134,9 @@ TEST_CASE("With a tolerance no cone is exceeded by more") {
     Draw draw(6);
     const auto sources = sample_sphere({.h = 0.1, .s_a = 4, .s_n = 0.25});
     const auto points = places(draw, 100);
-    const auto exact = evaluated(ConeField(sources, g, wide), points);
+    const auto exact = evaluated(ConeField(sources, g, wide, 0, in_turn), points);
     for (const double tolerance : {1e-6, 1e-3, 1e-1}) {
-        const auto near = evaluated(ConeField(sources, g, wide, tolerance), points);
+        const auto near = evaluated(ConeField(sources, g, wide, tolerance, in_turn), points);
         double worst = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
             for (const PointSource& s : sources) {
@@ -157,7 +158,7 @@ TEST_CASE("The governing sources make the field, and each of them counts") {
     auto points = places(draw, 200);
     points.push_back(Point::Constant(100));  // out of reach
     const Metric largest = draw.metric(0.6, 1.5);
-    const ConeField field(sources, g, largest);
+    const ConeField field(sources, g, largest, 0, in_turn);
     const auto exact = evaluated(field, points);
     std::vector<std::uint32_t> governing{1, 2, 3};
     std::size_t most = 0;
@@ -190,7 +191,7 @@ TEST_CASE("Sources that cut by less than the tolerance do not govern") {
     const double s_n = GENERATE(1.0, 0.25);
     Draw draw(9);
     const auto sources = sample_sphere({.h = 0.1, .s_a = 4, .s_n = s_n});
-    const ConeField field(sources, g, wide);
+    const ConeField field(sources, g, wide, 0, in_turn);
     std::size_t last = sources.size() * sources.size();
     const auto points = places(draw, 50);
     for (const double tolerance : {1e-9, 1e-3, 0.1, 100.0}) {

@@ -42,7 +42,7 @@ struct Setup {
     }
     std::vector<Metric> answers() const {
         std::vector<Metric> out(x.size());
-        exact_reference(sources, g, largest)->sample(x, out);
+        exact_reference(sources, g, largest, 0, IntersectionRule::in_turn)->sample(x, out);
         return out;
     }
 };

@@ -72,7 +72,8 @@ class PaperTables(unittest.TestCase):
 
 class Cells(unittest.TestCase):
     def test_only_what_was_run_as_published_is_a_cell(self):
-        self.assertEqual(len(evidence_of([json_row("K_oL")]).cells), 1)
+        for intersection in ({}, {"intersection": "in-turn"}):
+            self.assertEqual(len(evidence_of([json_row("K_oL", **intersection)]).cells), 1)
         for change in ({"law": "cone"}, {"schedule": "queue"}, {"reference": "exact"},
                        {"tau": 0.3}, {"neighbourhood": "all"}, {"node_values": "exact"},
                        {"frozen": "floats"}, {"interpolation": "published"}):

@@ -79,10 +79,12 @@ TEST_CASE("the reference of a field with sources is the intersection of both") {
     c.sources.s_n = 0.25;
     c.sources.field.kind = FieldKind::planes;
     c.sources.field.lengths = {.across = 0.02, .along = 0.3};
+    c.intersection = IntersectionRule::in_turn;  // order-free: see the next test
     const Workload mixed = make_workload(study, c.sources);
     const auto reference = make_reference(study, c, mixed);
     const double largest = mixed.domain.half_diagonal();
-    const auto cones = exact_reference(mixed.sources, c.g_r, Metric::isotropic(largest));
+    const auto cones =
+        exact_reference(mixed.sources, c.g_r, Metric::isotropic(largest), 0, c.intersection);
     Draw draw(1);
     for (int i = 0; i < 100; ++i) {
         const Point p(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
@@ -107,7 +109,6 @@ TEST_CASE("the order-free reference is the largest metric within all cones and t
     c.sources.s_n = 0.25;
     c.sources.field.kind = FieldKind::planes;
     c.sources.field.lengths = {.across = 0.02, .along = 0.3};
-    c.intersection = IntersectionRule::order_free;
     const Workload mixed = make_workload(study, c.sources);
     const auto reference = make_reference(study, c, mixed);
     Draw draw(1);

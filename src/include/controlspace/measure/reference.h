@@ -29,7 +29,7 @@ namespace controlspace {
 /// `largest`; for a tolerance that is negative or not finite.
 std::unique_ptr<ControlSpace> exact_reference(std::vector<PointSource> sources, double g,
                                               const Metric& largest, double tolerance = 0,
-                                              IntersectionRule rule = IntersectionRule::in_turn,
+                                              IntersectionRule rule = IntersectionRule::order_free,
                                               std::shared_ptr<const ControlSpace> continuous = {});
 
 /// The field in turn by intersecting with every source, without a search: the oracle of the tests.

@@ -20,7 +20,7 @@ struct AdaptationGoal {
     std::shared_ptr<const ControlSpace> continuous;  ///< or none
     double ratio = 1.25;                             ///< g_r of the sources' cones
     double target = 0.1;                             ///< largest δ to the field; 0 is out of reach
-    IntersectionRule intersection = IntersectionRule::in_turn;
+    IntersectionRule intersection = IntersectionRule::order_free;
 };
 
 struct AdaptationReport {

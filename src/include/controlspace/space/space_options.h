@@ -34,7 +34,7 @@ struct SpaceOptions {
     double ratio = 1.25;
     QuadraticForm quadratic_form = QuadraticForm::corrected;
     /// Of cones, in structures that keep sources.
-    IntersectionRule intersection = IntersectionRule::in_turn;
+    IntersectionRule intersection = IntersectionRule::order_free;
     /// Sources may come after gradation. What they request is then kept beside the graded field:
     /// insertion goes by it, and grading again gives the field of all sources at once, to the bit.
     /// Of isotropic sources, under the cone law and by the queue, that costs in proportion to what

@@ -66,7 +66,7 @@ struct Case {
     GradationSchedule schedule = GradationSchedule::queue;
     Neighbourhood neighbourhood = Neighbourhood::faces;  ///< structures that hold metrics only
     /// Of cones: in the exact reference, adaptation, and structures that keep sources.
-    IntersectionRule intersection = IntersectionRule::in_turn;
+    IntersectionRule intersection = IntersectionRule::order_free;
     const ReferenceKind* reference = &exact_reference_kind();
     /// Values of parameters that are defined outside the library, by key.
     std::map<std::string, Value> other = {};
