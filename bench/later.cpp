@@ -71,6 +71,9 @@ std::unique_ptr<ControlSpaceBuilder> make(const CatalogueEntry& entry, const Wor
                        .takes_later_sources = true});
 }
 
+// The incremental one.
+constexpr GradationOptions gradation{.schedule = GradationSchedule::queue};
+
 void later(benchmark::State& state, const CatalogueEntry& entry, const Work& work) {
     double all_at_once = 0;
     double late = 0;
@@ -80,15 +83,15 @@ void later(benchmark::State& state, const CatalogueEntry& entry, const Work& wor
         auto space = make(entry, work);
         space->insert(work.early);
         space->insert(work.late);
-        space->grade({});
+        space->grade(gradation);
         all_at_once += cpu_seconds() - start;
 
         space = make(entry, work);
         space->insert(work.early);
-        space->grade({});
+        space->grade(gradation);
         start = cpu_seconds();
         space->insert(work.late);
-        report = space->grade({});
+        report = space->grade(gradation);
         const double seconds = cpu_seconds() - start;
         late += seconds;
         state.SetIterationTime(seconds);

@@ -44,6 +44,7 @@ public:
         footprint.control_nodes = stencil_.lattice().size();
         footprint.remark = remark_;
         storage_.add_to(footprint);
+        if (given()) footprint.bytes_auxiliary += given()->bytes();
         if (!later_) return footprint;
         footprint.bytes_auxiliary += later_->later().requested.capacity() * sizeof(Metric);
         if (!Storage::shares_field) {

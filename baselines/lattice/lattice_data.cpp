@@ -93,8 +93,8 @@ InsertionReport LatticeData::insert_between(std::span<const PointSource> sources
     return report;
 }
 
-GradationReport LatticeData::grade(const GradationOptions& options) {
-    require_valid(options);
+GradationReport LatticeData::grade(const NodeGradation& gradation) {
+    const GradationOptions& options = gradation.options;
     field();
     GradationReport report;
     if (!later_.requested.empty() && may_regrade(later_.past, options) &&
@@ -106,7 +106,9 @@ GradationReport LatticeData::grade(const GradationOptions& options) {
         } else if (options_.takes_later_sources) {
             later_.requested = field_;
         }
-        report = controlspace::grade(lattice(neighbourhood_of(options)), field_, options);
+        const Lattice nodes = lattice(neighbourhood_of(options));
+        report = gradation.field ? grade_to(*gradation.field, positions(nodes), field_)
+                                 : controlspace::grade(nodes, field_, options);
         round(field_);
     }
     later_.lowered.clear();

@@ -10,6 +10,7 @@
 #include "controlspace/gradation/detail/regrade.h"
 #include "controlspace/gradation/node_graph.h"
 #include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/detail/given_sources.h"
 #include "controlspace/space/detail/state.h"
 #include "controlspace/space/space_options.h"
 
@@ -50,7 +51,7 @@ public:
     LatticeData(const SpaceOptions& options, const GridKind& kind);
 
     InsertionReport insert(std::span<const PointSource> sources);
-    GradationReport grade(const GradationOptions& options);
+    GradationReport grade(const NodeGradation& gradation);
     ControlNodes control_nodes(Neighbourhood neighbourhood) const;
     void assign(std::span<const Metric> metrics);
     static std::unique_ptr<ControlSpace> finished(std::shared_ptr<const LatticeData> data);

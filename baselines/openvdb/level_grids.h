@@ -62,10 +62,10 @@ public:
         past_.reset();
     }
 
-    GradationReport grade(const GradationOptions& options) {
-        require_valid(options);
+    GradationReport grade(const NodeGradation& gradation) {
+        const GradationOptions& options = gradation.options;
         if (options_.takes_later_sources) {
-            if (past_ && past_->options == options) {
+            if (!gradation.field && past_ && past_->options == options) {
                 return {.largest_ratio_left = past_->largest_ratio_left, .visits = 0};
             }
             if (requested_) {
@@ -78,14 +78,17 @@ public:
         std::uint64_t operations = 0;
         while (true) {
             require_memory(options.neighbourhood);
-            ControlNodes nodes = control_nodes(neighbourhood_of(options));
-            const std::vector<Metric> before = nodes.metrics;
-            report = controlspace::grade(nodes.graph, nodes.metrics, options);
+            const LevelNodes nodes = numbered();
+            const std::vector<Metric> before = nodes.metrics();
+            std::vector<Metric> graded = before;
+            report = gradation.field ? grade_to(*gradation.field, nodes.positions(), graded)
+                                     : controlspace::grade(nodes.graph(neighbourhood_of(options)),
+                                                           graded, options);
             operations += report.operations;
-            set_field(nodes.metrics);
+            nodes.assign(graded, field_.trees);
             const auto too_long = voxels_longer_than_wanted();
             if (too_long.empty()) break;
-            set_field(before);
+            nodes.assign(before, field_.trees);
             LevelWriter at(field_.trees);
             for (const auto& [level, c] : too_long) split(field_, at, level, c);
             prune({.delta = 0});
@@ -114,6 +117,7 @@ public:
     }
 
     Box domain() const { return cells_.domain(); }
+    const SpaceOptions& options() const { return options_; }
 
     Box cell_at(const Point& x) const {
         const Coord finest = finest_cell(x);

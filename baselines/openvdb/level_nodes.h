@@ -25,6 +25,7 @@ public:
     /// Writes the metrics of all nodes into `trees`, those that this was made from.
     void assign(std::span<const Metric> metrics, std::span<VdbLevelTree> trees) const;
     NodeGraph graph(Neighbourhood neighbourhood) const;
+    std::vector<Point> positions() const;
 
 private:
     using Coord = openvdb::Coord;
@@ -34,7 +35,6 @@ private:
     using NumberReader = LevelAccess<const NumberTree>;
 
     void number(int level);
-    std::vector<Point> positions() const;
     NodeGraph graph_of_cells(Neighbourhood neighbourhood) const;
     NodeGraph graph_of_nearest() const;
     NodeGraph graph_of_vertices(Neighbourhood neighbourhood) const;

@@ -32,11 +32,7 @@ int build(const Build& job) {
         StepProgress progress(job.quiet, output);
         filled = filled_space(job.input, output, given_settings(job.given), progress.observer());
         progress.started("writing");
-        if (filled.origin && filled.origin->c.frozen == Frozen::no) {
-            save_control_space(output, *filled.builder);
-        } else {
-            save_control_space(output, *filled.space);
-        }
+        save_control_space(output, *filled.space);
     }
     const Footprint footprint = filled.space->footprint();
     print(fmt::format("{}: {} with {} control nodes, {:.3g} MB in memory, {:.3g} MB in the file\n",

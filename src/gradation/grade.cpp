@@ -20,7 +20,7 @@ void require_valid(const GradationOptions& options) {
                                      options.ratio));
     }
     require_known("the law of gradation", options.law, GradationLaw::mean_length);
-    require_known("the schedule of gradation", options.schedule, GradationSchedule::passes);
+    require_known("the schedule of gradation", options.schedule, GradationSchedule::sources);
     require_known("the neighbourhood", options.neighbourhood, Neighbourhood::all);
 }
 

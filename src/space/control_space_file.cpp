@@ -81,6 +81,12 @@ void fill(const CatalogueEntry& entry, const StateReader& state, SavedControlSpa
     }
     own->set_recipe(saved.recipe);
     own->load(state);
+    std::shared_ptr<GivenSources> given;
+    if (GivenSources::are_in(state)) {
+        given = std::make_shared<GivenSources>();
+        given->load(state);
+    }
+    own->set_given(std::move(given));
     saved.space = builder->build({.precision = saved.recipe.precision});
     if (!saved.recipe.precision) saved.builder = std::move(builder);
 }
@@ -136,6 +142,7 @@ void save(const std::filesystem::path& file, const Saved* saved) {
     state("options.intersection", recipe.options.intersection, IntersectionRule::in_turn);
     if (recipe.precision) state("compact.precision", *recipe.precision, Precision::floats);
     saved->save(state);
+    if (saved->given()) saved->given()->save(state);
 
     const Header header{.size = header_size + state.bytes().size() + checksum_size};
     Checksum checksum;

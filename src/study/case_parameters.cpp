@@ -173,8 +173,8 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
             if_chosen("{} intersection", &Case::intersection)),
         work("law", "", "Law of gradation", word<Case>(&Case::law), {"cone"},
              word_label("{} law", &Case::law)),
-        method("schedule", "", "Order of gradation", word<Case>(&Case::schedule), {"queue"},
-               word_label("{}", &Case::schedule)),
+        method("schedule", "", "Gradation of control nodes: by the sources, or from node to node",
+               word<Case>(&Case::schedule), {"sources"}, word_label("{}", &Case::schedule)),
         method("epsilon", "",
                "Insertion tolerance: non-conformity below which a source is satisfied",
                number_of(&Case::epsilon), {0.2}, if_given("epsilon {}", &Case::epsilon)),
@@ -219,18 +219,13 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
                       const double factor = c.voxel_factor.value_or(1);
                       return factor == 1 ? "" : fmt::format("c {:.4g}", factor);
                   }),
-        structure(
-            "neighbourhood", "",
-            "Neighbours in gradation: faces, nodes across faces (at vertices: along edges) as "
-            "in the paper; all, those across edges and corners too (at vertices: of the same "
-            "leaf or voxel). None in structures that keep sources and in adapted trees",
-            word<Case>(&Case::neighbourhood), {"faces"}, is_graded,
-            if_chosen("{} neighbours", &Case::neighbourhood)),
-        structure("node_values", "",
-                  "Metrics at control nodes: graded, the result of gradation; exact, the reference "
-                  "there, which isolates the error of interpolation",
-                  word<Case>(&Case::node_values), {"graded"}, is_graded,
-                  if_chosen("{} at nodes", &Case::node_values)),
+        structure("neighbourhood", "",
+                  "Neighbours in gradation from node to node: faces, nodes across faces (at "
+                  "vertices: along edges) as "
+                  "in the paper; all, those across edges and corners too (at vertices: of the same "
+                  "leaf or voxel). None in structures that keep sources and in adapted trees",
+                  word<Case>(&Case::neighbourhood), {"faces"}, is_graded,
+                  if_chosen("{} neighbours", &Case::neighbourhood)),
         structure(
             "frozen", "",
             "Conversion of trees to their compact, read-only form, not timed: no; doubles, the "

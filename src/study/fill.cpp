@@ -2,7 +2,6 @@
 
 #include "controlspace/error.h"
 #include "controlspace/space/control_nodes.h"
-#include "controlspace/space/sample_parallel.h"
 #include "controlspace/study/run.h"
 #include "measure/stopwatch.h"
 
@@ -31,10 +30,11 @@ void adapt(Filled& filled, const Case& c, const Workload& workload) {
     }
 }
 
-void follow_at_nodes(NodeBuilder& builder, const ControlSpace& field) {
-    ControlNodes nodes = builder.control_nodes(Neighbourhood::faces);
-    sample_parallel(field, positions(nodes.graph), nodes.metrics);
-    builder.assign(nodes.metrics);
+void add_largest_ratio(GradationReport& gradation, const ControlSpace& space) {
+    if (const auto nodes = control_nodes(space, Neighbourhood::faces)) {
+        gradation.largest_ratio_left =
+            largest_gradation(nodes->graph, nodes->metrics, GradationLaw::cone);
+    }
 }
 
 }  // namespace
@@ -56,10 +56,7 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
         adapt(filled, c, workload);
         creation.insert_s = {time.seconds()};
         creation.gradation_s = {0};
-        if (const auto nodes = control_nodes(*filled.builder->build(), Neighbourhood::faces)) {
-            creation.gradation.largest_ratio_left =
-                largest_gradation(nodes->graph, nodes->metrics, GradationLaw::cone);
-        }
+        add_largest_ratio(creation.gradation, *filled.builder->build());
         return filled;
     }
     const std::span<const PointSource> sources = workload.sources;
@@ -69,11 +66,11 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     time = phase("gradation");
     creation.gradation = filled.builder->grade(
         {.law = c.law, .schedule = c.schedule, .ratio = c.g_r, .neighbourhood = c.neighbourhood});
-    filled.builder->build();  // where grids of other systems and the search of `direct` are made
+    // Where grids of other systems and the search of `direct` are made.
+    const auto space = filled.builder->build();
     creation.gradation_s = {time.seconds()};
-    if (c.node_values == NodeValues::exact) {
-        follow_at_nodes(dynamic_cast<NodeBuilder&>(*filled.builder),
-                        *make_reference(study, c, workload));
+    if (c.schedule == GradationSchedule::sources && entry.has<MetricNodes>()) {
+        add_largest_ratio(creation.gradation, *space);
     }
     return filled;
 }

@@ -304,6 +304,7 @@ TEST_CASE("gradation grows a source's length with the way along the axes") {
     const std::vector<NodeIndex> seeds = grid.nodes_around(source.position);
     grid.space->insert(source);
     GradationOptions gradation;
+    gradation.schedule = GradationSchedule::queue;
     gradation.ratio = 1.7;
     const GradationReport report = grid.space->grade(gradation);
     grid.read();
@@ -341,7 +342,7 @@ TEST_CASE("on the paper's sphere sizes are 63 % too large over faces, 11 % with 
     const auto excess = [&](Neighbourhood neighbourhood) {
         const auto grid = make_structure("uniform-nearest", options);
         grid->insert(sources);
-        grid->grade({.neighbourhood = neighbourhood});
+        grid->grade({.schedule = GradationSchedule::queue, .neighbourhood = neighbourhood});
         const ControlNodes nodes = grid->control_nodes(neighbourhood);
         std::vector<Point> x = positions(nodes.graph);
         std::vector<Metric> expected(x.size());

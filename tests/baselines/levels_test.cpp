@@ -187,7 +187,8 @@ TEST_CASE("after gradation no voxel is longer than its factor times the size it 
 
 TEST_CASE("threads do not show in a grid in levels") {
     const std::string id = GENERATE(values(both));
-    const auto schedule = GENERATE(GradationSchedule::queue, GradationSchedule::passes);
+    const auto schedule =
+        GENERATE(GradationSchedule::sources, GradationSchedule::queue, GradationSchedule::passes);
     const auto neighbourhood = GENERATE(Neighbourhood::faces, Neighbourhood::all);
     SpaceOptions options = cube();
     options.finest_length = 1.0 / 16;

@@ -88,14 +88,16 @@ STRUCTURE_CASE(does_not_round,
     CHECK(worst < 0.2);
 }
 
-STRUCTURE_CASE(does_not_round, "gradation only makes smaller, and holds afterwards") {
+STRUCTURE_CASE(does_not_round,
+               "gradation from node to node only makes smaller, and holds afterwards") {
     const auto law = GENERATE(GradationLaw::cone, GradationLaw::mean_length);
     const Work work = any_work();
     CAPTURE(work.name);
     const std::vector<Point> x = random_points(work.domain, 3000, 10);
     const auto space = work.inserted(structure);
     const std::vector<Metric> before = answers(*space, x);
-    const GradationReport report = space->grade({.law = law, .ratio = g});
+    const GradationReport report =
+        space->grade({.law = law, .schedule = GradationSchedule::queue, .ratio = g});
     // Three sources cannot stand for all tensors that cut a leaf.
     const bool holds = keeps_values(*structure.entry) || work.isotropic();
     if (holds) CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
@@ -120,7 +122,8 @@ STRUCTURE_CASE(does_not_round,
     const auto graded = [&](Neighbourhood neighbourhood) {
         auto space = editable(structure.entry->make(options));
         space->insert(work.sources);
-        const auto report = space->grade({.ratio = g, .neighbourhood = neighbourhood});
+        const auto report = space->grade(
+            {.schedule = GradationSchedule::queue, .ratio = g, .neighbourhood = neighbourhood});
         CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
         return space;
     };

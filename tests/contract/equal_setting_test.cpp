@@ -25,15 +25,13 @@ std::vector<Row> rows_of(const Run& run) {
 }  // namespace
 
 TEST_CASE("every grid comes to an accuracy, and the row says by which voxels") {
-    for (const Row& row : rows_of({{"structures", {"baselines"}},
-                                   {"equal_delta", {0.05}},
-                                   {"node_values", {"exact"}}})) {
+    for (const Row& row : rows_of({{"structures", {"baselines"}}, {"equal_delta", {0.05}}})) {
         if (row.setting.structure == "direct") continue;
         CAPTURE(structure_label(row.setting), row.error);
         REQUIRE(row.is_measured());
         CHECK(row.number("delta_R_max") <= 0.05);
         REQUIRE(row.setting.voxel);
-        Run again{{"structures", {row.setting.structure}}, {"node_values", {"exact"}}};
+        Run again{{"structures", {row.setting.structure}}};
         again["voxel"] = {*row.setting.voxel};
         again["voxel_factor"] = {row.setting.voxel_factor.value_or(1)};
         again["prune_delta"] = {row.setting.prune_delta.value_or(0)};

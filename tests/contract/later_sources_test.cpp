@@ -16,7 +16,15 @@ namespace {
 using Batch = std::vector<PointSource>;
 
 const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
-constexpr auto either = {Neighbourhood::faces, Neighbourhood::all};
+constexpr GradationOptions queue{.schedule = GradationSchedule::queue};
+
+// By the sources, and from node to node.
+std::vector<GradationOptions> gradations(double g) {
+    constexpr auto by_queue = GradationSchedule::queue;
+    return {{.ratio = g},
+            {.schedule = by_queue, .ratio = g},
+            {.schedule = by_queue, .ratio = g, .neighbourhood = Neighbourhood::all}};
+}
 
 // Sources that neighbour each other in size and place only by chance: some fine, most coarser than
 // what gradation makes of the fine ones, some in the same place, some on faces of leaves.
@@ -91,7 +99,7 @@ STRUCTURE_CASE(keeps_node_values,
                "later sources, graded again: to the bit the field of all at once") {
     const double g = GENERATE(1.0, 1.1, 1.25, 2.0);
     const unsigned seed = GENERATE(1u, 2u);
-    const GradationOptions gradation{.ratio = g, .neighbourhood = GENERATE(values(either))};
+    const GradationOptions gradation = GENERATE_COPY(values(gradations(g)));
     const std::vector<Batch> batches{scattered(150, seed), scattered(8, seed + 10),
                                      scattered(1, seed + 20), scattered(60, seed + 30)};
     CAPTURE(g, seed);
@@ -104,7 +112,7 @@ STRUCTURE_CASE(keeps_node_values,
 STRUCTURE_CASE(keeps_node_values,
                "later sources that are coarser than the field cut leaves, and sizes grow") {
     const double g = GENERATE(1.1, 1.25, 1.6);
-    const GradationOptions gradation{.ratio = g, .neighbourhood = GENERATE(values(either))};
+    const GradationOptions gradation = GENERATE_COPY(values(gradations(g)));
     Batch fine = scattered(6, 3);
     for (PointSource& source : fine) source.metric = Metric::isotropic(0.05);
     std::vector<Batch> batches{fine};
@@ -126,20 +134,20 @@ STRUCTURE_CASE(keeps_node_values,
     if (is_direct(*structure.entry)) return;
     const auto space = editable(structure.entry->make(later(structure.split)));
     space->insert(fine);
-    CHECK_FALSE(space->grade({}).visits.has_value());
+    CHECK_FALSE(space->grade(queue).visits.has_value());
     const std::vector<Metric> before = answers(*space);
 
-    CHECK(space->grade({}).visits == 0u);
+    CHECK(space->grade(queue).visits == 0u);
     CHECK(space->insert({Point::Zero(), Metric::isotropic(1.8)}) == Insertion::already_met);
     if (structure.entry->order < 2) {  // quadratic functions overshoot: some are wanted again
         CHECK(space->insert(fine).inserted == 0);
     }
-    CHECK(space->grade({}).visits == 0u);
+    CHECK(space->grade(queue).visits == 0u);
     CHECK(answers(*space) == before);
 
     if (structure.entry->has<VoxelLevels>()) return;  // graded anew, as other voxels may be wanted
     space->insert(near);
-    const GradationReport report = space->grade({});
+    const GradationReport report = space->grade(queue);
     const std::size_t nodes = space->footprint().control_nodes;
     CHECK(report.visits > 0u);
     CHECK(report.visits < nodes);
@@ -154,7 +162,7 @@ STRUCTURE_CASE(keeps_node_values,
                "tensors, other laws, passes: all graded anew, with the bits of all at once") {
     const std::vector<Batch> batches{scattered(30, 7), layered(15, 8), scattered(15, 9)};
     const GradationOptions gradation =
-        GENERATE(GradationOptions{},
+        GENERATE(GradationOptions{}, queue,
                  GradationOptions{GradationLaw::mean_length, GradationSchedule::passes, 1.25});
     require_same(*in_turn(structure, batches, gradation),
                  *all_at_once(structure, batches, gradation));
@@ -163,17 +171,20 @@ STRUCTURE_CASE(keeps_node_values,
 STRUCTURE_CASE(keeps_node_values,
                "another neighbourhood grades what the sources request, not what was graded") {
     const std::vector<Batch> batches{scattered(100, 12)};
-    const auto space = all_at_once(structure, batches, {.neighbourhood = Neighbourhood::all});
-    space->grade({});
-    require_same(*space, *all_at_once(structure, batches, {}));
+    const auto space =
+        all_at_once(structure, batches,
+                    {.schedule = GradationSchedule::queue, .neighbourhood = Neighbourhood::all});
+    space->grade(queue);
+    require_same(*space, *all_at_once(structure, batches, queue));
 }
 
 STRUCTURE_CASE(keeps_node_values,
                "another ratio grades what the sources request, not what was graded") {
     const std::vector<Batch> batches{scattered(100, 12)};
-    const auto space = all_at_once(structure, batches, {.ratio = 1.1});
-    space->grade({.ratio = 1.5});
-    require_same(*space, *all_at_once(structure, batches, {.ratio = 1.5}));
+    const auto schedule = GENERATE(GradationSchedule::sources, GradationSchedule::queue);
+    const auto space = all_at_once(structure, batches, {.schedule = schedule, .ratio = 1.1});
+    space->grade({.schedule = schedule, .ratio = 1.5});
+    require_same(*space, *all_at_once(structure, batches, {.schedule = schedule, .ratio = 1.5}));
 }
 
 // Quadratic functions overshoot, and cutting a leaf makes finer neighbours' vertices count.

@@ -75,7 +75,7 @@ class Cells(unittest.TestCase):
         for intersection in ({}, {"intersection": "in-turn"}):
             self.assertEqual(len(evidence_of([json_row("K_oL", **intersection)]).cells), 1)
         for change in ({"law": "cone"}, {"schedule": "queue"}, {"reference": "exact"},
-                       {"tau": 0.3}, {"neighbourhood": "all"}, {"node_values": "exact"},
+                       {"tau": 0.3}, {"neighbourhood": "all"},
                        {"frozen": "floats"}, {"interpolation": "published"}):
             self.assertFalse(evidence_of([json_row("K_oL", **change)]).cells, change)
         for setting in ({"domain": [-2, 2, -2, 2, -2, 2]}, {"radius": 0.7}, {"h": 0.02},

@@ -18,8 +18,8 @@ SETTINGS = {"name": "a study", "sources": "sphere", "centre": [0.0, 0.0, 0.0], "
             "h": 0.015, "domain": [], "seed": 1, "probe_grid": 4, "fine_probe_grid": 101,
             "output": "out", "runs": []}
 DEFAULTS = {"split": "s_L", "rho": 1.0, "tau": 1.0, "epsilon": 0.2, "g_r": 1.25, "s_a": 2.0,
-            "s_n": 1.0, "sampling": "regular", "field": "none", "node_values": "graded",
-            "frozen": "no", "law": "cone", "schedule": "queue", "neighbourhood": "faces",
+            "s_n": 1.0, "sampling": "regular", "field": "none",
+            "frozen": "no", "law": "cone", "schedule": "sources", "neighbourhood": "faces",
             "reference": "exact", "interpolation": "corrected"}
 PUBLISHED = {"law": "mean-length", "schedule": "passes", "reference": "published-sphere"}
 
@@ -42,7 +42,7 @@ def json_row(structure="K_L", split=None, **changes):
     """A row as in results.json: of the paper's sphere, run as published, unless changed."""
     row = {"structure": structure, "split": split, "rho": 1.0, "tau": 1.0, "epsilon": 0.2,
            "g_r": 1.25, "s_a": 2.0, "s_n": 1.0, "sampling": "regular", "field": "none",
-           "max_depth": 42 if split else 14, "voxel": None, "node_values": "graded",
+           "max_depth": 42 if split else 14, "voxel": None,
            "frozen": "no", **PUBLISHED, "neighbourhood": "faces", "sources": 36186,
            "sources_inserted": 35852, "tree_nodes": 205, "cells": 103, "control_nodes": 103,
            "depth": 9, "bytes_total": 1230000, "bytes_payload": 1000000, "bytes_topology": 200000,

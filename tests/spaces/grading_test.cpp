@@ -29,7 +29,7 @@ void check_grading(EditableSpace& space, const CatalogueEntry& entry, bool isotr
     std::vector<Point> x = cell_centres(domain, 17);
     const std::vector<Metric> before = answers(space, x);
     const ControlNodes nodes = space.control_nodes(Neighbourhood::faces);
-    space.grade({.ratio = ratio});
+    space.grade({.schedule = GradationSchedule::queue, .ratio = ratio});
     if (entry.has<MetricNodes>()) {
         check_no_longer(space.control_nodes(Neighbourhood::faces).metrics, nodes.metrics);
     }
@@ -40,9 +40,9 @@ void check_grading(EditableSpace& space, const CatalogueEntry& entry, bool isotr
 
 }  // namespace
 
-CASE_OF_EACH(
-    entry, all_trees(),
-    "gradation makes no control node longer, nor what leaves and isotropic vertices answer") {
+CASE_OF_EACH(entry, all_trees(),
+             "gradation from node to node makes no control node longer, nor what leaves and "
+             "isotropic vertices answer") {
     const bool isotropic = GENERATE(true, false);
     const auto sources = isotropic ? sample_sphere({.h = 0.05, .s_a = 2, .s_n = 1, .rho = 2})
                                    : sample_sphere({.h = 0.1, .s_a = 4, .s_n = 0.25, .rho = 2});

@@ -195,25 +195,16 @@ TEST_CASE("frozen trees answer alike, in less memory, and what cannot be frozen 
     CHECK(rows[3].setting.structure == "K_LA");
 }
 
-TEST_CASE("with the reference at their nodes, structures err between nodes only") {
-    Study study = small_study({"K_oV", "K_LA"});
-    study.runs[0]["node_values"] = {"graded", "exact"};
-    const auto trees = tree_catalogue();
-    std::vector<CatalogueEntry> catalogue(trees.begin(), trees.end());
-    const auto anchored = anchored_catalogue();
-    catalogue.insert(catalogue.end(), anchored.begin(), anchored.end());
-    const auto rows = run(study, catalogue);
-    REQUIRE(rows.size() == 3);  // K_LA holds no metrics
-    const auto graded = std::find_if(rows.begin(), rows.end(), [](const Row& row) {
-        return structure_label(row.setting) == "K_oV";
-    });
-    const auto exact = std::find_if(rows.begin(), rows.end(), [](const Row& row) {
-        return structure_label(row.setting) == "K_oV, exact at nodes";
-    });
-    REQUIRE(graded != rows.end());
-    REQUIRE(exact != rows.end());
-    CHECK(exact->number("delta_R_mean") < 0.8 * graded->number("delta_R_mean"));
-    CHECK(exact->number("bytes_total") == graded->number("bytes_total"));
+TEST_CASE("graded by the sources, structures err between nodes only") {
+    Study study = small_study({"K_oV"});
+    study.runs[0]["schedule"] = {"queue", "sources"};
+    const auto rows = run(study, tree_catalogue());
+    REQUIRE(rows.size() == 2);
+    const Row& queue = rows[0];
+    const Row& sources = rows[1];
+    CHECK(sources.setting.schedule == GradationSchedule::sources);
+    CHECK(sources.number("delta_R_mean") < 0.8 * queue.number("delta_R_mean"));
+    CHECK(sources.number("bytes_total") == queue.number("bytes_total"));
 }
 
 TEST_CASE("structures that answer otherwise when made again have no times") {

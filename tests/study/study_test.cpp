@@ -98,18 +98,18 @@ TEST_CASE("interpolation multiplies trees with quadratic leaves only") {
     CHECK(space_options(study, cases[2], workload).quadratic_form == QuadraticForm::published);
 }
 
-TEST_CASE("goals that voxels are chosen for multiply grids, node values what holds metrics") {
+TEST_CASE("goals that voxels are chosen for multiply grids, neighbours what holds metrics") {
     std::vector<CatalogueEntry> catalogue = catalogue_with_a_grid();
     catalogue.push_back(
         {.id = "flat", .description = "", .capabilities = {MetricNodes(), VoxelSize()}});
     catalogue.push_back({.id = "keeper", .description = "", .capabilities = {KeptSources()}});
     Study study = study_of({"K_oL", "flat", "keeper"});
     study.runs[0]["equal_delta"] = {0, 0.1};
-    study.runs[0]["node_values"] = {"graded", "exact"};
+    study.runs[0]["neighbourhood"] = {"faces", "all"};
     const auto cases = expand(study, {catalogue});
     REQUIRE(cases.size() == 2 + 4 + 1);
-    CHECK(structure_label(cases[1]) == "K_oL, exact at nodes");
-    CHECK(structure_label(cases[5]) == "flat, for delta 0.1, exact at nodes");
+    CHECK(structure_label(cases[1]) == "K_oL, all neighbours");
+    CHECK(structure_label(cases[5]) == "flat, for delta 0.1, all neighbours");
     study.runs[0]["equal_memory"] = {5};
     CHECK_THROWS_WITH(expand(study, {catalogue}), Contains("give one of them"));
 }

@@ -40,7 +40,7 @@ std::string note_of(const std::vector<Row>& rows) {
 TEST_CASE("every row is in one table of measures that names its mode") {
     Case defaults = published_case();
     defaults.law = GradationLaw::cone;
-    defaults.schedule = GradationSchedule::queue;
+    defaults.schedule = GradationSchedule::sources;
     defaults.reference = &exact_reference_kind();
     Case grid = defaults;
     grid.structure = "uniform-nearest";
@@ -50,7 +50,8 @@ TEST_CASE("every row is in one table of measures that names its mode") {
     rows[2].error = "no memory";
     const auto tables = measure_tables(rows, tree_rows());
     REQUIRE(tables.size() == 2);
-    CHECK_THAT(tables[0].title, Contains("exact reference, cone law, queue") && Contains("tau 1"));
+    CHECK_THAT(tables[0].title,
+               Contains("exact reference, cone law, sources") && Contains("tau 1"));
     CHECK_THAT(tables[1].title, Contains("published-sphere reference, mean-length law, passes"));
     CHECK(tables[0].rows.size() == 2);
     CHECK(cell(tables[0], "K_L s_L", "MB") == "1.23");

@@ -81,8 +81,9 @@ CSPACE_API cspace_status cspace_insert(cspace* space, size_t n, const double* po
 CSPACE_API cspace_status cspace_insert_lengths(cspace* space, size_t n, const double* positions,
                                                const double* lengths);
 
-/** Limits the growth of lengths from point to point to the gradation ratio `ratio` (g_r >= 1).
- * To be called after all sources are inserted, unless the control space takes later sources. */
+/** Limits the growth of lengths from point to point to the gradation ratio `ratio` (g_r >= 1): the
+ * control nodes get the exact field of the sources inserted. To be called after all sources are
+ * inserted, unless the control space takes later sources. */
 CSPACE_API cspace_status cspace_grade(cspace* space, double ratio);
 
 /** Replaces the whole content, instead of insertion and gradation, by the graded field of `n`

@@ -11,18 +11,23 @@
 
 namespace controlspace {
 
-/// In which order the law is applied to pairs of neighbours.
+/// Where control nodes get their graded metrics from.
 enum class GradationSchedule {
-    /// Until nothing changes (paper §3.2): no pair of neighbours exceeds the ratio.
+    /// From neighbour to neighbour until nothing changes (paper §3.2): no pair exceeds the ratio.
     queue,
     /// At most ten passes over the nodes that are still too steep, in tree order: what the paper's
     /// tables were made with. May leave pairs above the ratio.
     passes,
+    /// By the sources: the exact field of all that the builder was given (measure/reference.h), or
+    /// less, where a source requests that of the node. Nothing is handed on from node to node.
+    /// By the queue where that is not possible: under the mean-length law; for a field that was
+    /// assigned or adapted; in a builder that was loaded without its sources; and in `grade`.
+    sources,
 };
 
 struct GradationOptions {
     GradationLaw law = GradationLaw::cone;
-    GradationSchedule schedule = GradationSchedule::queue;
+    GradationSchedule schedule = GradationSchedule::sources;
     double ratio = 1.25;  ///< g_r of the paper, >= 1
     /// `faces`, as in the paper, which for the passes of its tables means `nearest_per_face`; or
     /// `all`.
@@ -33,11 +38,12 @@ struct GradationOptions {
 
 struct GradationReport {
     /// Metrics made smaller, each counted every time; but once for isotropic metrics under the cone
-    /// law and the queue schedule.
+    /// law and the queue schedule. By the sources: once each.
     std::uint64_t operations = 0;
     /// Largest gradation ratio over all neighbours, under the law that was applied. After an
     /// incremental gradation (gradation/regrade.h): an upper bound, over the nodes visited and all
-    /// neighbours of the gradation before.
+    /// neighbours of the gradation before. By the sources it is not evaluated, and stays 1: see
+    /// largest_gradation.
     double largest_ratio_left = 1;
     /// Only for incremental gradation: how often a node's neighbours were visited.
     std::optional<std::uint64_t> visits = std::nullopt;
@@ -46,8 +52,8 @@ struct GradationReport {
 /// The neighbours that are compared under these options.
 inline Neighbourhood neighbourhood_of(const GradationOptions& options) {
     if (options.neighbourhood == Neighbourhood::all) return Neighbourhood::all;
-    return options.schedule == GradationSchedule::queue ? Neighbourhood::faces
-                                                        : Neighbourhood::nearest_per_face;
+    return options.schedule == GradationSchedule::passes ? Neighbourhood::nearest_per_face
+                                                         : Neighbourhood::faces;
 }
 
 /// Throws InputError for a ratio below 1 or not finite, and for an unknown law, schedule or

@@ -37,9 +37,11 @@ public:
     Insertion insert(const PointSource& source);
 
     /// Makes the field grow smoothly (paper §3.2). Structures whose control nodes carry metrics are
-    /// graded alike, over the neighbours that neighbourhood_of(options) names; those that keep
-    /// sources answer their cones of this ratio. Throws InputError for a ratio below 1 or not
-    /// finite, and where so many neighbours would outgrow the cap on memory.
+    /// graded alike: by default the nodes keep to the exact field of all sources so far, for
+    /// which builders keep these (32 bytes each, tensors 72); otherwise over the neighbours that
+    /// neighbourhood_of(options) names. Structures that keep sources answer their cones of this
+    /// ratio. Throws InputError for a ratio below 1 or not finite, and where so many neighbours
+    /// would outgrow the cap on memory.
     virtual GradationReport grade(const GradationOptions& options) = 0;
 
     /// Replaces all that was held by the field of `goal`, with few cells that keep within its
@@ -64,7 +66,7 @@ public:
     /// Sets the metrics, in the order of control_nodes(). Throws InputError for another number.
     virtual void assign(std::span<const Metric> metrics) = 0;
 
-    /// Grades a copy of the control nodes and assigns it.
+    /// Grades a copy of the control nodes from node to node and assigns it: it knows no sources.
     GradationReport grade(const GradationOptions& options) override;
     /// Sets the control nodes to the field.
     AdaptationReport adapt(const AdaptationGoal& goal) override;

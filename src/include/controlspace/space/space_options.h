@@ -33,19 +33,19 @@ struct SpaceOptions {
     /// leaves, whose interpolation it bounds until they are graded.
     double ratio = 1.25;
     QuadraticForm quadratic_form = QuadraticForm::corrected;
-    /// Of cones, in structures that keep sources.
+    /// Of cones, in structures that keep sources, and in gradation by the sources.
     IntersectionRule intersection = IntersectionRule::order_free;
     /// Sources may come after gradation. What they request is then kept beside the graded field:
     /// insertion goes by it, and grading again gives the field of all sources at once, to the bit.
     /// Of isotropic sources, under the cone law and by the queue, that costs in proportion to what
     /// they change, as long as that is little; otherwise all is graded anew. Between the two, the
     /// field is the old one, lowered at the new sources. Costs a second set of metrics and room to
-    /// grow.
+    /// grow; what is built keeps the sources, too.
     ///
-    /// Without it, later sources are compared with the graded field, and gradation starts from
-    /// that. Structures that keep sources always accept later ones: trees search the governing
-    /// sources of all leaves again, which gives a field close to that of all at once; `direct`
-    /// builds its search anew.
+    /// Without it, later sources are compared with the graded field, so that they cut fewer leaves,
+    /// and gradation from node to node starts from that. Structures that keep sources always accept
+    /// later ones: trees search the governing sources of all leaves again, which gives a field
+    /// close to that of all at once; `direct` builds its search anew.
     bool takes_later_sources = false;
     /// Cap on memory, gradation included: grids get coarser, trees that outgrow it throw
     /// InputError.

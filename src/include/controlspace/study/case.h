@@ -32,12 +32,6 @@ struct ReferenceKind {
 /// Intersection of all sources' cones (paper §5.2) and, as it stands, of the field.
 const ReferenceKind& exact_reference_kind();
 
-/// The metrics at the control nodes of a graded structure.
-enum class NodeValues {
-    graded,  ///< the result of gradation
-    exact,   ///< the reference at their positions: the remaining error is that of interpolation
-};
-
 /// Whether a structure is built in its compact form (BuildOptions::precision).
 enum class Frozen { no, doubles, floats };
 
@@ -60,10 +54,9 @@ struct Case {
     std::optional<double> equal_delta = {};
     std::optional<double> equal_memory = {};
     std::optional<QuadraticForm> interpolation = {};  ///< trees with quadratic leaves only
-    NodeValues node_values = NodeValues::graded;      ///< structures that hold metrics only
     Frozen frozen = Frozen::no;                       ///< structures with compact forms only
     GradationLaw law = GradationLaw::cone;
-    GradationSchedule schedule = GradationSchedule::queue;
+    GradationSchedule schedule = GradationSchedule::sources;
     Neighbourhood neighbourhood = Neighbourhood::faces;  ///< structures that hold metrics only
     /// Of cones: in the exact reference, adaptation, and structures that keep sources.
     IntersectionRule intersection = IntersectionRule::order_free;
@@ -84,7 +77,8 @@ struct Words<GradationLaw> {
 template <>
 struct Words<GradationSchedule> {
     static constexpr Word<GradationSchedule> table[] = {
-        {GradationSchedule::queue, "queue", "until nothing changes"},
+        {GradationSchedule::sources, "sources", "the exact field of the sources at each node"},
+        {GradationSchedule::queue, "queue", "from node to node until nothing changes"},
         {GradationSchedule::passes, "passes", "at most ten passes, as in the paper's tables"}};
 };
 template <>
@@ -105,12 +99,6 @@ struct Words<QuadraticForm> {
     static constexpr Word<QuadraticForm> table[] = {
         {QuadraticForm::corrected, "corrected", "paper §3.1.2 with its coordinates put right"},
         {QuadraticForm::published, "published", "with the two errors of the paper's program"}};
-};
-template <>
-struct Words<NodeValues> {
-    static constexpr Word<NodeValues> table[] = {
-        {NodeValues::graded, "graded", "the result of gradation"},
-        {NodeValues::exact, "exact", "the reference there: the error of interpolation alone"}};
 };
 template <>
 struct Words<Frozen> {

@@ -19,7 +19,7 @@ void exchange_past(Past& past, State& state) {
     }
     if (!is_graded) return;
     state("past.law", past->options.law, GradationLaw::mean_length);
-    state("past.schedule", past->options.schedule, GradationSchedule::passes);
+    state("past.schedule", past->options.schedule, GradationSchedule::sources);
     state("past.neighbourhood", past->options.neighbourhood, Neighbourhood::all);
     state("past.ratio", past->options.ratio);
     state("past.largest_ratio_left", past->largest_ratio_left);

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include "controlspace/space/control_space_file.h"
+#include "controlspace/space/detail/given_sources.h"
 #include "controlspace/space/detail/state.h"
 
 namespace controlspace {
@@ -22,8 +24,15 @@ public:
     const std::optional<Recipe>& recipe() const { return recipe_; }
     void set_recipe(std::optional<Recipe> recipe) { recipe_ = std::move(recipe); }
 
+    /// The sources it was given, in builders of control nodes and, where sources may come later,
+    /// in what they build; null where they are not known or not needed. Not to be changed while
+    /// they are shared.
+    const std::shared_ptr<GivenSources>& given() const { return given_; }
+    void set_given(std::shared_ptr<GivenSources> given) { given_ = std::move(given); }
+
 private:
     std::optional<Recipe> recipe_;
+    std::shared_ptr<GivenSources> given_;
 };
 
 /// A builder that takes back what was saved. Throws InputError where what is read is not sound; it

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -10,6 +12,7 @@
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/detail/given_sources.h"
 #include "controlspace/space/detail/saved.h"
 
 namespace controlspace {
@@ -24,7 +27,11 @@ public:
         data_->sample(x, out);
     }
     Box domain() const override { return data_->domain(); }
-    Footprint footprint() const override { return data_->footprint(); }
+    Footprint footprint() const override {
+        Footprint footprint = data_->footprint();
+        if (given()) footprint.bytes_auxiliary += given()->bytes();
+        return footprint;
+    }
     std::optional<Box> cell_at(const Point& x) const override { return data_->cell_at(x); }
     ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
         return data_->control_nodes(neighbourhood);
@@ -36,10 +43,10 @@ private:
 };
 
 /// A builder around `Data`, which can be copied, read and changed: sample, domain, footprint,
-/// cell_at, control_nodes, save; insert(sources), grade, adapt, load; for a NodeBuilder assign,
-/// which then may leave out grade and adapt. With pack(precision) it has compact forms; finish() is
-/// called before it is built. With finished(shared data) it is built in another form than
-/// SharedSpace.
+/// cell_at, control_nodes, save; insert(sources), grade(options), adapt, load; for a NodeBuilder
+/// assign, options and grade(NodeGradation), and it may leave out adapt. With pack(precision) it
+/// has compact forms; finish() is called before it is built. With finished(shared data) it is built
+/// in another form than SharedSpace.
 ///
 /// What it builds shares the data, which are copied before the next change as long as they are
 /// shared.
@@ -56,20 +63,29 @@ template <class Data>
 public:
     template <class... Arguments>
     explicit SharedBuilder(const Arguments&... arguments)
-        : data_(std::make_shared<Data>(arguments...)) {}
+        : data_(std::make_shared<Data>(arguments...)) {
+        if constexpr (has_nodes) this->set_given(std::make_shared<GivenSources>());
+    }
 
     using ControlSpaceBuilder::insert;
     InsertionReport insert(std::span<const PointSource> sources) override {
+        if constexpr (has_nodes) return insert_and_keep(sources);
         return edit().insert(sources);
     }
     GradationReport grade(const GradationOptions& options) override {
-        if constexpr (requires(Data & data) { data.grade(options); }) {
-            return edit().grade(options);
+        if constexpr (has_nodes) {
+            if (graded_by_sources_ == options) return {.visits = 0};
+            const NodeGradation gradation(options, this->given().get(), data_->options());
+            const GradationReport report = edit().grade(gradation);
+            graded_by_sources_.reset();
+            if (gradation.field) graded_by_sources_ = options;
+            return report;
         } else {
-            return Base::grade(options);
+            return edit().grade(options);
         }
     }
     AdaptationReport adapt(const AdaptationGoal& goal) override {
+        forget_given();
         if constexpr (requires(Data & data) { data.adapt(goal); }) {
             return edit().adapt(goal);
         } else {
@@ -82,13 +98,9 @@ public:
             if (!data_->is_finished()) edit().finish();
         }
         if constexpr (requires { Data::finished(data_); }) {
-            auto space = Data::finished(data_);
-            dynamic_cast<Saved&>(*space).set_recipe(this->recipe());
-            return space;
+            return described(Data::finished(data_));
         } else {
-            auto space = std::make_unique<SharedSpace<Data>>(data_);
-            space->set_recipe(this->recipe());
-            return space;
+            return described(std::make_unique<SharedSpace<Data>>(data_));
         }
     }
     Box domain() const override { return data_->domain(); }
@@ -99,6 +111,7 @@ public:
     void assign(std::span<const Metric> metrics) {
         if constexpr (has_nodes) {
             edit().assign(metrics);
+            forget_given();
         }
     }
 
@@ -106,6 +119,43 @@ public:
     void load(const StateReader& state) override { edit().load(state); }
 
 private:
+    // What they request counts in gradation, whether they change nodes or not.
+    InsertionReport insert_and_keep(std::span<const PointSource> sources) {
+        graded_by_sources_.reset();
+        const auto keep = [&](std::span<const PointSource> valid) {
+            if (!this->given()) return;
+            if (this->given().use_count() > 1) {
+                this->set_given(std::make_shared<GivenSources>(*this->given()));
+            }
+            this->given()->add(valid);
+        };
+        const auto is_refused = [&](const PointSource& s) { return !is_valid(s, domain()); };
+        try {
+            const InsertionReport report = edit().insert(sources);
+            keep(sources);
+            return report;
+        } catch (...) {
+            const auto first = std::ranges::find_if(sources, is_refused);
+            keep({sources.begin(), first});
+            throw;
+        }
+    }
+    // The field is no longer that of sources inserted.
+    void forget_given() {
+        this->set_given(nullptr);
+        graded_by_sources_.reset();
+    }
+
+    template <class Space>
+    std::unique_ptr<Space> described(std::unique_ptr<Space> space) const {
+        auto& saved = dynamic_cast<Saved&>(*space);
+        saved.set_recipe(this->recipe());
+        if constexpr (has_nodes) {
+            if (data_->options().takes_later_sources) saved.set_given(this->given());
+        }
+        return space;
+    }
+
     Data& edit() {
         if (data_.use_count() > 1) {
             data_ = std::make_shared<Data>(*data_);
@@ -133,6 +183,7 @@ private:
     }
 
     std::shared_ptr<Data> data_;
+    std::optional<GradationOptions> graded_by_sources_;  // since the last change
 };
 
 }  // namespace controlspace

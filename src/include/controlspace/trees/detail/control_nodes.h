@@ -8,6 +8,7 @@
 
 #include "controlspace/gradation/grade.h"
 #include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/detail/given_sources.h"
 #include "controlspace/space/detail/goal_field.h"
 #include "controlspace/trees/detail/in_parallel.h"
 #include "controlspace/trees/detail/leaf_graph.h"
@@ -55,13 +56,38 @@ void assign_nodes(const Topology<Node>& tree, Storage& storage, std::span<const 
     if constexpr (requires { storage.assigned(); }) storage.assigned();
 }
 
+/// Intersects the control nodes with the field.
+template <class Node, class Storage>
+GradationReport grade_nodes_to(const ControlSpace& field, const Topology<Node>& tree,
+                               Storage& storage) {
+    const std::span<Metric> metrics = storage.metrics().field();
+    if constexpr (nodes_per_leaf<Storage> == 1) {
+        std::vector<Point> x;
+        std::vector<LeafIndex> order;
+        x.reserve(tree.leaves());
+        order.reserve(tree.leaves());
+        tree.for_each_leaf([&](LeafIndex leaf, const Box& box) {
+            x.push_back(box.centre());
+            order.push_back(leaf);
+        });
+        return grade_to(field, x, {metrics, order});
+    } else {
+        return grade_to(field, storage.positions(), metrics);
+    }
+}
+
 template <class Node, class Storage>
 GradationReport grade_nodes(const Topology<Node>& tree, Storage& storage,
-                            const GradationOptions& options) {
-    LeafGraph nodes = ordered_nodes(tree, storage, neighbourhood_of(options));
+                            const NodeGradation& gradation) {
+    const GradationOptions& options = gradation.options;
     storage.metrics().forget_requested();
-    const GradationReport report =
-        grade(std::move(nodes.graph), {storage.metrics().field(), nodes.order}, options);
+    GradationReport report;
+    if (gradation.field) {
+        report = grade_nodes_to(*gradation.field, tree, storage);
+    } else {
+        LeafGraph nodes = ordered_nodes(tree, storage, neighbourhood_of(options));
+        report = grade(std::move(nodes.graph), {storage.metrics().field(), nodes.order}, options);
+    }
     if constexpr (requires { storage.graded(options.ratio); }) storage.graded(options.ratio);
     if constexpr (requires { storage.prepare(tree); }) storage.prepare(tree);
     return report;

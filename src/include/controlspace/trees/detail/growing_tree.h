@@ -32,6 +32,7 @@ public:
         sample_leaves(topology_, field_of(storage_), x, out);
     }
     const Box& domain() const { return topology_.domain(); }
+    const SpaceOptions& options() const { return options_; }
     Box cell_at(const Point& x) const { return topology_.locate(x).box; }
     Footprint footprint() const {
         Footprint footprint;

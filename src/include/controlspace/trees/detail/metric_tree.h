@@ -46,14 +46,13 @@ public:
         past_.reset();
     }
 
-    GradationReport grade(const GradationOptions& options) {
-        require_valid(options);
-        if (options.neighbourhood == Neighbourhood::all) {
-            Base::require_memory(topology_.leaves(), options.neighbourhood);
+    GradationReport grade(const NodeGradation& gradation) {
+        if (!gradation.field && gradation.options.neighbourhood == Neighbourhood::all) {
+            Base::require_memory(topology_.leaves(), Neighbourhood::all);
         }
         topology_.fit_jumps();
-        return options_.takes_later_sources ? grade_beside_requested(options)
-                                            : grade_nodes(topology_, storage_, options);
+        return options_.takes_later_sources ? grade_beside_requested(gradation)
+                                            : grade_nodes(topology_, storage_, gradation);
     }
 
     AdaptationReport adapt(const AdaptationGoal& goal) {
@@ -139,14 +138,15 @@ private:
 
     // Grades what the sources request, which stays beside the field; where little has changed, that
     // alone.
-    GradationReport grade_beside_requested(const GradationOptions& options) {
+    GradationReport grade_beside_requested(const NodeGradation& gradation) {
+        const GradationOptions& options = gradation.options;
         GradationReport report;
         if (may_regrade(past_, options) && metrics().requests_isotropic() &&
             !are_many(changes_.count(topology_.leaves()), metrics().size())) {
             report = changes_.regrade(topology_, storage_, *past_);
         } else {
             std::vector<Metric> requested = metrics().release_requested();
-            report = grade_nodes(topology_, storage_, options);
+            report = grade_nodes(topology_, storage_, gradation);
             metrics().keep_requested(std::move(requested));
         }
         changes_.begin(topology_.leaves(), metrics().size());

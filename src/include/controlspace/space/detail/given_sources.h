@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "controlspace/gradation/grade.h"
+#include "controlspace/gradation/ordered_metrics.h"
+#include "controlspace/metric/metric.h"
+#include "controlspace/sources/point_source.h"
+#include "controlspace/space/control_space.h"
+#include "controlspace/space/detail/state.h"
+#include "controlspace/space/space_options.h"
+
+namespace controlspace {
+
+/// All sources that were given to a builder, whether they changed it or not: what it grades by
+/// (GradationSchedule::sources). 32 bytes for each as long as all are isotropic, 72 otherwise.
+class GivenSources {
+public:
+    void add(std::span<const PointSource> sources);
+
+    std::size_t size() const { return positions_.size(); }
+    std::vector<PointSource> all() const;
+    /// Bytes allocated.
+    std::size_t bytes() const;
+
+    void save(StateWriter& state) const;
+    static bool are_in(const StateReader& state);
+    /// Throws InputError where they are not sound.
+    void load(const StateReader& state);
+
+private:
+    std::vector<Point> positions_;
+    std::vector<double> lengths_;  // as long as all are isotropic
+    std::vector<Metric> metrics_;  // otherwise
+};
+
+/// How a builder grades its control nodes: by the exact field of the sources it was given, or else
+/// by the law, from node to node.
+struct NodeGradation {
+    /// `given`: null where they are not known. Throws InputError as require_valid(options) does.
+    NodeGradation(const GradationOptions& options, const GivenSources* given,
+                  const SpaceOptions& space);
+
+    GradationOptions options;  ///< `schedule` is `sources` only with a field
+    std::unique_ptr<const ControlSpace> field;
+};
+
+/// Intersects control nodes at `x` with the field, on all of TBB's threads.
+GradationReport grade_to(const ControlSpace& field, std::span<const Point> x,
+                         OrderedMetrics metrics);
+
+}  // namespace controlspace
