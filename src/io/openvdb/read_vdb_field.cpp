@@ -120,7 +120,8 @@ private:
         if (found == 0) return elsewhere_;
         if (found == 1) return metrics[0];
         for (std::size_t i = 0; i < found; ++i) weights[i] /= sum;
-        return blend(std::span(weights).first(found), std::span(metrics).first(found));
+        return blend_lengths(std::span(weights).first(found),
+                             [&](std::size_t i) -> const Metric& { return metrics[i]; });
     }
 
     Grids grids_;
