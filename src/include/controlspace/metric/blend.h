@@ -11,18 +11,17 @@ namespace controlspace {
 // Metrics are interpolated linearly in M, as in the paper (§3.1). Other means were compared: f^-1
 // of the linear blend of f(M), f(M) kept at the vertices. Octrees whose vertices have the exact
 // order-free field (g_r 1.25), cut until the 27 places of each leaf keep δ; "kd" cuts in halves.
-// Leaves needed, 99th percentile of δ to the field at random places, half of them near sources, of
-// the tree made for M, and time of a blend of eight:
+// Leaves needed, and, of the tree made for M, the 99th percentile of δ to the field at random
+// places, half of them near sources:
 //
-// |                                   | M          | log M      | M^-1       | M^-2       | M^2 |
-// |-----------------------------------|------------|------------|------------|------------|------------|
-// | sphere [4, 0.25], δ 0.1           | 4208, 0.25 | 4040, 0.18 | 4047, 0.20 | 4978, 0.34 | 4579,
-// 0.37 | | the same, kd                      | 1246, 0.25 | 1153, 0.18 | 1182, 0.31 | 1711, 0.61 |
-// 1741, 0.37 | | sphere [4, 0.25], δ 0.3           | 764, 0.96  | 729, 0.85  | 624, 0.78  | 792,
-// 0.82  | 1254, 1.14 | | sphere [2, 1] (isotropic), δ 0.1  | 2248, 0.28 | 2192, 0.23 | 2304, 0.20 |
-// 3480, 0.26 | 2808, 0.37 | | layers 100:1, stopped at 12006    | 1.37       | 1.23       | 1.21
-// | 2.11       | 1.66       | | time                              | 1          | 10         | 2 | 9
-// | 10         |
+// |                        | M          | log M      | M^-1       | M^-2       | M^2        |
+// |------------------------|------------|------------|------------|------------|------------|
+// | sphere [4, 0.25], 0.1  | 4208, 0.25 | 4040, 0.18 | 4047, 0.20 | 4978, 0.34 | 4579, 0.37 |
+// | the same, kd           | 1246, 0.25 | 1153, 0.18 | 1182, 0.31 | 1711, 0.61 | 1741, 0.37 |
+// | sphere [4, 0.25], 0.3  |  764, 0.96 |  729, 0.85 |  624, 0.78 |  792, 0.82 | 1254, 1.14 |
+// | isotropic sphere, 0.1  | 2248, 0.28 | 2192, 0.23 | 2304, 0.20 | 3480, 0.26 | 2808, 0.37 |
+// | layers 100:1, capped   |       1.37 |       1.23 |       1.21 |       2.11 |       1.66 |
+// | time of a blend        |          1 |         10 |          2 |          9 |         10 |
 //
 // log M saves 3 to 7 % of the leaves and M^-1 4 to 5 % (18 % for δ 0.3, none for isotropic fields),
 // but a blend takes ten times and twice as long: not worth it, where queries are what counts. M^-2
