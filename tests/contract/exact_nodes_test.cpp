@@ -96,7 +96,7 @@ STRUCTURE_CASE(does_not_round,
 }
 
 STRUCTURE_CASE(holds_metrics,
-               "graded by the sources again: nothing to do; then for another ratio, and more") {
+               "graded by the sources again: nothing to do, then for another ratio, and more") {
     const Work work = anisotropic_oblong_box();
     const std::span<const PointSource> all = work.sources;
     const std::vector<Point> x = random_points(work.domain, 500, 32);

@@ -99,7 +99,7 @@ STRUCTURE_CASE(keeps_node_values,
                "later sources, graded again: to the bit the field of all at once") {
     const double g = GENERATE(1.0, 1.1, 1.25, 2.0);
     const unsigned seed = GENERATE(1u, 2u);
-    const GradationOptions gradation = GENERATE_COPY(values(gradations(g)));
+    const GradationOptions gradation = GENERATE_COPY(from_range(gradations(g)));
     const std::vector<Batch> batches{scattered(150, seed), scattered(8, seed + 10),
                                      scattered(1, seed + 20), scattered(60, seed + 30)};
     CAPTURE(g, seed);
@@ -112,7 +112,7 @@ STRUCTURE_CASE(keeps_node_values,
 STRUCTURE_CASE(keeps_node_values,
                "later sources that are coarser than the field cut leaves, and sizes grow") {
     const double g = GENERATE(1.1, 1.25, 1.6);
-    const GradationOptions gradation = GENERATE_COPY(values(gradations(g)));
+    const GradationOptions gradation = GENERATE_COPY(from_range(gradations(g)));
     Batch fine = scattered(6, 3);
     for (PointSource& source : fine) source.metric = Metric::isotropic(0.05);
     std::vector<Batch> batches{fine};
