@@ -221,9 +221,9 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
                   }),
         structure("neighbourhood", "",
                   "Neighbours in gradation from node to node: faces, nodes across faces (at "
-                  "vertices: along edges) as "
-                  "in the paper; all, those across edges and corners too (at vertices: of the same "
-                  "leaf or voxel). None in structures that keep sources and in adapted trees",
+                  "vertices: along edges) as in the paper; all, those across edges and corners "
+                  "too (at vertices: of the same leaf or voxel). None in structures that keep "
+                  "sources and in adapted trees",
                   word<Case>(&Case::neighbourhood), {"faces"}, is_graded,
                   if_chosen("{} neighbours", &Case::neighbourhood)),
         structure(

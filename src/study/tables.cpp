@@ -45,10 +45,8 @@ TextTable table_of(const std::string& title, const Rows& rows, const StudyRows& 
         "Fine: at the finer probes. Coarser: share of them where a requested length exceeds the "
         "reference's by over 1 % in some direction; worst: largest ratio of the two. Finer, "
         "shortest: the same for the reference's lengths to the requested ones. G_det, G_dir: "
-        "largest "
-        "growth of the finished field between places 0.01 to 1 metric length apart, of elements' "
-        "mean "
-        "length and of any length, as gradation ratios.",
+        "largest growth of the finished field between places 0.01 to 1 metric length apart, of "
+        "elements' mean length and of any length, as gradation ratios.",
         {{"structure", Align::left}},
         {}};
     for (const Row* row : rows) {
