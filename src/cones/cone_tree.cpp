@@ -31,17 +31,25 @@ std::size_t longest_extent(std::span<const ConeTreeItem> items) {
     return longest;
 }
 
+}  // namespace
+
+void cut_longest_extent(std::span<ConeTreeItem> items, std::size_t middle) {
+    const std::size_t axis = longest_extent(items);
+    std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(middle),
+                     items.end(), [axis](const ConeTreeItem& a, const ConeTreeItem& b) {
+                         return a.coordinates[axis] < b.coordinates[axis];
+                     });
+}
+
+namespace {
+
 void sort_below(const ConeTreeShape& shape, std::uint32_t node, std::span<ConeTreeItem> items) {
     if (shape.is_slot(node)) return;
     const std::size_t begin = shape.begin(node);
     const std::size_t middle = shape.end(2 * node);
     const std::size_t end = shape.end(node);
     const auto of_node = items.subspan(begin, end - begin);
-    const std::size_t axis = longest_extent(of_node);
-    std::nth_element(of_node.begin(), of_node.begin() + static_cast<std::ptrdiff_t>(middle - begin),
-                     of_node.end(), [axis](const ConeTreeItem& a, const ConeTreeItem& b) {
-                         return a.coordinates[axis] < b.coordinates[axis];
-                     });
+    cut_longest_extent(of_node, middle - begin);
     const auto low = [&] { sort_below(shape, 2 * node, items); };
     const auto high = [&] { sort_below(shape, 2 * node + 1, items); };
     constexpr std::size_t worth_a_task = 4096;

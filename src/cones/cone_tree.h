@@ -63,6 +63,9 @@ private:
     }
 };
 
+/// Puts the `middle` items that come first along the longest extent of all first.
+void cut_longest_extent(std::span<ConeTreeItem> items, std::size_t middle);
+
 /// Puts `items` in tree order: every binary node is cut at the median of its longest extent, so
 /// that its items are near each other and of like lengths. Runs on all of TBB's threads; the order
 /// does not depend on their number.

@@ -35,11 +35,15 @@ namespace controlspace {
 // contains it, so all depend on places alone. A cell is small enough if no
 // cone's factor varies much in it: by the law of gradation, by the length of
 // half its diagonal in the metric at its centre, times g - 1. Larger cells lead
-// to smaller ones only, and are answered loosely.
+// to smaller ones only, and are answered loosely, by cones near those of the
+// cell before but for the largest cells.
 
 namespace {
 
-constexpr std::uint32_t lanes_of_leaf = lane_count;
+constexpr std::int64_t most_cells_from_origin = 4'000'000'000'000'000'000;
+
+bool is_beyond_cells(std::int64_t key) { return std::abs(key) == most_cells_from_origin; }
+
 constexpr double tolerance_of_start = 0.3;  // of cells that lead to smaller ones
 
 // Cones that an answer exceeds: the worst ones of different directions.
@@ -103,11 +107,11 @@ Vector main_direction(const Metric& tensor) {
     return squared.col(most).normalized();
 }
 
-void find_in_leaf(const TensorLeaf& leaf, std::uint32_t first_member, const Point& p,
-                  const Eigen::Matrix3d& h, double slope, Exceeded& exceeded) {
+void find_in_vector(const TensorLeaf& leaf, std::uint32_t first_member, const Exceeding& exceeding,
+                    const Eigen::Matrix3d& h, Exceeded& exceeded) {
     const CholeskyLanes<lane_count> factorisation(leaf.metric);
-    const auto [x, y, z] = factorisation.solve(displacements(leaf.position, p));
-    const Lanes factor = 1 + slope * (x.square() + y.square() + z.square()).sqrt();
+    const auto [x, y, z] = factorisation.solve(displacements(leaf.position, exceeding.p));
+    const Lanes factor = 1 + exceeding.slope * (x.square() + y.square() + z.square()).sqrt();
     const Lanes squared = factor.square();
     const TensorLanes seen = seen_from(h, factorisation);
     const Lanes most = exceeded.limit() * squared;
@@ -123,25 +127,41 @@ void find_in_leaf(const TensorLeaf& leaf, std::uint32_t first_member, const Poin
     }
 }
 
-// Below `root`.
-void find_exceeded(const QuadricTree& tree, std::uint32_t root, const Point& p,
-                   const Eigen::Matrix3d& h, double slope, Exceeded& exceeded) {
+// Throws InputError for what `order_free_intersection` does not accept.
+template <class Name>
+void require_valid(const Metric& metric, const Name& name) {
+    try {
+        order_free_intersection({&metric, 1});
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", name(), error.what()));
+    }
+}
+
+// Below `root`, but not below the nodes `except`.
+void find_exceeded(const QuadricTree& tree, std::uint32_t root,
+                   std::span<const std::uint32_t> except, const Exceeding& exceeding,
+                   const Eigen::Matrix3d& h, Exceeded& exceeded) {
+    if (std::ranges::find(except, root) != except.end()) return;
     // Seven siblings wait at each of at most eleven levels.
     std::array<std::uint32_t, 96> stack;
-    const Exceeding exceeding(p, h, slope);
     std::size_t height = 0;
     stack[height++] = root;
     while (height > 0) {
         const std::uint32_t number = stack[--height];
         if (tree.is_leaf(number)) {
-            find_in_leaf(tree.leaf(number), number * lanes_of_leaf, p, h, slope, exceeded);
+            const std::uint32_t first = tree.first_vector(number);
+            for (std::uint32_t v = first; v < first + QuadricTree::vectors_of_leaf; ++v) {
+                find_in_vector(tree.vectors()[v], v * lane_count, exceeding, h, exceeded);
+            }
             continue;
         }
-        const std::uint32_t first = tree.first_child(number);
-        auto [children, rooms] = children_exceeded(tree.node(number), exceeding, exceeded.limit());
+        const QuadricNode& node = tree.node(number);
+        const std::uint32_t first = node.first_child;
+        auto [children, rooms] = children_exceeded(node, exceeding, exceeded.limit());
         const std::size_t floor = height;
         for (; children != 0; children &= children - 1) {
             const auto c = static_cast<std::uint32_t>(std::countr_zero(children));
+            if (std::ranges::find(except, first + c) != except.end()) continue;
             // The greatest on top: what is found there raises the limit.
             std::size_t place = height++;
             for (; place > floor && rooms[stack[place - 1] - first] < rooms[c]; --place) {
@@ -183,22 +203,25 @@ public:
         }
         return answer;
     }
-    /// Below nodes of the tree that are not far above its members: what exceeds H
-    /// most at a place is often near to what did so elsewhere.
-    void find_exceeded_nearby(const QuadricTree& tree, const Point& p, const Eigen::Matrix3d& h,
-                              double slope, Exceeded& exceeded) const {
-        std::array<std::uint32_t, OrderFreeIntersection::most_multipliers> roots;
-        std::size_t count = 0;
-        for (std::size_t k = 0; k < size_; ++k) {
-            if (members_[k] >= index_of_further) continue;
-            const std::uint32_t leaf = members_[k] / lanes_of_leaf;
-            const std::uint32_t root = tree.parent(tree.parent(leaf));
-            const auto end = roots.begin() + static_cast<std::ptrdiff_t>(count);
-            if (std::find(roots.begin(), end, root) != end) continue;
-            roots[count++] = root;
-            find_exceeded(tree, root, p, h, slope, exceeded);
+    /// Nodes of the tree that are not far above its members: what exceeds H most at a place is
+    /// often near to what did so elsewhere.
+    class Nearby {
+    public:
+        Nearby(const Core& core, const QuadricTree& tree) {
+            constexpr int levels_up = 2;
+            for (std::size_t k = 0; k < core.size_; ++k) {
+                if (core.members_[k] >= index_of_further) continue;
+                std::uint32_t node = tree.leaf_of(core.members_[k]);
+                for (int level = 0; level < levels_up; ++level) node = tree.parent(node);
+                if (std::ranges::find(nodes(), node) == nodes().end()) nodes_[count_++] = node;
+            }
         }
-    }
+        std::span<const std::uint32_t> nodes() const { return {nodes_.data(), count_}; }
+
+    private:
+        std::array<std::uint32_t, OrderFreeIntersection::most_multipliers> nodes_;
+        std::size_t count_ = 0;
+    };
     /// Leaves the first `fixed`, and those that the certificate of an answer
     /// needs.
     void reduce(const OrderFreeIntersection& answer, std::size_t fixed) {
@@ -229,12 +252,9 @@ private:
 OrderFreeCones::OrderFreeCones(std::span<const PointSource> sources, double g,
                                const Metric& largest, double tolerance)
     : g_(g), largest_(largest), tolerance_(tolerance) {
+    require_valid(largest, [] { return "the largest metric"; });
     for (std::size_t i = 0; i < sources.size(); ++i) {
-        try {
-            order_free_intersection({&sources[i].metric, 1});
-        } catch (const InputError& error) {
-            throw InputError(fmt::format("source {}: {}", i, error.what()));
-        }
+        require_valid(sources[i].metric, [&] { return fmt::format("source {}", i); });
     }
     const auto lengths_of_largest = eigen_frame(largest).lengths;
     UndominatedSources kept = undominated_sources(sources, g, lengths_of_largest[2]);
@@ -248,7 +268,7 @@ OrderFreeCones::OrderFreeCones(std::span<const PointSource> sources, double g,
     }
     kept.tree = {};
     rounding_ = std::max(0.1 * kept.uncertainty, 1e-13);
-    tree_ = build_quadric_tree(kept.items, sources, kept.lengths, kept.uncertainty);
+    tree_ = QuadricTree(kept.items, sources, kept.lengths, kept.uncertainty);
     origin_ = low;
     edge_ = std::max((high - low).maxCoeff(), lengths_of_largest[0]);
     answer(0.5 * (low + high), nullptr, {}, tolerance_of_start, &start_);
@@ -259,15 +279,10 @@ double OrderFreeCones::gap_of(double tolerance) {
     return 6 * std::log1p(std::max(tolerance, least_tolerance));
 }
 
-std::uint32_t OrderFreeCones::index_of(std::uint32_t member) const {
-    const std::uint32_t leaf = tree_.leaf_number(member / lanes_of_leaf);
-    return tree_.indices()[leaf * lanes_of_leaf + member % lanes_of_leaf];
-}
-
 PointSource OrderFreeCones::member(std::uint32_t number) const {
-    const TensorLeaf& leaf = tree_.leaf(number / lanes_of_leaf);
-    const auto lane = static_cast<Eigen::Index>(number % lanes_of_leaf);
-    return {leaf.position[lane], leaf.metric[lane]};
+    const TensorLeaf& vector = tree_.vectors()[number / lane_count];
+    const auto lane = static_cast<Eigen::Index>(number % lane_count);
+    return {vector.position[lane], vector.metric[lane]};
 }
 
 double OrderFreeCones::growth(const Point& p, const Eigen::Matrix3d& h,
@@ -277,8 +292,8 @@ double OrderFreeCones::growth(const Point& p, const Eigen::Matrix3d& h,
 }
 
 OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* further,
-                                             const Start& start, double tolerance,
-                                             Start* found) const {
+                                             const Start& start, double tolerance, Start* found,
+                                             bool is_rough) const {
     const double allowed_gap = gap_of(tolerance);
     const double allowed = std::exp(0.9 * allowed_gap / 3);
     const double gap = 0.1 * allowed_gap;
@@ -301,11 +316,14 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
         double limit = is_exact ? 1 + rounding_ : allowed;
         if (!tree_.empty()) {
             Exceeded exceeded(limit);
-            core.find_exceeded_nearby(tree_, p, answer.factor, g_ - 1, exceeded);
+            const Exceeding exceeding(p, answer.factor, g_ - 1);
+            const Core::Nearby nearby(core, tree_);
+            for (const std::uint32_t node : nearby.nodes()) {
+                find_exceeded(tree_, node, {}, exceeding, answer.factor, exceeded);
+            }
             const auto is_new = [&](const Exceeded::Cone& cone) { return !core.has(cone.member); };
-            if (std::ranges::none_of(exceeded.cones(), is_new)) {
-                exceeded = Exceeded(limit);
-                find_exceeded(tree_, 0, p, answer.factor, g_ - 1, exceeded);
+            if (std::ranges::none_of(exceeded.cones(), is_new) && !is_rough) {
+                find_exceeded(tree_, 0, nearby.nodes(), exceeding, answer.factor, exceeded);
             }
             if (std::ranges::any_of(exceeded.cones(), is_new) && round < most_rounds) {
                 if (!core.has_room_for(exceeded.cones().size())) core.reduce(answer, fixed);
@@ -317,11 +335,22 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
                 last = answer.factor;
                 continue;
             }
-            // Exceeded cones of the core set itself: that is rounding.
-            for (const Exceeded::Cone& cone : exceeded.cones()) {
-                limit = std::max(limit, growth(p, answer.factor, member(cone.member)));
-            }
             is_exact = is_exact && exceeded.empty();
+            // Exceeded cones of the core set itself: that is rounding. H is made smaller until it
+            // exceeds none.
+            constexpr int most_times = 20;
+            for (int time = 1; !exceeded.empty() && !is_rough; ++time) {
+                for (const Exceeded::Cone& cone : exceeded.cones()) {
+                    limit = std::max(limit, growth(p, answer.factor, member(cone.member)));
+                }
+                limit *= 1 + rounding_;
+                if (time == most_times) {
+                    limit = std::max(limit, exceeded.worst());
+                    break;
+                }
+                exceeded = Exceeded(limit);
+                find_exceeded(tree_, 0, {}, exceeding, answer.factor, exceeded);
+            }
         }
         if (found != nullptr) {
             found->factor = answer.factor;
@@ -336,7 +365,7 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
         for (std::size_t k = 0; k < answer.count; ++k) {
             auto& [index, tensor] = answer.multiplier[k];
             const std::uint32_t number = core.member(index);
-            index = index < fixed ? number : index_of(number);
+            index = index < fixed ? number : tree_.indices()[number];
             if (!is_exact) tensor = 1 / limit * tensor;
         }
         if (is_exact) return answer;
@@ -347,7 +376,7 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
 }
 
 std::array<std::int64_t, 4> OrderFreeCones::cell_at(const Point& p, int level) const {
-    constexpr double most = 4e18;
+    constexpr auto most = static_cast<double>(most_cells_from_origin);
     std::array<std::int64_t, 4> key{level, 0, 0, 0};
     const double scale = std::ldexp(1 / edge_, level);
     for (int a = 0; a < 3; ++a) {
@@ -360,7 +389,8 @@ std::array<std::int64_t, 4> OrderFreeCones::cell_at(const Point& p, int level) c
 
 OrderFreeCones::Cell OrderFreeCones::made_cell(const std::array<std::int64_t, 4>& key,
                                                const Start& from) const {
-    constexpr double most_variation = 0.4;
+    constexpr double most_variation = 0.8;
+    constexpr int first_rough_level = 2;
     constexpr int most_level = 40;
     const double edge = std::ldexp(edge_, -static_cast<int>(key[0]));
     const Vector place(static_cast<double>(key[1]), static_cast<double>(key[2]),
@@ -368,7 +398,8 @@ OrderFreeCones::Cell OrderFreeCones::made_cell(const std::array<std::int64_t, 4>
     const Point centre = origin_ + edge * (place + Vector::Constant(0.5));
     Cell cell;
     cell.key = key;
-    answer(centre, nullptr, from, std::max(tolerance_, tolerance_of_start), &cell.start);
+    answer(centre, nullptr, from, std::max(tolerance_, tolerance_of_start), &cell.start,
+           key[0] >= first_rough_level);
     const Eigen::Matrix3d& h = cell.start.factor;
     const double shortest =
         std::sqrt(eigen_frame(Metric::from_matrix(h * h.transpose())).lengths[0]);
@@ -380,7 +411,7 @@ OrderFreeCones::Cell OrderFreeCones::made_cell(const std::array<std::int64_t, 4>
 
 const OrderFreeCones::Start& OrderFreeCones::start_near(const Point& p, Search& search) const {
     constexpr std::size_t least_cells = 64;
-    constexpr std::size_t most_cells = 4096;
+    constexpr std::size_t most_cells = 16384;
     if (search.last.is_small &&
         search.last.key == cell_at(p, static_cast<int>(search.last.key[0]))) {
         return search.last.start;
@@ -393,6 +424,7 @@ const OrderFreeCones::Start& OrderFreeCones::start_near(const Point& p, Search& 
         }
         return cells[hash & (cells.size() - 1)];
     };
+    search.last = {};
     search.last.start = start_;
     for (int level = 0;; ++level) {
         if (2 * search.filled >= search.cells.size() && search.cells.size() < most_cells) {
@@ -403,6 +435,10 @@ const OrderFreeCones::Start& OrderFreeCones::start_near(const Point& p, Search& 
             search.cells = std::move(more);
         }
         const auto key = cell_at(p, level);
+        // So far away, places of one cell may have come from different ones.
+        if (std::ranges::any_of(std::span(key).subspan(1), is_beyond_cells)) {
+            return search.last.start;
+        }
         Cell& cell = slot(search.cells, key);
         if (cell.key != key) {
             search.filled += cell.key[0] == Cell::none ? 1 : 0;
@@ -415,6 +451,7 @@ const OrderFreeCones::Start& OrderFreeCones::start_near(const Point& p, Search& 
 
 OrderFreeIntersection OrderFreeCones::intersect(const Point& p, const Metric* further,
                                                 Search& search) const {
+    if (further != nullptr) require_valid(*further, [] { return "the further metric"; });
     if (tree_.empty() || !p.allFinite()) return answer(p, further, {}, tolerance_, nullptr);
     return answer(p, further, start_near(p, search), tolerance_, nullptr);
 }

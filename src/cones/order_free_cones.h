@@ -27,7 +27,7 @@ public:
     static constexpr std::uint32_t index_of_further = 0xfffffffe;
 
     /// g >= 1. With a `tolerance` t, log det M is within 3 ln(1 + t) of the best. Throws InputError
-    /// for anisotropies that `order_free_intersection` does not accept.
+    /// for metrics that `order_free_intersection` does not accept.
     OrderFreeCones(std::span<const PointSource> sources, double g, const Metric& largest,
                    double tolerance);
 
@@ -37,14 +37,15 @@ public:
     struct Search;
 
     /// The intersection at `p`, within `further` too, if there is such. Multipliers have the
-    /// indices of sources.
+    /// indices of sources. Throws InputError for a `further` metric that `order_free_intersection`
+    /// does not accept.
     OrderFreeIntersection intersect(const Point& p, const Metric* further, Search& search) const;
 
     /// Sources that change the result nowhere, and were left out.
     std::size_t dropped() const { return dropped_; }
 
     /// Bytes allocated: of the metrics, and of what finds them.
-    std::size_t bytes_payload() const { return tree_.leaves().size() * sizeof(TensorLanes); }
+    std::size_t bytes_payload() const { return tree_.vectors().size() * sizeof(TensorLanes); }
     std::size_t bytes_topology() const { return tree_.bytes() - bytes_payload(); }
 
 private:
@@ -64,10 +65,9 @@ private:
     class Core;
 
     PointSource member(std::uint32_t number) const;
-    std::uint32_t index_of(std::uint32_t member) const;
     double growth(const Point& p, const Eigen::Matrix3d& h, const PointSource& source) const;
     OrderFreeIntersection answer(const Point& p, const Metric* further, const Start& start,
-                                 double tolerance, Start* found) const;
+                                 double tolerance, Start* found, bool is_rough = false) const;
     const Start& start_near(const Point& p, Search& search) const;
     std::array<std::int64_t, 4> cell_at(const Point& p, int level) const;
     Cell made_cell(const std::array<std::int64_t, 4>& key, const Start& from) const;
@@ -83,7 +83,8 @@ private:
     Start start_;
 
 public:
-    /// Memory of `intersect`, to be kept from one call to the next. Has no effect on answers.
+    /// Memory of `intersect`, to be kept from one call to the next, for one field only. Has no
+    /// effect on answers.
     struct Search {
         std::vector<Cell> cells;  ///< by a hash of their keys
         std::size_t filled = 0;

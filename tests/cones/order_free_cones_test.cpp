@@ -89,6 +89,12 @@ std::vector<Work> works() {
     for (int i = 0; i < 40; ++i) few.push_back({few[0].position, draw.metric(0.1, 10)});
     few.push_back({few[0].position, Metric::isotropic(0.05)});
     all.push_back({"coincident places", few, 10});
+    all.push_back({"at one place", {}, 3});
+    for (int i = 0; i < 17; ++i) {
+        const double h = 0.01 * std::pow(1.25, i);
+        const Eigen::Matrix3d turn = Eigen::AngleAxisd(i, Vector::UnitZ()).toRotationMatrix();
+        all.back().sources.push_back({{0.1, 0.2, 0.7}, metric_from_frame({h, 3 * h, h}, turn)});
+    }
     all.push_back({"in a narrow cap", scattered(draw, 100, 10), 10, 1, draw.metric(0.3, 20)});
     all.push_back({"one", scattered(draw, 1, 10), 10});
     all.push_back({"nine on a line", {}, 10});
@@ -303,6 +309,20 @@ TEST_CASE("order-free cones: a search allocates once") {
     for (const Point& p : points) cones.intersect(p, nullptr, search);
     const std::size_t peak = peak_bytes();
     CHECK(peak == before);
+}
+
+TEST_CASE("order-free cones: metrics that are none are refused") {
+    Draw draw(70);
+    const Sources sources = scattered(draw, 30, 4);
+    const OrderFreeCones cones(sources, g, wide, 1e-2);
+    OrderFreeCones::Search search;
+    const double nan = std::nan("");
+    for (const Metric& bad :
+         {Metric{-1, 1, 1, 0, 0, 0}, Metric{1, 1, 1, 2, 0, 0}, Metric{nan, 1, 1, 0, 0, 0}}) {
+        CHECK_THROWS_WITH(cones.intersect(draw.vector(), &bad, search),
+                          Catch::Contains("further metric"));
+        CHECK_THROWS_WITH(OrderFreeCones({}, g, bad, 1e-2), Catch::Contains("largest metric"));
+    }
 }
 
 TEST_CASE("order-free cones: sources of too large an anisotropy are refused") {
