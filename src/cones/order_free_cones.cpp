@@ -435,8 +435,10 @@ const OrderFreeCones::Start& OrderFreeCones::start_near(const Point& p, Search& 
             search.cells = std::move(more);
         }
         const auto key = cell_at(p, level);
-        // So far away, places of one cell may have come from different ones.
+        // So far away, places of one cell may have come from different ones: they start from
+        // nothing.
         if (std::ranges::any_of(std::span(key).subspan(1), is_beyond_cells)) {
+            search.last = {};
             return search.last.start;
         }
         Cell& cell = slot(search.cells, key);
