@@ -104,6 +104,8 @@ NodeGradation::NodeGradation(const GradationOptions& wanted, const GivenSources*
 
 GradationReport grade_to(const ControlSpace& field, std::span<const Point> x,
                          OrderedMetrics metrics) {
+    // Cells larger than the elements that sources in them request keep the request.
+    constexpr double too_coarse = 2;
     // Long blocks: a search remembers the last place. At least some for each thread.
     const std::size_t block = std::clamp<std::size_t>(x.size() / (8 * threads_allowed()), 64, 2048);
     const auto lower = [&](std::size_t first, std::vector<Metric>& exact) {
@@ -113,7 +115,8 @@ GradationReport grade_to(const ControlSpace& field, std::span<const Point> x,
         std::uint64_t operations = 0;
         for (std::size_t k = 0; k < part.size(); ++k) {
             Metric& own = metrics[first + k];
-            const Metric graded = intersection(own, exact[k]);
+            const Metric graded =
+                is_within(exact[k], too_coarse, own) ? exact[k] : intersection(own, exact[k]);
             if (own != graded) ++operations;
             own = graded;
         }

@@ -134,10 +134,11 @@ TEST_CASE("new links and new nodes take part") {
 }
 
 TEST_CASE("only the cone law by the queue, with the same ratio, is graded in part") {
-    const PastGradation past;
-    CHECK(may_regrade(past, {}));
-    CHECK_FALSE(may_regrade(std::nullopt, {}));
-    CHECK_FALSE(may_regrade(past, {.ratio = 1.3}));
+    const GradationOptions by_queue{.schedule = GradationSchedule::queue};
+    const PastGradation past{by_queue};
+    CHECK(may_regrade(past, by_queue));
+    CHECK_FALSE(may_regrade(std::nullopt, by_queue));
+    CHECK_FALSE(may_regrade(past, {.schedule = GradationSchedule::queue, .ratio = 1.3}));
     for (const GradationOptions& options :
          {GradationOptions{.law = GradationLaw::mean_length},
           GradationOptions{.schedule = GradationSchedule::passes}}) {

@@ -8,6 +8,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
 #include "metric/draw.h"
 
 using namespace controlspace;
@@ -138,8 +139,11 @@ TEST_CASE("Of two isotropic sources the smaller cone counts") {
 TEST_CASE("Crossing anisotropic sources at one place are intersected") {
     const Metric a{0.1, 1, 1, 0, 0, 0};
     const Metric b{1, 0.2, 1, 0, 0, 0};
-    const auto field = exact_reference({{Point::Zero(), b}, {Point::Zero(), a}}, 1.25, wide);
+    const auto field =
+        exact_reference({{Point::Zero(), b}, {Point::Zero(), a}}, 1.25, wide, 0, in_turn);
     CHECK(at(*field, Point::Zero()) == Metric{0.1, 0.2, 1, 0, 0, 0});
+    const auto order_free = exact_reference({{Point::Zero(), b}, {Point::Zero(), a}}, 1.25, wide);
+    CHECK(nonconformity(at(*order_free, Point::Zero()), {0.1, 0.2, 1, 0, 0, 0}) < 1e-6);
 }
 
 TEST_CASE("Isotropic sources: the oracle's answer to the bit") {
@@ -203,7 +207,11 @@ TEST_CASE("An anisotropic source too far to matter leaves isotropic answers as t
     const auto points = probes(draw, sources);
     const auto alone = evaluated(*exact_reference(sources, 1.25, wide), points);
     sources.push_back({Point(1e6, 0, 0), {1, 2, 3, 0, 0, 0}});
-    CHECK(evaluated(*exact_reference(sources, 1.25, wide), points) == alone);
+    CHECK(evaluated(*exact_reference(sources, 1.25, wide, 0, in_turn), points) == alone);
+    const auto order_free = evaluated(*exact_reference(sources, 1.25, wide), points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        CHECK(nonconformity(order_free[i], alone[i]) < 1e-6);
+    }
 }
 
 TEST_CASE("The field is never longer than any cone") {

@@ -195,7 +195,7 @@ TEST_CASE("samplings and fields multiply all structures") {
     }
     CHECK(tables.size() == 6);
     CHECK(tables.count("field ugawg-linear, random sources, rho 1, s_a 2, s_n 1, g_r 1.25, exact "
-                       "reference, cone law, queue, epsilon 0.2, tau 1") == 1);
+                       "reference, cone law, sources, epsilon 0.2, tau 1") == 1);
 }
 
 TEST_CASE("fields and sources that do not fit together are refused") {

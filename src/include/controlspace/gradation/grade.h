@@ -18,8 +18,9 @@ enum class GradationSchedule {
     /// At most ten passes over the nodes that are still too steep, in tree order: what the paper's
     /// tables were made with. May leave pairs above the ratio.
     passes,
-    /// By the sources: the exact field of all that the builder was given (measure/reference.h), or
-    /// less, where a source requests that of the node. Nothing is handed on from node to node.
+    /// By the sources: the exact field of all that the builder was given (measure/reference.h).
+    /// Nothing is handed on from node to node. Where the field at a node is more than twice as long
+    /// as a source in its cell requests, since the cell is too coarse, the request is kept.
     /// By the queue where that is not possible: under the mean-length law; for a field that was
     /// assigned or adapted; in a builder that was loaded without its sources; and in `grade`.
     sources,

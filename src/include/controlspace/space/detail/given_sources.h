@@ -48,7 +48,8 @@ struct NodeGradation {
     std::unique_ptr<const ControlSpace> field;
 };
 
-/// Intersects control nodes at `x` with the field, on all of TBB's threads.
+/// Sets control nodes at `x` to the field, but intersects them with it where it is more than twice
+/// as long as what they request, on all of TBB's threads.
 GradationReport grade_to(const ControlSpace& field, std::span<const Point> x,
                          OrderedMetrics metrics);
 
