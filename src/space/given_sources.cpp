@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <ranges>
 
 #include "cones/cone_field.h"
 #include "controlspace/metric/intersection.h"
@@ -42,8 +41,9 @@ void GivenSources::add(std::span<const PointSource> sources) {
         lengths_ = {};
     }
     const auto append = [&](auto& values, auto member) {
-        const auto from = sources | std::views::transform(member) | std::views::common;
-        values.insert(values.end(), from.begin(), from.end());
+        const auto first = static_cast<std::ptrdiff_t>(values.size());
+        values.resize(values.size() + sources.size());
+        std::ranges::transform(sources, values.begin() + first, member);
     };
     append(positions_, [](const PointSource& s) { return s.position; });
     if (are_lengths) {

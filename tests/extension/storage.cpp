@@ -44,14 +44,15 @@ void check_insertion(const CatalogueEntry& row, const CatalogueEntry& constant,
 void check_later_sources(const CatalogueEntry& row, const std::vector<PointSource>& sources) {
     SpaceOptions later = options;
     later.takes_later_sources = true;
+    const GradationOptions by_queue{.schedule = GradationSchedule::queue};
     const auto at_once = row.make(later);
     at_once->insert(sources);
-    at_once->grade({});
+    at_once->grade(by_queue);
     const auto in_turn = row.make(later);
     in_turn->insert(std::span(sources).first(sources.size() - 9));
-    in_turn->grade({});
+    in_turn->grade(by_queue);
     in_turn->insert(std::span(sources).last(9));
-    check(in_turn->grade({}).visits > 0u, "later sources are graded alone");
+    check(in_turn->grade(by_queue).visits > 0u, "later sources are graded alone");
     check(answers(*at_once->build()) == answers(*in_turn->build()), "with the same field");
 }
 
