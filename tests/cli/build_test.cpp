@@ -127,7 +127,7 @@ TEST_CASE("info says what a saved control space is and holds") {
                    Contains("saved by     controlspace ") && Contains(", format 3\n") &&
                    Contains("split s_G, tau 0.5, epsilon 0.2") && Contains(" leaves of ") &&
                    Contains(" tree nodes, at levels of up to ") && Contains("MB in the file") &&
-                   Contains("lengths      0.1 to ") && Contains("anisotropy   1 (largest)") &&
+                   Contains("lengths      0.10") && Contains("anisotropy   1 (largest)") &&
                    Contains("gradation    1."));
     CHECK_THAT(said("--structures K_oLA --g-r 1.5"),
                Contains("g_r 1.5") && Contains("octree, up to three sources"));
