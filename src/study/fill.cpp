@@ -30,10 +30,10 @@ void adapt(Filled& filled, const Case& c, const Workload& workload) {
     }
 }
 
-void add_largest_ratio(GradationReport& gradation, const ControlSpace& space) {
-    if (const auto nodes = control_nodes(space, Neighbourhood::faces)) {
-        gradation.largest_ratio_left =
-            largest_gradation(nodes->graph, nodes->metrics, GradationLaw::cone);
+void add_largest_ratio(GradationReport& gradation, const ControlSpace& space, GradationLaw law,
+                       Neighbourhood neighbourhood) {
+    if (const auto nodes = control_nodes(space, neighbourhood)) {
+        gradation.largest_ratio_left = largest_gradation(nodes->graph, nodes->metrics, law);
     }
 }
 
@@ -56,7 +56,8 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
         adapt(filled, c, workload);
         creation.insert_s = {time.seconds()};
         creation.gradation_s = {0};
-        add_largest_ratio(creation.gradation, *filled.builder->build());
+        add_largest_ratio(creation.gradation, *filled.builder->build(), GradationLaw::cone,
+                          Neighbourhood::faces);
         return filled;
     }
     const std::span<const PointSource> sources = workload.sources;
@@ -70,7 +71,7 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     const auto space = filled.builder->build();
     creation.gradation_s = {time.seconds()};
     if (c.schedule == GradationSchedule::sources && entry.has<MetricNodes>()) {
-        add_largest_ratio(creation.gradation, *space);
+        add_largest_ratio(creation.gradation, *space, c.law, c.neighbourhood);
     }
     return filled;
 }
