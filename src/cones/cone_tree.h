@@ -146,11 +146,6 @@ public:
         return number == 0 ? 1 : arity * number + offset_;
     }
 
-    /// The root is its own parent.
-    std::uint32_t parent(std::uint32_t number) const {
-        return number <= arity + offset_ - 1 ? 0 : (number - offset_) / arity;
-    }
-
     std::span<const Leaf> leaves() const { return leaves_; }
     /// Indices of the sources, in tree order.
     std::span<const std::uint32_t> indices() const { return indices_; }

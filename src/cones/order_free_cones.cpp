@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "cones/cone.h"
+#include "cones/exceeded_cones.h"
 #include "cones/undominated.h"
 #include "controlspace/error.h"
-#include "metric/constraint_lanes.h"
 #include "metric/decompose.h"
 #include "metric/interior_point.h"
 
@@ -46,87 +45,6 @@ bool is_beyond_cells(std::int64_t key) { return std::abs(key) == most_cells_from
 
 constexpr double tolerance_of_start = 0.3;  // of cells that lead to smaller ones
 
-// Cones that an answer exceeds: the worst ones of different directions.
-class Exceeded {
-public:
-    struct Cone {
-        double growth;  ///< of squared lengths; a little too large where eigenvalues
-                        ///< are equal
-        std::uint32_t member;
-        Vector direction = Vector::Zero();  ///< as seen from H
-    };
-
-    explicit Exceeded(double limit) : limit_(limit) {}
-
-    /// What is exceeded by less is of no interest. It rises with the worst cone
-    /// found.
-    double limit() const { return limit_; }
-
-    void enter(const Cone& cone) {
-        constexpr double like = 0.75;
-        // Of dense sources thousands may be nearly as bad.
-        const double share = std::min(0.7 + 0.01 * entered_++, 0.98);
-        limit_ = std::max(limit_, 1 + share * (cone.growth - 1));
-        const auto end = cones_.begin() + static_cast<std::ptrdiff_t>(count_);
-        auto place = std::find_if(cones_.begin(), end, [&](const Cone& other) {
-            const double cosine = other.direction.dot(cone.direction);
-            return cosine * cosine > like;
-        });
-        if (place == end && count_ < cones_.size()) {
-            cones_[count_++] = cone;
-            return;
-        }
-        if (place == end) place = std::min_element(cones_.begin(), end, is_less);
-        if (is_less(*place, cone)) *place = cone;
-    }
-    std::span<const Cone> cones() const { return {cones_.data(), count_}; }
-    double worst() const {
-        double worst = 0;
-        for (const Cone& cone : cones()) worst = std::max(worst, cone.growth);
-        return worst;
-    }
-    bool empty() const { return count_ == 0; }
-
-private:
-    static bool is_less(const Cone& a, const Cone& b) {
-        return a.growth < b.growth || (a.growth == b.growth && a.member > b.member);
-    }
-
-    double limit_;
-    int entered_ = 0;
-    std::array<Cone, 4> cones_{};
-    std::size_t count_ = 0;
-};
-
-// Nearly the direction of the greatest eigenvalue, if that is much greater than
-// the others.
-Vector main_direction(const Metric& tensor) {
-    const Eigen::Matrix3d squared = square(tensor).matrix();
-    Eigen::Index most = 0;
-    squared.diagonal().maxCoeff(&most);
-    return squared.col(most).normalized();
-}
-
-void find_in_vector(const TensorLeaf& leaf, std::uint32_t first_member, const Exceeding& exceeding,
-                    const Eigen::Matrix3d& h, Exceeded& exceeded) {
-    const CholeskyLanes<lane_count> factorisation(leaf.metric);
-    const auto [x, y, z] = factorisation.solve(displacements(leaf.position, exceeding.p));
-    const Lanes factor = 1 + exceeding.slope * (x.square() + y.square() + z.square()).sqrt();
-    const Lanes squared = factor.square();
-    const TensorLanes seen = seen_from(h, factorisation);
-    const Lanes most = exceeded.limit() * squared;
-    if ((seen.xx + seen.yy + seen.zz <= most).all()) return;
-    const Lanes room = least_minor(most, seen);
-    if ((room > 0).all()) return;
-    const Lanes growths = greatest_eigenvalues(seen) / squared;
-    for (int lane = 0; lane < lane_count; ++lane) {
-        if (room[lane] > 0 || !(growths[lane] > exceeded.limit())) continue;
-        if (!std::isfinite(leaf.length[lane])) continue;
-        exceeded.enter({growths[lane], first_member + static_cast<std::uint32_t>(lane),
-                        main_direction(seen[lane])});
-    }
-}
-
 // Throws InputError for what `order_free_intersection` does not accept.
 template <class Name>
 void require_valid(const Metric& metric, const Name& name) {
@@ -134,41 +52,6 @@ void require_valid(const Metric& metric, const Name& name) {
         order_free_intersection({&metric, 1});
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: {}", name(), error.what()));
-    }
-}
-
-// Below `root`, but not below the nodes `except`.
-void find_exceeded(const QuadricTree& tree, std::uint32_t root,
-                   std::span<const std::uint32_t> except, const Exceeding& exceeding,
-                   const Eigen::Matrix3d& h, Exceeded& exceeded) {
-    if (std::ranges::find(except, root) != except.end()) return;
-    // Seven siblings wait at each of at most eleven levels.
-    std::array<std::uint32_t, 96> stack;
-    std::size_t height = 0;
-    stack[height++] = root;
-    while (height > 0) {
-        const std::uint32_t number = stack[--height];
-        if (tree.is_leaf(number)) {
-            const std::uint32_t first = tree.first_vector(number);
-            for (std::uint32_t v = first; v < first + QuadricTree::vectors_of_leaf; ++v) {
-                find_in_vector(tree.vectors()[v], v * lane_count, exceeding, h, exceeded);
-            }
-            continue;
-        }
-        const QuadricNode& node = tree.node(number);
-        const std::uint32_t first = node.first_child;
-        auto [children, rooms] = children_exceeded(node, exceeding, exceeded.limit());
-        const std::size_t floor = height;
-        for (; children != 0; children &= children - 1) {
-            const auto c = static_cast<std::uint32_t>(std::countr_zero(children));
-            if (std::ranges::find(except, first + c) != except.end()) continue;
-            // The greatest on top: what is found there raises the limit.
-            std::size_t place = height++;
-            for (; place > floor && rooms[stack[place - 1] - first] < rooms[c]; --place) {
-                stack[place] = stack[place - 1];
-            }
-            stack[place] = first + c;
-        }
     }
 }
 
@@ -319,11 +202,11 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
             const Exceeding exceeding(p, answer.factor, g_ - 1);
             const Core::Nearby nearby(core, tree_);
             for (const std::uint32_t node : nearby.nodes()) {
-                find_exceeded(tree_, node, {}, exceeding, answer.factor, exceeded);
+                find_exceeded(tree_, node, {}, exceeding, exceeded);
             }
             const auto is_new = [&](const Exceeded::Cone& cone) { return !core.has(cone.member); };
             if (std::ranges::none_of(exceeded.cones(), is_new) && !is_rough) {
-                find_exceeded(tree_, 0, nearby.nodes(), exceeding, answer.factor, exceeded);
+                find_exceeded(tree_, 0, nearby.nodes(), exceeding, exceeded);
             }
             if (std::ranges::any_of(exceeded.cones(), is_new) && round < most_rounds) {
                 if (!core.has_room_for(exceeded.cones().size())) core.reduce(answer, fixed);
@@ -349,7 +232,7 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
                     break;
                 }
                 exceeded = Exceeded(limit);
-                find_exceeded(tree_, 0, {}, exceeding, answer.factor, exceeded);
+                find_exceeded(tree_, 0, {}, exceeding, exceeded);
             }
         }
         if (found != nullptr) {
