@@ -1,5 +1,9 @@
 #include "controlspace/metric/nonconformity.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "controlspace/metric/intersection.h"
 #include "metric/decompose.h"
 
 namespace controlspace {
@@ -22,6 +26,18 @@ double nonconformity(const Metric& a, const Metric& b) {
     return (Cholesky(a).solve(b.matrix()) + Cholesky(b).solve(a.matrix()) -
             2 * Eigen::Matrix3d::Identity())
         .norm();
+}
+
+double strict_nonconformity(const Metric& a, const Metric& b) {
+    const double delta = nonconformity(a, b);
+    // Of common axes, δ is the norm of the excesses along them.
+    if (is_axis_aligned(a) && is_axis_aligned(b)) return delta;
+    return std::max(delta, excess(std::max(growth(a, b), growth(b, a))));
+}
+
+double largest_factor_within(double delta) {
+    const double excess_of_each = delta / std::sqrt(3.0);
+    return 1 + 0.5 * (excess_of_each + std::sqrt(excess_of_each * (excess_of_each + 4)));
 }
 
 double riemannian_nonconformity(const Metric& a, const Metric& b) {
