@@ -112,6 +112,11 @@ IsotropicCones::Range ConeField::range_in(const Box& box, Memory& memory) const 
     return std::get<IsotropicCones>(cones_).range_in(box, memory.hint);
 }
 
+std::optional<Doubt> ConeField::doubt_of(const TrilinearLengths& lengths, double factor,
+                                         Memory& memory) const {
+    return std::get<IsotropicCones>(cones_).doubt_of(lengths, factor, memory.hint);
+}
+
 bool ConeField::gather(const Box& box, NearbyCones& nearby, Memory& memory) const {
     const auto* isotropic = std::get_if<IsotropicCones>(&cones_);
     return isotropic != nullptr && isotropic->gather(box, nearby, memory.hint);

@@ -75,6 +75,10 @@ public:
     /// Bounds of an isotropic field in a box, as `IsotropicCones::range_in` has them.
     IsotropicCones::Range range_in(const Box& box, Memory& memory) const;
 
+    /// Of an isotropic field: what `IsotropicCones::doubt_of` says.
+    std::optional<Doubt> doubt_of(const TrilinearLengths& lengths, double factor,
+                                  Memory& memory) const;
+
     /// Makes `nearby` all cones that can be the smallest somewhere in `box`; returns false where
     /// they may be hundreds, or sources are anisotropic.
     bool gather(const Box& box, NearbyCones& nearby, Memory& memory) const;

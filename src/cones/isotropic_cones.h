@@ -10,6 +10,7 @@
 #include "cones/cone_list.h"
 #include "cones/cone_tree.h"
 #include "cones/nearby_cones.h"
+#include "cones/trilinear_lengths.h"
 #include "controlspace/geometry/box.h"
 #include "controlspace/geometry/point.h"
 #include "controlspace/sources/point_source.h"
@@ -39,6 +40,11 @@ public:
         double least, most;
     };
     Range range_in(const Box& box, Hint& hint) const;
+
+    /// Whether lengths are, everywhere in their box, at most `factor` times longer or shorter than
+    /// the smallest length of all cones: then nothing, else where not. It is shown by bounds,
+    /// `hint` as in `smallest_length`.
+    std::optional<Doubt> doubt_of(const TrilinearLengths& lengths, double factor, Hint& hint) const;
 
     /// Index of the source that has the `smallest` length at `p`, one of them where several have;
     /// `smallest` and `hint` as `smallest_length` left them, `smallest` below the cap.
@@ -90,6 +96,9 @@ private:
         return tree_.indices()[leaf * std::size_t{leaf_size} + static_cast<std::size_t>(lane)];
     }
     void visit_leaf(Hint leaf, const Point& p, double& smallest, Hint& hint) const;
+    std::optional<Doubt> doubt_of_long(const TrilinearLengths& lengths, double factor) const;
+    std::optional<Doubt> doubt_of_short(const TrilinearLengths& lengths, double factor,
+                                        Hint& hint) const;
     double search(const Point& p, double cap, double tolerance, Hint& hint) const;
     template <class LowerBounds, class VisitLeaf>
     double search(double cap, double tolerance, Hint& hint, const LowerBounds& lower_bounds,

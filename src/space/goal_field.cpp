@@ -1,8 +1,11 @@
 #include "controlspace/space/detail/goal_field.h"
 
 #include <fmt/format.h>
+#include <tbb/concurrent_unordered_map.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "cones/cone_field.h"
@@ -39,6 +42,20 @@ double tolerance_for(const AdaptationGoal& goal) {
 
 }  // namespace
 
+struct GoalField::Remembered {
+    struct Hash {
+        std::size_t operator()(const std::array<double, 3>& x) const {
+            std::uint64_t hash = 0;
+            for (const double a : x) {
+                hash = (hash ^ std::bit_cast<std::uint64_t>(a)) * 0x9e3779b97f4a7c15;
+                hash ^= hash >> 32;
+            }
+            return hash;
+        }
+    };
+    tbb::concurrent_unordered_map<std::array<double, 3>, Metric, Hash> metrics;
+};
+
 GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
     : target_(require_valid(goal, domain).target),
       ratio_(goal.ratio),
@@ -46,7 +63,8 @@ GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
       continuous_(goal.continuous),
       largest_(largest_metric(domain)),
       cones_(std::make_unique<ConeField>(goal.sources, goal.ratio, largest_, tolerance_for(goal),
-                                         goal.intersection)) {}
+                                         goal.intersection)),
+      remembered_(std::make_unique<Remembered>()) {}
 
 GoalField::~GoalField() = default;
 
@@ -63,6 +81,22 @@ std::vector<Metric> GoalField::continuous_at(std::span<const Point> x) const {
     std::vector<Metric> own(x.size());
     continuous_->sample(x, own);
     return own;
+}
+
+bool GoalField::recall(const Point& x, Metric& out) const {
+    const auto found = remembered_->metrics.find({x.x(), x.y(), x.z()});
+    if (found == remembered_->metrics.end()) return false;
+    out = found->second;
+    return true;
+}
+
+void GoalField::remember(const Point& x, const Metric& m) const {
+    remembered_->metrics.emplace(std::array{x.x(), x.y(), x.z()}, m);
+}
+
+void GoalField::forget_if_many() const {
+    constexpr std::size_t many = 1000000;  // 130 bytes each
+    if (remembered_->metrics.size() > many) remembered_->metrics.clear();
 }
 
 double GoalField::largest_departure(const Box& domain, const Sample& sample_space) const {

@@ -11,12 +11,7 @@ LeafPlaces::LeafPlaces() {
         for (int i = 0; i < 27; ++i) {
             const std::array<int, 3> step{i % 3, i / 3 % 3, i / 9};
             if (std::count(step.begin(), step.end(), 1) != middles) continue;
-            // A little inside: a place on a face might belong to the neighbour.
-            constexpr double inset = 1e-6;
-            for (Axis a = 0; a < 3; ++a) {
-                const int s = step[static_cast<std::size_t>(a)];
-                at[next][a] = s == 0 ? inset : s == 1 ? 0.5 : 1 - inset;
-            }
+            for (Axis a = 0; a < 3; ++a) at[next][a] = 0.5 * step[static_cast<std::size_t>(a)];
             ++next;
         }
     }

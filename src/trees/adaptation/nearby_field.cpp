@@ -3,6 +3,7 @@
 #include "cones/cone_field.h"
 #include "cones/nearby_cones.h"
 #include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
 
 namespace controlspace {
 
@@ -52,9 +53,13 @@ void NearbyField::evaluate(std::span<const Point> x, std::span<Metric> out) {
     }
 }
 
-double NearbyField::evaluate_roughly(std::span<const Point> x, std::span<Metric> out) {
-    search_->gather();
+double NearbyField::evaluate_roughly(std::span<const Point> x, bool shared, std::span<Metric> out) {
     const GoalField& field = search_->field;
+    if (shared && !field.has_ranges()) {
+        for (std::size_t i = 0; i < x.size(); ++i) out[i] = at(x[i]);
+        return 1;
+    }
+    search_->gather();
     if (search_->are_few || !field.has_ranges()) {
         evaluate(x, out);
         return 1;
@@ -64,9 +69,21 @@ double NearbyField::evaluate_roughly(std::span<const Point> x, std::span<Metric>
 }
 
 Metric NearbyField::at(const Point& x) {
+    const GoalField& field = search_->field;
+    const bool takes_long = !field.has_ranges();
     Metric m;
+    if (takes_long && field.recall(x, m)) return m;
     search_->by_memory({&x, 1}, {&m, 1});
+    if (takes_long) field.remember(x, m);
     return m;
+}
+
+std::optional<NearbyField::Doubt> NearbyField::doubt_of(const std::array<double, 8>& at_corners) {
+    const GoalField& field = search_->field;
+    const auto doubt = field.cones().doubt_of(
+        {search_->box, at_corners}, largest_factor_within(field.target()), search_->memory);
+    if (!doubt) return std::nullopt;
+    return Doubt{doubt->where, doubt->is_certain};
 }
 
 NearbyField::Range NearbyField::range() {

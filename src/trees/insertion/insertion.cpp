@@ -17,9 +17,6 @@ bool calls_for_change(const Metric& requested, const Metric& held, double tolera
 }
 
 // The intersection divides each principal length by k at most, so δ is √3 (k + 1/k - 2) at most.
-double length_let_pass(double tolerance) {
-    const double half = 1 + tolerance / (2 * std::sqrt(3.0));
-    return (half + std::sqrt(half * half - 1)) * (1 - 1e-6);
-}
+double length_let_pass(double tolerance) { return largest_factor_within(tolerance) * (1 - 1e-6); }
 
 }  // namespace controlspace

@@ -18,12 +18,6 @@ namespace controlspace {
 
 namespace {
 
-// The factor of lengths k that makes δ = √3 (k + 1/k - 2).
-double factor_of(double delta) {
-    const double excess = delta / std::sqrt(3.0);
-    return 1 + 0.5 * excess + std::sqrt(excess + 0.25 * excess * excess);
-}
-
 // Shortening all lengths by a small fraction t gives δ = √3 t^2: a cone may be left out where it
 // shortens some by this, and most of the target remains for places in between.
 double negligible_shortening(double target) { return 0.5 * std::sqrt(target); }
@@ -192,7 +186,7 @@ void AnchoredValues::fit(std::span<const LeafBox> leaves, const GoalField& field
                          std::size_t places, bool beside_old) {
     const double well_within = 0.25 * field.target();
     const double negligible = negligible_shortening(field.target());
-    const double factor = factor_of(well_within);
+    const double factor = largest_factor_within(well_within);
     std::vector<SourceIndex> chosen(leaves.size() * most);
     std::vector<std::size_t> count(leaves.size(), 0);
     in_parallel(leaves.size(), [&, governing = std::vector<SourceIndex>(),
@@ -249,7 +243,7 @@ void AnchoredValues::fit(std::span<const LeafBox> leaves, const GoalField& field
 
 void AnchoredValues::cover(std::span<const LeafBox> leaves, const GoalField& field,
                            std::span<std::uint8_t> is_kept) {
-    const double tolerance = factor_of(field.target()) - 1;
+    const double tolerance = largest_factor_within(field.target()) - 1;
     std::vector<SourceIndex> chosen(leaves.size() * most);
     std::vector<std::size_t> count(leaves.size());
     in_parallel(leaves.size(), [&, memory = ConeField::Memory(),

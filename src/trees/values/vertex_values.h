@@ -31,6 +31,7 @@ class VertexValues {
 public:
     static constexpr int order = 1;
     static constexpr CutBy cut_by = CutBy::edges;
+    using trilinear_leaves = VertexValues;
 
     explicit VertexValues(const SpaceOptions& options);
 

@@ -19,18 +19,19 @@ struct AdaptationGoal {
     std::span<const PointSource> sources;
     std::shared_ptr<const ControlSpace> continuous;  ///< or none
     double ratio = 1.25;                             ///< g_r of the sources' cones
-    double target = 0.1;                             ///< largest δ to the field; 0 is out of reach
+    /// Largest δ to the field, strictly (`strict_nonconformity`); 0 is out of reach.
+    double target = 0.1;
     IntersectionRule intersection = IntersectionRule::order_free;
 };
 
 struct AdaptationReport {
-    /// Largest sampled δ to the field: at sources and at places that the structure was not fitted
-    /// to; below 3/4 of the target, a bound of it. Places are samples: a peak between them may be
-    /// higher. Not so of trees whose leaves are constant or keep sources (K_L, K_oL, K_oLB, K_LA,
-    /// K_oLA) where all is isotropic and no source continuous: there it is a bound that holds
-    /// everywhere.
+    /// Where all is isotropic and no source continuous: a δ that is shown, by bounds, to be kept
+    /// everywhere; not so of K_Li and K_oLi, and of leaves that were not to be cut, where `met` is
+    /// false. Otherwise the largest sampled δ: at sources, next to them in the leaves beside them,
+    /// at places that the structure was not fitted to, and uphill from the worst of these; below
+    /// 3/4 of the target, a bound of it. A peak between places may be higher.
     double reached = 0;
-    bool met = false;       ///< reached <= target
+    bool met = false;       ///< reached <= target, and shown to be
     std::string shortfall;  ///< why it was not met, and what would help; empty where it was
 };
 

@@ -43,6 +43,10 @@ namespace controlspace {
 // and, where the metric in a leaf is just that of its node, and insertion and adaptation need not
 // go through the functions below, `using constant_leaves = ` the storage itself (LeafMetrics).
 //
+// and, where a leaf's isotropic lengths are trilinear between those of its eight nodes, which are
+// its corners, so that adaptation can show that they follow a field everywhere,
+// `using trilinear_leaves = ` the storage itself (K_V, K_oV).
+//
 // Members beside the NodeMetrics are listed in
 //
 //   static void data(auto& self, auto&& visit) { visit("mine.slopes", self.slopes_); ... }
@@ -89,6 +93,10 @@ concept HasData = requires(Storage& s) {
 /// may say more about its leaves.
 template <class Storage>
 concept HasConstantLeaves = std::is_same_v<typename Storage::constant_leaves, Storage>;
+
+/// Whether lengths in a leaf are trilinear between its nodes'. Not inherited either.
+template <class Storage>
+concept HasTrilinearLeaves = std::is_same_v<typename Storage::trilinear_leaves, Storage>;
 
 template <class Storage>
 consteval bool follows_neighbours() {

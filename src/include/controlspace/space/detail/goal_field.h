@@ -39,6 +39,12 @@ public:
     /// near to sources.
     double largest_departure(const Box& domain, const Sample& sample) const;
 
+    /// Metrics that were evaluated at places which are asked for again: the caller decides which.
+    /// Thread-safe, but for `forget_if_many`.
+    bool recall(const Point& x, Metric& out) const;
+    void remember(const Point& x, const Metric& m) const;
+    void forget_if_many() const;
+
     const ConeField& cones() const { return *cones_; }
     /// Relative shortening of lengths that is left out.
     double negligible() const;
@@ -53,6 +59,8 @@ private:
     std::shared_ptr<const ControlSpace> continuous_;
     Metric largest_;
     std::unique_ptr<const ConeField> cones_;
+    struct Remembered;
+    std::unique_ptr<Remembered> remembered_;
 };
 
 }  // namespace controlspace

@@ -16,6 +16,7 @@
 #include "controlspace/trees/detail/in_parallel.h"
 #include "controlspace/trees/detail/leaf_judge.h"
 #include "controlspace/trees/detail/nearby_field.h"
+#include "controlspace/trees/detail/next_to_sources.h"
 #include "controlspace/trees/detail/sample_leaves.h"
 #include "controlspace/trees/topology.h"
 
@@ -28,7 +29,7 @@ class TreeAdaptation {
 public:
     TreeAdaptation(const Topology<Node>& tree, Storage& storage, const GoalField& field,
                    const AdaptationGoal& goal)
-        : tree_(tree), storage_(storage), field_(field) {
+        : tree_(tree), storage_(storage), field_(field), next_to_sources_(tree, storage, field) {
         if (field.has_ranges()) {
             for (const std::uint32_t i : field.kept()) {
                 sources_.push_back(goal.sources[i].position);
@@ -40,6 +41,7 @@ public:
             sample_parallel(field, sources_, at_sources_);
         }
         leaf_of_source_.resize(sources_.size(), 0);
+        if (!has_bounds()) next_to_sources_.take(goal.sources);
     }
 
     /// `split(box, along, cut)` cuts the leaf with that box, across an axis for which `along`
@@ -69,6 +71,9 @@ public:
         return left;
     }
 
+    /// Whether the target could not be shown to be kept in a leaf that was not to be cut.
+    bool is_unproved() const { return is_unproved_; }
+
 private:
     enum class LeafState : std::uint8_t { settled, changed, fresh };
 
@@ -76,6 +81,7 @@ private:
     // whether some have to be sampled again.
     template <class Split>
     bool round(bool proved, Split&& split) {
+        field_.forget_if_many();
         const std::vector<LeafBox> young = leaves_in_state(LeafState::changed);
         if (proved && covers()) {
             cover(young);
@@ -101,7 +107,10 @@ private:
             cut.clear();
             const bool is_cut = split(l.box, departure.along, cut);
             changes = is_cut || changes;
-            if (!is_cut && std::isinf(departure.worst)) departure = at_some_places(l);
+            if (!is_cut && departure.is_unknown()) {
+                departure = at_some_places(l);
+                is_unproved_ = true;
+            }
             departures_.resize(tree_.leaves());
             states_.resize(tree_.leaves(), LeafState::fresh);
             for (const LeafIndex leaf : cut) states_[leaf] = LeafState::fresh;
@@ -134,6 +143,11 @@ private:
     bool covers() const {
         if constexpr (requires { &Storage::cover; }) return field_.has_ranges();
         return false;
+    }
+
+    // Whether bounds can show that leaves keep the target everywhere.
+    bool has_bounds() const {
+        return HasTrilinearLeaves<Storage> && field_.has_ranges() && !sources_.empty();
     }
 
     // Leaves that cannot be brought to that depart without bound, as far as is known.
@@ -171,7 +185,7 @@ private:
     // some in each leaf, more in a large one, and the more the closer the target.
     void sample(std::span<const LeafBox> leaves, bool proved) {
         const double places_in_domain = 5e3 / field_.target();
-        constexpr std::uint64_t places_at_least = 16;
+        const std::uint64_t places_at_least = field_.has_ranges() ? 64 : 16;  // quick, or not
         const double volume = tree_.domain().edges().prod();
         std::vector<std::uint64_t> first(leaves.size() + 1, places_used_);
         for (std::size_t i = 0; i < leaves.size(); ++i) {
@@ -189,12 +203,20 @@ private:
             }
         }
         sample_sources();
+        std::vector<Departure> suspected;
+        if (!has_bounds()) {
+            suspected = next_to_sources_.worst(
+                leaves, [&](LeafIndex leaf) { return states_[leaf] != LeafState::settled; });
+        }
         in_parallel(leaves.size(), [&, nearby = NearbyField(field_)](std::size_t i) mutable {
             const LeafBox& l = leaves[i];
             nearby.enter(l.box, true);
             Departure& departure = departures_[l.leaf];
             const auto is_bad = [&] { return departure.worst > field_.target(); };
             const bool needs_axis = Node::arity == 2;
+            if (!suspected.empty() && !is_bad()) {
+                judge.examine(l, nearby, suspected[l.leaf], departure);
+            }
             if (states_[l.leaf] == LeafState::fresh && !is_fitted(l.leaf) &&
                 (needs_axis || !is_bad())) {
                 const Departure own = judge.at_places_of(l, nearby);
@@ -202,7 +224,15 @@ private:
                 departure.along = own.along;
             }
             if (!proved || is_bad()) return;
-            const Departure elsewhere = judge.at_sequence(l, nearby, first[i], first[i + 1]);
+            Departure elsewhere;
+            if (has_bounds()) {
+                if constexpr (HasTrilinearLeaves<Storage>) {
+                    elsewhere = judge.everywhere(l, nearby);
+                }
+            } else {
+                elsewhere = judge.at_sequence(l, nearby, first[i], first[i + 1]);
+                judge.climb(l, nearby, elsewhere);
+            }
             departure.take(elsewhere.worst, elsewhere.where);
             departure.is_elsewhere = is_bad();
         });
@@ -233,8 +263,8 @@ private:
             LeafIndex& leaf = leaf_of_source_[i];
             if (states_[leaf] == LeafState::settled) return;
             leaf = tree_.find(sources_[i]);
-            of_source[i] =
-                nonconformity(value_at(tree_, field_of(storage_), sources_[i]), at_sources_[i]);
+            of_source[i] = strict_nonconformity(
+                value_in(tree_, field_of(storage_), leaf, sources_[i]), at_sources_[i]);
         });
         for (std::size_t i = 0; i < sources_.size(); ++i) {
             departures_[leaf_of_source_[i]].take(of_source[i], sources_[i]);
@@ -245,11 +275,13 @@ private:
     Storage& storage_;
     const GoalField& field_;
     std::vector<Point> sources_;
-    std::vector<Metric> at_sources_;
+    std::vector<Metric> at_sources_;  // the field there
+    NextToSources<Node, Storage> next_to_sources_;
     std::vector<LeafIndex> leaf_of_source_;
     std::vector<LeafState> states_;      // of the leaves
     std::vector<Departure> departures_;  // likewise
     std::uint64_t places_used_ = 0;
+    bool is_unproved_ = false;
 };
 
 }  // namespace controlspace

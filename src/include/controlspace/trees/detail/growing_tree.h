@@ -65,7 +65,7 @@ protected:
         bool too_short = false;
         TreeAdaptation adaptation(topology_, storage_, field, goal);
         report.reached = adaptation.run(true, [&](const Box& box, const auto& along, auto& cut) {
-            if (is_negligible(box)) {
+            if (is_negligible(box, goal.ratio)) {
                 too_short = true;
                 return false;
             }
@@ -73,7 +73,7 @@ protected:
             too_deep = too_deep || !done;
             return done;
         });
-        report.met = report.reached <= goal.target;
+        report.met = report.reached <= goal.target && !adaptation.is_unproved();
         if (too_deep) {
             report.shortfall = depth_shortfall(cuts().max_depth());
         } else if (too_short) {
@@ -154,10 +154,12 @@ protected:
     bool is_finished_ = false;  // nothing has grown since `settle`
 
 private:
-    // Whether the box is far shorter than an element. Fields may be steep: the intersection of
-    // tensors depends on which is the smallest.
-    bool is_negligible(const Box& box) const {
-        constexpr double share_of_element = 1.0 / 16;
+    // Whether the box is far shorter than an element, and the field of this ratio varies little in
+    // it. Fields may be steep: the intersection of tensors in turn depends on which is the
+    // smallest.
+    bool is_negligible(const Box& box, double ratio) const {
+        constexpr double usual_slope = 0.25;
+        const double share_of_element = 1.0 / 16 * (usual_slope / std::max(usual_slope, ratio - 1));
         const Metric m = value_at(topology_, field_of(storage_), box.centre());
         const auto lengths = metric_edge_lengths(m, box.edges());
         return std::max({lengths[0], lengths[1], lengths[2]}) < share_of_element;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "controlspace/geometry/detail/place_sequence.h"
@@ -22,6 +23,7 @@ struct Departure {
     std::array<double, 3> along{};  ///< how much speaks for a cut across each axis
     bool is_elsewhere = false;      ///< above the target only at a place that was not fitted to
 
+    bool is_unknown() const { return std::isinf(worst); }
     void take(double delta, const Point& x) {
         if (!(delta > worst)) return;
         worst = delta;
@@ -65,9 +67,63 @@ public:
         while (first < end) {
             const std::size_t n = std::min<std::uint64_t>(x.size(), end - first);
             for (std::size_t i = 0; i < n; ++i) x[i] = place_in(of.box, first++);
-            compare_with(of, nearby, std::span(x).first(n), departure, {});
+            compare_with(of, nearby, std::span(x).first(n), false, departure, {});
         }
         return departure;
+    }
+
+    /// Of lengths that are trilinear in the leaf: the target, if bounds show that it is kept
+    /// everywhere; otherwise more, without bound where they show nothing.
+    Departure everywhere(const LeafBox& of, NearbyField& nearby) const {
+        std::array<double, 8> at_corners;
+        const auto metrics = storage_.metrics().field();
+        std::ranges::transform(storage_.nodes_of(of.leaf), at_corners.begin(),
+                               [&](const auto node) { return metrics[node].xx; });
+        Departure departure;
+        const auto doubt = nearby.doubt_of(at_corners);
+        if (!doubt) {
+            departure.take(target_, of.box.centre());
+            return departure;
+        }
+        if (doubt->is_certain) {
+            Metric own;
+            values_in(of.leaf, {&doubt->where, 1}, {&own, 1});
+            departure.take(nonconformity(own, nearby.at(doubt->where)), doubt->where);
+        }
+        if (!(departure.worst > target_)) {
+            departure.take(std::numeric_limits<double>::infinity(), doubt->where);
+        }
+        return departure;
+    }
+
+    /// At a place where the departure is no less than what `suspected` says.
+    void examine(const LeafBox& of, NearbyField& nearby, const Departure& suspected,
+                 Departure& departure) const {
+        if (suspected.worst == 0) return;
+        departure.take(suspected.worst, suspected.where);
+        if (suspected.worst > target_) return;
+        compare_with(of, nearby, {&suspected.where, 1}, false, departure, {});
+    }
+
+    /// What is found by going uphill from the worst of some places, where that is not far below the
+    /// target.
+    void climb(const LeafBox& of, NearbyField& nearby, Departure& departure) const {
+        constexpr int rounds = 5;
+        constexpr double near = 0.5;
+        if (!(departure.worst > near * target_)) return;
+        Vector step = 0.2 * of.box.edges();
+        std::array<Point, 6> x;
+        for (int round = 0; round < rounds && !(departure.worst > target_); ++round) {
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                const auto axis = static_cast<Axis>(i / 2);
+                x[i] = departure.where;
+                x[i][axis] += i % 2 == 0 ? step[axis] : -step[axis];
+                x[i] = x[i].cwiseMax(of.box.low).cwiseMin(of.box.high);
+            }
+            const double before = departure.worst;
+            compare_with(of, nearby, x, false, departure, {});
+            if (!(departure.worst > before)) step *= 0.4;
+        }
     }
 
 private:
@@ -97,16 +153,16 @@ private:
         const std::size_t n = range.to - range.from;
         for (std::size_t i = 0; i < n; ++i) x[i] = leaf_places().in(of.box, range.from + i);
         compare_with(
-            of, nearby, std::span(x).first(n), departure,
+            of, nearby, std::span(x).first(n), true, departure,
             Node::arity == 2 ? std::span(log_ratio).subspan(range.from) : std::span<double>());
     }
 
     // Writes, if there is room, the logarithms of how much longer the leaf's lengths are.
-    void compare_with(const LeafBox& of, NearbyField& nearby, std::span<const Point> x,
+    void compare_with(const LeafBox& of, NearbyField& nearby, std::span<const Point> x, bool shared,
                       Departure& departure, std::span<double> log_ratio) const {
         std::array<Metric, LeafPlaces::all> own, field;
         values_in(of.leaf, x, own);
-        const double factor = nearby.evaluate_roughly(x, std::span(field).first(x.size()));
+        const double factor = nearby.evaluate_roughly(x, shared, std::span(field).first(x.size()));
         for (std::size_t i = 0; i < x.size(); ++i) {
             compare(own[i], field[i], factor, x[i], nearby, departure);
             if (!log_ratio.empty()) {
@@ -125,8 +181,8 @@ private:
     // target is evaluated exactly.
     void compare(const Metric& own, const Metric& longest, double factor, const Point& x,
                  NearbyField& nearby, Departure& departure) const {
+        if (factor == 1) return departure.take(strict_nonconformity(own, longest), x);
         const double from_longest = nonconformity(own, longest);
-        if (factor == 1) return departure.take(from_longest, x);
         const Metric shortest = (1 / factor) * longest;
         const double from_shortest = nonconformity(own, shortest);
         const double most = std::max(from_longest, from_shortest);

@@ -17,8 +17,14 @@ struct LeafPlaces {
     LeafPlaces();
     static constexpr std::size_t low_face(std::size_t axis) { return faces + 2 - axis; }
     static constexpr std::size_t high_face(std::size_t axis) { return faces + 3 + axis; }
+    /// To the bit that of the leaves beside it, and of parts of the leaf.
     Point in(const Box& box, std::size_t i) const {
-        return box.low + at[i].cwiseProduct(box.edges());
+        const Point middle = box.centre();
+        Point x;
+        for (Axis a = 0; a < 3; ++a) {
+            x[a] = at[i][a] == 0.5 ? middle[a] : at[i][a] == 0 ? box.low[a] : box.high[a];
+        }
+        return x;
     }
 };
 const LeafPlaces& leaf_places();

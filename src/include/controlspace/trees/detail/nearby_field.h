@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "controlspace/geometry/box.h"
@@ -21,10 +23,21 @@ public:
     void enter(const Box& box, bool at_many_points);
 
     void evaluate(std::span<const Point> x, std::span<Metric> out);
-    /// The same, or longer by a factor less than the one returned, where that is quicker.
-    double evaluate_roughly(std::span<const Point> x, std::span<Metric> out);
-    /// The same at any point, which best is near to the one before.
+    /// The same, or longer by a factor less than the one returned, where that is quicker. Of
+    /// places that leaves have in common, if they are `shared`, none is evaluated twice, where that
+    /// takes long.
+    double evaluate_roughly(std::span<const Point> x, bool shared, std::span<Metric> out);
+    /// The same, exactly, at any point, shared, which best is near to the one before.
     Metric at(const Point& x);
+
+    /// Compares lengths that are trilinear in the box with the field (GoalField::has_ranges): a
+    /// place where they are beyond the target; one where they could not be shown to be within it,
+    /// which is not certain to be beyond; or nothing, if they are within it everywhere.
+    struct Doubt {
+        Point where;
+        bool is_certain;
+    };
+    std::optional<Doubt> doubt_of(const std::array<double, 8>& at_corners);
 
     /// Bounds of the lengths in the box (GoalField::has_ranges).
     struct Range {

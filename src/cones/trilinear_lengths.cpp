@@ -1,0 +1,43 @@
+#include "cones/trilinear_lengths.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace controlspace {
+
+double TrilinearLengths::at_place(const Point& x) const {
+    const Vector t = (x - box.low).cwiseQuotient(box.edges());
+    double length = 0;
+    for (std::size_t i = 0; i < 8; ++i) {
+        double weight = 1;
+        for (Axis a = 0; a < 3; ++a) weight *= (i >> a & 1) != 0 ? t[a] : 1 - t[a];
+        length += weight * at[i];
+    }
+    return length;
+}
+
+double TrilinearLengths::slope() const {
+    Vector most = Vector::Zero();
+    for (Axis a = 0; a < 3; ++a) {
+        const std::size_t high = std::size_t{1} << a;
+        for (std::size_t i = 0; i < 8; ++i) {
+            if ((i & high) == 0) most[a] = std::max(most[a], std::abs(at[i | high] - at[i]));
+        }
+    }
+    return most.cwiseQuotient(box.edges()).norm();
+}
+
+std::pair<TrilinearLengths, TrilinearLengths> TrilinearLengths::halves() const {
+    Axis longest = 0;
+    box.edges().maxCoeff(&longest);
+    auto both = std::pair(*this, *this);
+    both.first.box.high[longest] = both.second.box.low[longest] = box.centre()[longest];
+    const std::size_t high = std::size_t{1} << longest;
+    for (std::size_t i = 0; i < 8; ++i) {
+        if ((i & high) != 0) continue;
+        both.first.at[i | high] = both.second.at[i] = 0.5 * (at[i] + at[i | high]);
+    }
+    return both;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,217 @@
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/sources/point_source.h"
+#include "controlspace/space/detail/goal_field.h"
+#include "controlspace/trees/detail/in_parallel.h"
+#include "controlspace/trees/detail/leaf_judge.h"
+#include "controlspace/trees/detail/sample_leaves.h"
+#include "controlspace/trees/topology.h"
+
+namespace controlspace {
+
+/// Finds where leaves ask for more than single sources do. The cone of a source is the smallest at
+/// the source, and in a leaf at the place that is nearest to it in the source's metric: there the
+/// exact field may have a minimum that no other place of the leaf shows.
+template <class Node, class Storage>
+class NextToSources {
+public:
+    NextToSources(const Topology<Node>& tree, const Storage& storage, const GoalField& field)
+        : tree_(tree), storage_(storage), field_(field) {}
+
+    void take(std::span<const PointSource> sources) {
+        cones_.resize(sources.size());
+        in_parallel(sources.size(), [&](std::size_t i) {
+            EigenFrame frame = eigen_frame(sources[i].metric);
+            for (double& length : frame.lengths) length = 1 / (length * length);
+            cones_[i] = {sources[i], metric_from_frame(frame.lengths, frame.directions)};
+        });
+    }
+
+    /// Of each leaf, the place where it exceeds a cone most, and a lower bound of its departure
+    /// from the field there; nothing if that is far below the target. Few sources are compared with
+    /// all `leaves`, many with those leaves beside their own of which `is_wanted(leaf)` holds.
+    template <class IsWanted>
+    std::vector<Departure> worst(std::span<const LeafBox> leaves, const IsWanted& is_wanted) const {
+        constexpr std::size_t few = 64;
+        std::vector<Departure> worst(tree_.leaves());
+        if (cones_.size() <= few) {
+            in_parallel(leaves.size(), [&](std::size_t i) {
+                for (const Cone& cone : cones_) {
+                    Departure departure = at(cone, leaves[i]);
+                    if constexpr (HasTrilinearLeaves<Storage>) {
+                        if (!(departure.worst > field_.target())) {
+                            find_exceeded(cone, leaves[i], departure);
+                        }
+                    }
+                    raise(worst[leaves[i].leaf], departure);
+                }
+            });
+            return worst;
+        }
+        tbb::enumerable_thread_specific<std::vector<std::pair<LeafIndex, Departure>>> found;
+        in_parallel(cones_.size(), [&](std::size_t i) {
+            const Cone& cone = cones_[i];
+            for_each_leaf_beside(cone.source.position, [&](const LeafPlace& beside) {
+                if (!is_wanted(beside.leaf)) return;
+                const Departure departure = at(cone, {beside.leaf, beside.box});
+                if (departure.worst > 0) found.local().emplace_back(beside.leaf, departure);
+            });
+        });
+        for (const auto& of_thread : found) {
+            for (const auto& [leaf, departure] : of_thread) raise(worst[leaf], departure);
+        }
+        return worst;
+    }
+
+private:
+    struct Cone {
+        PointSource source;
+        Metric inverse_square;
+    };
+
+    // Whatever the order in which they come.
+    static void raise(Departure& worst, const Departure& departure) {
+        const auto order = [](const Departure& d) {
+            return std::tuple(d.worst, d.where.x(), d.where.y(), d.where.z());
+        };
+        if (order(worst) < order(departure)) worst = departure;
+    }
+
+    Departure at(const Cone& cone, const LeafBox& of) const {
+        constexpr double of_interest = 0.25;
+        const Point x = nearest_place(cone, of.box);
+        const Metric own = value_in(tree_, field_of(storage_), of.leaf, x);
+        const auto& [position, metric] = cone.source;
+        const double factor = 1 + (field_.ratio() - 1) * metric_length(metric, x - position);
+        Departure departure;
+        if (!is_within(own, 1, factor * metric)) {
+            const double delta = strict_nonconformity(own, intersection(own, factor * metric));
+            if (delta > of_interest * field_.target()) departure.take(delta, x);
+        }
+        return departure;
+    }
+
+    // Metrics in a box, trilinear between its corners.
+    struct Part {
+        Box box;
+        std::array<Metric, 8> at;
+    };
+
+    // A place where trilinear metrics exceed a cone by more than the target allows in all
+    // directions at once. They do so nowhere in a box if they do not at its corners, when the
+    // cone's factor, which is convex, is replaced by a tangent: |T(x) M^-1| is a convex function of
+    // T, and T a mean of the corners'.
+    void find_exceeded(const Cone& cone, const LeafBox& of, Departure& departure) const {
+        constexpr std::size_t most_parts = 256;
+        const auto& [q, metric] = cone.source;
+        const double slope = field_.ratio() - 1;
+        const double most = largest_factor_within(field_.target());
+        const auto metrics = storage_.metrics().field();
+        Part leaf{of.box, {}};
+        std::ranges::transform(storage_.nodes_of(of.leaf), leaf.at.begin(),
+                               [&](const auto node) { return metrics[node]; });
+        std::vector<Part> parts{leaf};
+        for (std::size_t k = 0; !parts.empty() && k < most_parts; ++k) {
+            const Part part = parts.back();
+            parts.pop_back();
+            const Point centre = part.box.centre();
+            const double distance = std::max(metric_length(metric, centre - q), 1e-150);
+            const Vector steepness =
+                slope / distance * (cone.inverse_square.matrix() * (centre - q));
+            bool is_doubtful = false;
+            for (int c = 0; c < 8; ++c) {
+                const Point x = corner(part.box, c);
+                const Metric& own = part.at[static_cast<std::size_t>(c)];
+                const double tangent = 1 + slope * distance + steepness.dot(x - centre);
+                if (tangent > 0 && is_within(own, most * tangent, metric)) continue;
+                is_doubtful = true;
+                const double factor = 1 + slope * metric_length(metric, x - q);
+                if (is_within(own, most * factor, metric)) continue;
+                const Metric within = intersection(own, factor * metric);
+                return departure.take(strict_nonconformity(own, within), x);
+            }
+            if (is_doubtful) halve(part, metric, parts);
+        }
+    }
+
+    // Across the edge that is the longest in this metric.
+    static void halve(const Part& part, const Metric& metric, std::vector<Part>& parts) {
+        const auto lengths = metric_edge_lengths(metric, part.box.edges());
+        const auto longest = static_cast<Axis>(std::ranges::max_element(lengths) - lengths.begin());
+        Part low = part;
+        Part high = part;
+        low.box.high[longest] = high.box.low[longest] = part.box.centre()[longest];
+        const std::size_t bit = std::size_t{1} << longest;
+        for (std::size_t c = 0; c < 8; ++c) {
+            if ((c & bit) != 0) continue;
+            low.at[c | bit] = high.at[c] =
+                Metric::from_matrix(0.5 * (part.at[c].matrix() + part.at[c | bit].matrix()));
+        }
+        parts.push_back(low);
+        parts.push_back(high);
+    }
+
+    // A quadratic function has its minimum in a box inside of it, in a face, an edge or a corner.
+    static Point nearest_place(const Cone& cone, const Box& box) {
+        const Point& q = cone.source.position;
+        Point nearest = q.cwiseMax(box.low).cwiseMin(box.high);
+        if (is_isotropic(cone.source.metric) || nearest == q) return nearest;
+        const Eigen::Matrix3d a = cone.inverse_square.matrix();
+        double least = (nearest - q).dot(a * (nearest - q));
+        for (int sides = 0; sides < 27; ++sides) {
+            // Coordinates on a side are given, at the others the slope is zero.
+            Eigen::Matrix3d equations = a;
+            Vector right = a * q;
+            for (Axis i = 0, rest = sides; i < 3; ++i, rest /= 3) {
+                if (rest % 3 == 2) continue;
+                equations.row(i).setZero();
+                equations(i, i) = 1;
+                right[i] = rest % 3 == 0 ? box.low[i] : box.high[i];
+            }
+            const Vector at = equations.inverse() * right;
+            const Point x = at.cwiseMax(box.low).cwiseMin(box.high);
+            const double distance = (x - q).dot(a * (x - q));
+            if (!(distance < least)) continue;
+            least = distance;
+            nearest = x;
+        }
+        return nearest;
+    }
+
+    // Across the nearest faces, edges and corner of the leaf that holds x.
+    template <class Visit>
+    void for_each_leaf_beside(const Point& x, const Visit& visit) const {
+        const Box box = tree_.locate(x).box;
+        const Point centre = box.centre();
+        const Vector beyond = 1e-9 * box.edges();
+        for (int sides = 1; sides < 8; ++sides) {
+            Point p = x;
+            for (Axis a = 0; a < 3; ++a) {
+                if ((sides >> a & 1) == 0) continue;
+                p[a] = x[a] < centre[a] ? box.low[a] - beyond[a] : box.high[a] + beyond[a];
+            }
+            if (tree_.domain().contains(p)) visit(tree_.locate(p));
+        }
+    }
+
+    const Topology<Node>& tree_;
+    const Storage& storage_;
+    const GoalField& field_;
+    std::vector<Cone> cones_;
+};
+
+}  // namespace controlspace
