@@ -24,8 +24,16 @@ std::optional<Doubt> IsotropicCones::doubt_of(const TrilinearLengths& lengths, d
         TrilinearLengths lengths;
         bool may_be_long, may_be_short;
     };
-    constexpr double rounding = 1e-9;  // of what is allowed
-    const double shown = 1 + (1 - rounding) * (factor - 1);
+    // Rounding: of what is allowed, and of places, by which cones and lengths vary.
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    const Box& box = lengths.box;
+    const double reach = std::max(box.low.cwiseAbs().maxCoeff(), box.high.cwiseAbs().maxCoeff()) +
+                         box.half_diagonal();
+    const double steepest = std::max(slope_, lengths.slope());
+    const double rounding =
+        64 * epsilon * (1 + steepest * reach / *std::ranges::min_element(lengths.at));
+    const double shown = 1 + (1 - 1e-9) * (factor - 1) - rounding;
+    if (!(shown > 1)) return Doubt{box.centre(), false};
     std::vector<Part> parts{{lengths, true, true}};
     for (int looked_at = 1; !parts.empty(); ++looked_at) {
         Part part = parts.back();
@@ -68,7 +76,7 @@ std::optional<Doubt> IsotropicCones::doubt_of_long(const TrilinearLengths& lengt
             const Leaf& leaf = tree_.leaf(number);
             // Tangents at the centre.
             const Numbers distances = leaf.distances(centre);
-            const Numbers steepness = slope_ / distances.max(1e-150);
+            const Numbers steepness = slope_ / distances.max(1e-150 * std::max(1.0, slope_));
             const Numbers x = steepness * (centre.x() - leaf.position.x);
             const Numbers y = steepness * (centre.y() - leaf.position.y);
             const Numbers z = steepness * (centre.z() - leaf.position.z);

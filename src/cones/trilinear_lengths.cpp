@@ -31,11 +31,14 @@ std::pair<TrilinearLengths, TrilinearLengths> TrilinearLengths::halves() const {
     Axis longest = 0;
     box.edges().maxCoeff(&longest);
     auto both = std::pair(*this, *this);
-    both.first.box.high[longest] = both.second.box.low[longest] = box.centre()[longest];
+    const double middle = box.centre()[longest];
+    both.first.box.high[longest] = both.second.box.low[longest] = middle;
+    // A half, but for rounding.
+    const double share = (middle - box.low[longest]) / (box.high[longest] - box.low[longest]);
     const std::size_t high = std::size_t{1} << longest;
     for (std::size_t i = 0; i < 8; ++i) {
         if ((i & high) != 0) continue;
-        both.first.at[i | high] = both.second.at[i] = 0.5 * (at[i] + at[i | high]);
+        both.first.at[i | high] = both.second.at[i] = at[i] + share * (at[i | high] - at[i]);
     }
     return both;
 }

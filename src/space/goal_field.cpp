@@ -32,6 +32,8 @@ const AdaptationGoal& require_valid(const AdaptationGoal& goal, const Box& domai
     return goal;
 }
 
+constexpr std::size_t most_remembered = 1000000;  // 130 bytes each
+
 // Some hundredth of the target, as δ.
 double negligible_for(double target) { return 0.1 * std::sqrt(target); }
 
@@ -91,12 +93,12 @@ bool GoalField::recall(const Point& x, Metric& out) const {
 }
 
 void GoalField::remember(const Point& x, const Metric& m) const {
+    if (remembered_->metrics.size() >= most_remembered) return;
     remembered_->metrics.emplace(std::array{x.x(), x.y(), x.z()}, m);
 }
 
-void GoalField::forget_if_many() const {
-    constexpr std::size_t many = 1000000;  // 130 bytes each
-    if (remembered_->metrics.size() > many) remembered_->metrics.clear();
+void GoalField::forget_if_full() const {
+    if (remembered_->metrics.size() >= most_remembered) remembered_->metrics.clear();
 }
 
 double GoalField::largest_departure(const Box& domain, const Sample& sample_space) const {
@@ -116,7 +118,7 @@ double GoalField::largest_departure(const Box& domain, const Sample& sample_spac
     sample_parallel(*this, x, exact);
     double largest = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
-        largest = std::max(largest, nonconformity(own[i], exact[i]));
+        largest = std::max(largest, strict_nonconformity(own[i], exact[i]));
     }
     return largest;
 }

@@ -13,7 +13,7 @@ using namespace controlspace;
 
 namespace {
 
-const Box domain{Point(-1, 2, 0.5), Point(1, 3, 4)};
+Box domain_at(const Point& origin) { return {origin + Point(-1, 2, 0.5), origin + Point(1, 3, 4)}; }
 
 struct Scene {
     std::vector<PointSource> sources;
@@ -38,8 +38,10 @@ struct Scene {
 // Lengths near those of the field at the corners; sources in the box, and outside of it.
 Scene random_scene(std::mt19937_64& random) {
     std::uniform_real_distribution<double> share(0, 1);
+    const Box domain = domain_at(share(random) < 0.2 ? Point(1e6, -3e6, 2e5) : Point::Zero());
     Scene scene;
-    scene.g = share(random) < 0.5 ? 1.25 : 1 + 4 * share(random);
+    const double kind = share(random);
+    scene.g = kind < 0.5 ? 1.25 : kind < 0.6 ? 1 : 1 + 4 * share(random);
     scene.cap = share(random) < 0.3 ? 0.5 : 10;
     const auto count = static_cast<std::size_t>(1 + 60 * std::pow(share(random), 3));
     for (const Point& x : random_points(domain, count, random())) {
@@ -120,11 +122,26 @@ TEST_CASE("lengths that are shown to follow isotropic cones do so everywhere, ot
 TEST_CASE("without sources lengths are compared with the largest") {
     const IsotropicCones cones({}, 1.25, 2);
     IsotropicCones::Hint hint = 0;
-    TrilinearLengths lengths{domain, {}};
+    TrilinearLengths lengths{domain_at(Point::Zero()), {}};
     lengths.at.fill(2);
     CHECK_FALSE(cones.doubt_of(lengths, 1.1, hint));
     lengths.at.fill(1.5);
     const auto doubt = cones.doubt_of(lengths, 1.1, hint);
     REQUIRE(doubt);
     CHECK(doubt->is_certain);
+}
+
+TEST_CASE("what rounding hides is not shown") {
+    const PointSource source{Point(0, 2.5, 2), Metric::isotropic(0.1)};
+    const IsotropicCones cones({&source, 1}, 1.25, 10);
+    IsotropicCones::Hint hint = 0;
+    const Box box{Point(0.5, 2.5, 2), Point(0.5 + 1e-9, 2.5 + 1e-9, 2 + 1e-9)};
+    TrilinearLengths lengths{box, {}};
+    for (int c = 0; c < 8; ++c) {
+        lengths.at[static_cast<std::size_t>(c)] = cones.smallest_length(corner(box, c), hint);
+    }
+    CHECK_FALSE(cones.doubt_of(lengths, 1 + 1e-6, hint));
+    const auto doubt = cones.doubt_of(lengths, 1 + 1e-15, hint);
+    REQUIRE(doubt);
+    CHECK_FALSE(doubt->is_certain);
 }

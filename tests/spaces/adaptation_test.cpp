@@ -233,19 +233,24 @@ CASE_OF_EACH(entry, vertex_trees(), "few sources: vertices keep the target every
 }
 
 CASE_OF_EACH(entry, all_trees(), "the same tree, whatever the number of threads") {
-    const std::vector<PointSource> sources = sample_sphere({.h = 0.08});
     const std::vector<Point> x = random_points(domain, 2000, 23);
     std::vector<Metric> one(x.size());
     std::vector<Metric> many(x.size());
-    const auto fill = [&](std::size_t threads, std::span<Metric> out) {
+    const auto fill = [&](const AdaptationGoal& goal, std::size_t threads, std::span<Metric> out) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         const auto space = editable(entry.make({.domain = domain}));
-        const double reached = space->adapt({sources, nullptr, g, 0.2}).reached;
+        const double reached = space->adapt(goal).reached;
         space->sample(x, out);
         return reached;
     };
-    CHECK(fill(1, one) == fill(4, many));
-    CHECK(one == many);
+    const std::vector<PointSource> isotropic = sample_sphere({.h = 0.08});
+    const std::vector<PointSource> discs = tensors(80);
+    for (const AdaptationGoal& goal :
+         {AdaptationGoal{isotropic, nullptr, g, 0.2}, AdaptationGoal{discs, nullptr, g, 1.0}}) {
+        CAPTURE(goal.sources.size());
+        CHECK(fill(goal, 1, one) == fill(goal, 4, many));
+        CHECK(one == many);
+    }
 }
 
 CASE_OF_EACH(entry, all_trees(),
@@ -306,6 +311,15 @@ TEST_CASE("a target out of reach is told, with what was reached") {
         CHECK(report.reached > 0.1);
         CHECK(report.shortfall.find("raise target_delta or the depth") != std::string::npos);
         CHECK(space->footprint().cells == 64);
+    }
+    for (const CatalogueEntry& entry : vertex_trees()) {
+        CAPTURE(entry.id);
+        const auto space =
+            editable(entry.make({.domain = domain, .kd_depth = 6, .octree_depth = 2}));
+        const AdaptationReport report = space->adapt({sources, nullptr, g, 0.1});
+        CHECK_FALSE(report.met);
+        CHECK(report.reached > 0.1);
+        CHECK(report.shortfall.find("raise target_delta or the depth") != std::string::npos);
     }
     for (const CatalogueEntry& entry : structures()) {
         if (entry.id != "uniform-nearest") continue;

@@ -207,15 +207,19 @@ TEST_CASE("graded by the sources, structures err between nodes only") {
     CHECK(sources.number("bytes_total") == queue.number("bytes_total"));
 }
 
-TEST_CASE("the ratio left is that of the law that was graded by") {
-    Study study = small_study({"K_oV"});
-    study.runs[0]["schedule"] = {"queue", "sources"};
-    study.runs[0]["law"] = {"mean-length"};
-    const auto rows = run(study, tree_catalogue());
-    REQUIRE(rows.size() == 2);
-    // Of this law the exact field knows nothing: both are graded from node to node.
-    CHECK(rows[1].number("delta_R_mean") == rows[0].number("delta_R_mean"));
-    CHECK(rows[1].number("gradation_max_left") == rows[0].number("gradation_max_left"));
+TEST_CASE("the ratio left is that of the law and of the neighbours that were graded by") {
+    // Of this law the exact field knows nothing: both schedules grade from node to node.
+    for (const char* neighbourhood : {"faces", "all"}) {
+        CAPTURE(neighbourhood);
+        Study study = small_study({"K_oV"});
+        study.runs[0]["schedule"] = {"queue", "sources"};
+        study.runs[0]["law"] = {"mean-length"};
+        study.runs[0]["neighbourhood"] = {neighbourhood};
+        const auto rows = run(study, tree_catalogue());
+        REQUIRE(rows.size() == 2);
+        CHECK(rows[1].number("delta_R_mean") == rows[0].number("delta_R_mean"));
+        CHECK(rows[1].number("gradation_max_left") == rows[0].number("gradation_max_left"));
+    }
 }
 
 TEST_CASE("structures that answer otherwise when made again have no times") {

@@ -89,7 +89,8 @@ CSPACE_API cspace_status cspace_grade(cspace* space, double ratio);
 /** Replaces the whole content, instead of insertion and gradation, by the graded field of `n`
  * sources with metrics M, whose lengths grow with the distance by `ratio` (g_r >= 1); a tree is
  * refined until its non-conformity (delta) to that field is at most `target` (above 0, for example
- * 0.1). `reached`, unless NULL, receives the largest delta found. */
+ * 0.1). `reached`, unless NULL, receives the largest delta found, above `target` if that was
+ * missed; infinity where a tree could not show that it was met. */
 CSPACE_API cspace_status cspace_adapt(cspace* space, size_t n, const double* positions,
                                       const double* metrics, double ratio, double target,
                                       double* reached);

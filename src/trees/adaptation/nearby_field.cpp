@@ -15,6 +15,7 @@ struct NearbyField::Search {
     bool is_gathered = false;
     bool are_few = false;
 
+    bool takes_long() const { return !field.cones().is_isotropic(); }
     void gather() {
         if (is_gathered) return;
         is_gathered = true;
@@ -55,7 +56,7 @@ void NearbyField::evaluate(std::span<const Point> x, std::span<Metric> out) {
 
 double NearbyField::evaluate_roughly(std::span<const Point> x, bool shared, std::span<Metric> out) {
     const GoalField& field = search_->field;
-    if (shared && !field.has_ranges()) {
+    if (shared && search_->takes_long()) {
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = at(x[i]);
         return 1;
     }
@@ -70,7 +71,7 @@ double NearbyField::evaluate_roughly(std::span<const Point> x, bool shared, std:
 
 Metric NearbyField::at(const Point& x) {
     const GoalField& field = search_->field;
-    const bool takes_long = !field.has_ranges();
+    const bool takes_long = search_->takes_long();
     Metric m;
     if (takes_long && field.recall(x, m)) return m;
     search_->by_memory({&x, 1}, {&m, 1});

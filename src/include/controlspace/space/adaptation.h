@@ -25,13 +25,14 @@ struct AdaptationGoal {
 };
 
 struct AdaptationReport {
-    /// Where all is isotropic and no source continuous: a δ that is shown, by bounds, to be kept
-    /// everywhere; not so of K_Li and K_oLi, and of leaves that were not to be cut, where `met` is
-    /// false. Otherwise the largest sampled δ: at sources, next to them in the leaves beside them,
-    /// at places that the structure was not fitted to, and uphill from the worst of these; below
-    /// 3/4 of the target, a bound of it. A peak between places may be higher.
+    /// For trees, where all is isotropic and no source continuous, but not for K_Li and K_oLi: a δ
+    /// that is shown, by bounds, to be kept everywhere; above the target, one that was found, or
+    /// infinity where neither could be shown in a leaf that was not to be cut. Otherwise the
+    /// largest sampled δ; below 3/4 of the target, a bound of it. Samples are taken at sources and
+    /// next to them in the leaves beside them, at places that the structure was not fitted to, and
+    /// by hill climbs from the worst of these; a peak between them may be higher.
     double reached = 0;
-    bool met = false;       ///< reached <= target, and shown to be
+    bool met = false;       ///< reached <= target
     std::string shortfall;  ///< why it was not met, and what would help; empty where it was
 };
 

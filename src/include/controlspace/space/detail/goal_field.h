@@ -35,15 +35,15 @@ public:
 
     /// Answers metrics at places.
     using Sample = std::function<void(std::span<const Point>, std::span<Metric>)>;
-    /// Largest δ between what `sample` answers and the field, at places all over the domain and
-    /// near to sources.
+    /// Largest δ, strictly, between what `sample` answers and the field, at places all over the
+    /// domain and near to sources.
     double largest_departure(const Box& domain, const Sample& sample) const;
 
-    /// Metrics that were evaluated at places which are asked for again: the caller decides which.
-    /// Thread-safe, but for `forget_if_many`.
+    /// Cached metrics at places shared by leaves, up to some number of them. Thread-safe, but for
+    /// `forget_if_full`.
     bool recall(const Point& x, Metric& out) const;
     void remember(const Point& x, const Metric& m) const;
-    void forget_if_many() const;
+    void forget_if_full() const;
 
     const ConeField& cones() const { return *cones_; }
     /// Relative shortening of lengths that is left out.

@@ -29,7 +29,10 @@ class TreeAdaptation {
 public:
     TreeAdaptation(const Topology<Node>& tree, Storage& storage, const GoalField& field,
                    const AdaptationGoal& goal)
-        : tree_(tree), storage_(storage), field_(field), next_to_sources_(tree, storage, field) {
+        : tree_(tree),
+          storage_(storage),
+          field_(field),
+          next_to_sources_(tree, storage, field, goal.sources) {
         if (field.has_ranges()) {
             for (const std::uint32_t i : field.kept()) {
                 sources_.push_back(goal.sources[i].position);
@@ -41,7 +44,6 @@ public:
             sample_parallel(field, sources_, at_sources_);
         }
         leaf_of_source_.resize(sources_.size(), 0);
-        if (!has_bounds()) next_to_sources_.take(goal.sources);
     }
 
     /// `split(box, along, cut)` cuts the leaf with that box, across an axis for which `along`
@@ -50,7 +52,8 @@ public:
     ///
     /// Leaves are sampled in their LeafPlaces; if `proved`, those that pass also at other places.
     /// Leaves above the target are fitted anew or cut, and sampled again. Returns the largest
-    /// departure that is left.
+    /// departure that is left; infinite if some leaf was not to be cut, and neither shown to keep
+    /// the target nor found to exceed it.
     template <class Split>
     double run(bool proved, Split&& split) {
         states_.assign(tree_.leaves(), LeafState::fresh);
@@ -71,9 +74,6 @@ public:
         return left;
     }
 
-    /// Whether the target could not be shown to be kept in a leaf that was not to be cut.
-    bool is_unproved() const { return is_unproved_; }
-
 private:
     enum class LeafState : std::uint8_t { settled, changed, fresh };
 
@@ -81,7 +81,7 @@ private:
     // whether some have to be sampled again.
     template <class Split>
     bool round(bool proved, Split&& split) {
-        field_.forget_if_many();
+        field_.forget_if_full();
         const std::vector<LeafBox> young = leaves_in_state(LeafState::changed);
         if (proved && covers()) {
             cover(young);
@@ -108,8 +108,8 @@ private:
             const bool is_cut = split(l.box, departure.along, cut);
             changes = is_cut || changes;
             if (!is_cut && departure.is_unknown()) {
-                departure = at_some_places(l);
-                is_unproved_ = true;
+                const Departure found = at_some_places(l);
+                if (found.worst > field_.target()) departure = found;
             }
             departures_.resize(tree_.leaves());
             states_.resize(tree_.leaves(), LeafState::fresh);
@@ -184,7 +184,7 @@ private:
     // At their own places, if fresh, and, if `proved`, at places that no leaf has been fitted to:
     // some in each leaf, more in a large one, and the more the closer the target.
     void sample(std::span<const LeafBox> leaves, bool proved) {
-        const double places_in_domain = 5e3 / field_.target();
+        const double places_in_domain = std::min(5e3 / field_.target(), 1e7);
         const std::uint64_t places_at_least = field_.has_ranges() ? 64 : 16;  // quick, or not
         const double volume = tree_.domain().edges().prod();
         std::vector<std::uint64_t> first(leaves.size() + 1, places_used_);
@@ -231,9 +231,9 @@ private:
                 }
             } else {
                 elsewhere = judge.at_sequence(l, nearby, first[i], first[i + 1]);
-                judge.climb(l, nearby, elsewhere);
             }
             departure.take(elsewhere.worst, elsewhere.where);
+            if (!has_bounds()) judge.climb(l, nearby, departure);
             departure.is_elsewhere = is_bad();
         });
     }
@@ -281,7 +281,6 @@ private:
     std::vector<LeafState> states_;      // of the leaves
     std::vector<Departure> departures_;  // likewise
     std::uint64_t places_used_ = 0;
-    bool is_unproved_ = false;
 };
 
 }  // namespace controlspace

@@ -73,7 +73,7 @@ protected:
             too_deep = too_deep || !done;
             return done;
         });
-        report.met = report.reached <= goal.target && !adaptation.is_unproved();
+        report.met = report.reached <= goal.target;
         if (too_deep) {
             report.shortfall = depth_shortfall(cuts().max_depth());
         } else if (too_short) {

@@ -96,17 +96,19 @@ public:
         return departure;
     }
 
-    /// At a place where the departure is no less than what `suspected` says.
-    void examine(const LeafBox& of, NearbyField& nearby, const Departure& suspected,
+    /// At a place where the departure is estimated; far above the target the estimate will do.
+    void examine(const LeafBox& of, NearbyField& nearby, const Departure& estimate,
                  Departure& departure) const {
-        if (suspected.worst == 0) return;
-        departure.take(suspected.worst, suspected.where);
-        if (suspected.worst > target_) return;
-        compare_with(of, nearby, {&suspected.where, 1}, false, departure, {});
+        constexpr double far_above = 1.2;
+        if (estimate.worst == 0) return;
+        if (estimate.worst > far_above * target_) {
+            departure.take(estimate.worst, estimate.where);
+        } else {
+            compare_with(of, nearby, {&estimate.where, 1}, false, departure, {});
+        }
     }
 
-    /// What is found by going uphill from the worst of some places, where that is not far below the
-    /// target.
+    /// Hill climb from the worst place so far, where that is not far below the target.
     void climb(const LeafBox& of, NearbyField& nearby, Departure& departure) const {
         constexpr int rounds = 5;
         constexpr double near = 0.5;

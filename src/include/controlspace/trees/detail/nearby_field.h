@@ -23,9 +23,8 @@ public:
     void enter(const Box& box, bool at_many_points);
 
     void evaluate(std::span<const Point> x, std::span<Metric> out);
-    /// The same, or longer by a factor less than the one returned, where that is quicker. Of
-    /// places that leaves have in common, if they are `shared`, none is evaluated twice, where that
-    /// takes long.
+    /// The same, or longer by a factor less than the one returned, where that is quicker. Places
+    /// that are `shared` by leaves are evaluated once, where that takes long.
     double evaluate_roughly(std::span<const Point> x, bool shared, std::span<Metric> out);
     /// The same, exactly, at any point, shared, which best is near to the one before.
     Metric at(const Point& x);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -23,38 +24,32 @@
 
 namespace controlspace {
 
-/// Finds where leaves ask for more than single sources do. The cone of a source is the smallest at
-/// the source, and in a leaf at the place that is nearest to it in the source's metric: there the
-/// exact field may have a minimum that no other place of the leaf shows.
+/// Finds where the metric of a leaf exceeds the cone of a single source. A cone is the smallest at
+/// its source, and in a leaf at the place that is nearest to the source in the source's metric:
+/// there the exact field may have a minimum that no other place of the leaf shows.
 template <class Node, class Storage>
 class NextToSources {
 public:
-    NextToSources(const Topology<Node>& tree, const Storage& storage, const GoalField& field)
-        : tree_(tree), storage_(storage), field_(field) {}
+    /// The sources must outlive it.
+    NextToSources(const Topology<Node>& tree, const Storage& storage, const GoalField& field,
+                  std::span<const PointSource> sources)
+        : tree_(tree), storage_(storage), field_(field), sources_(sources) {}
 
-    void take(std::span<const PointSource> sources) {
-        cones_.resize(sources.size());
-        in_parallel(sources.size(), [&](std::size_t i) {
-            EigenFrame frame = eigen_frame(sources[i].metric);
-            for (double& length : frame.lengths) length = 1 / (length * length);
-            cones_[i] = {sources[i], metric_from_frame(frame.lengths, frame.directions)};
-        });
-    }
-
-    /// Of each leaf, the place where it exceeds a cone most, and a lower bound of its departure
-    /// from the field there; nothing if that is far below the target. Few sources are compared with
-    /// all `leaves`, many with those leaves beside their own of which `is_wanted(leaf)` holds.
+    /// Of each leaf, the place where it exceeds a cone most, and an estimate of its departure from
+    /// the field there; nothing if that is far below the target. Few sources are compared with all
+    /// `leaves`, many with those leaves beside their own of which `is_wanted(leaf)` holds.
     template <class IsWanted>
-    std::vector<Departure> worst(std::span<const LeafBox> leaves, const IsWanted& is_wanted) const {
+    std::vector<Departure> worst(std::span<const LeafBox> leaves, const IsWanted& is_wanted) {
         constexpr std::size_t few = 64;
+        find_inverse_squares();
         std::vector<Departure> worst(tree_.leaves());
-        if (cones_.size() <= few) {
+        if (sources_.size() <= few) {
             in_parallel(leaves.size(), [&](std::size_t i) {
-                for (const Cone& cone : cones_) {
-                    Departure departure = at(cone, leaves[i]);
+                for (std::size_t k = 0; k < sources_.size(); ++k) {
+                    Departure departure = at_nearest_place(k, leaves[i]);
                     if constexpr (HasTrilinearLeaves<Storage>) {
                         if (!(departure.worst > field_.target())) {
-                            find_exceeded(cone, leaves[i], departure);
+                            find_exceeded(k, leaves[i], departure);
                         }
                     }
                     raise(worst[leaves[i].leaf], departure);
@@ -63,11 +58,10 @@ public:
             return worst;
         }
         tbb::enumerable_thread_specific<std::vector<std::pair<LeafIndex, Departure>>> found;
-        in_parallel(cones_.size(), [&](std::size_t i) {
-            const Cone& cone = cones_[i];
-            for_each_leaf_beside(cone.source.position, [&](const LeafPlace& beside) {
+        in_parallel(sources_.size(), [&](std::size_t i) {
+            for_each_leaf_beside(sources_[i].position, [&](const LeafPlace& beside) {
                 if (!is_wanted(beside.leaf)) return;
-                const Departure departure = at(cone, {beside.leaf, beside.box});
+                const Departure departure = at_nearest_place(i, {beside.leaf, beside.box});
                 if (departure.worst > 0) found.local().emplace_back(beside.leaf, departure);
             });
         });
@@ -78,10 +72,15 @@ public:
     }
 
 private:
-    struct Cone {
-        PointSource source;
-        Metric inverse_square;
-    };
+    void find_inverse_squares() {
+        if (!inverse_squares_.empty()) return;
+        inverse_squares_.resize(sources_.size());
+        in_parallel(sources_.size(), [&](std::size_t i) {
+            EigenFrame frame = eigen_frame(sources_[i].metric);
+            for (double& length : frame.lengths) length = 1 / (length * length);
+            inverse_squares_[i] = metric_from_frame(frame.lengths, frame.directions);
+        });
+    }
 
     // Whatever the order in which they come.
     static void raise(Departure& worst, const Departure& departure) {
@@ -91,11 +90,11 @@ private:
         if (order(worst) < order(departure)) worst = departure;
     }
 
-    Departure at(const Cone& cone, const LeafBox& of) const {
+    Departure at_nearest_place(std::size_t source, const LeafBox& of) const {
         constexpr double of_interest = 0.25;
-        const Point x = nearest_place(cone, of.box);
+        const Point x = nearest_place(source, of.box);
         const Metric own = value_in(tree_, field_of(storage_), of.leaf, x);
-        const auto& [position, metric] = cone.source;
+        const auto& [position, metric] = sources_[source];
         const double factor = 1 + (field_.ratio() - 1) * metric_length(metric, x - position);
         Departure departure;
         if (!is_within(own, 1, factor * metric)) {
@@ -115,9 +114,10 @@ private:
     // directions at once. They do so nowhere in a box if they do not at its corners, when the
     // cone's factor, which is convex, is replaced by a tangent: |T(x) M^-1| is a convex function of
     // T, and T a mean of the corners'.
-    void find_exceeded(const Cone& cone, const LeafBox& of, Departure& departure) const {
+    void find_exceeded(std::size_t source, const LeafBox& of, Departure& departure) const {
         constexpr std::size_t most_parts = 256;
-        const auto& [q, metric] = cone.source;
+        const auto& [q, metric] = sources_[source];
+        const Eigen::Matrix3d inverse_square = inverse_squares_[source].matrix();
         const double slope = field_.ratio() - 1;
         const double most = largest_factor_within(field_.target());
         const auto metrics = storage_.metrics().field();
@@ -130,8 +130,7 @@ private:
             parts.pop_back();
             const Point centre = part.box.centre();
             const double distance = std::max(metric_length(metric, centre - q), 1e-150);
-            const Vector steepness =
-                slope / distance * (cone.inverse_square.matrix() * (centre - q));
+            const Vector steepness = slope / distance * (inverse_square * (centre - q));
             bool is_doubtful = false;
             for (int c = 0; c < 8; ++c) {
                 const Point x = corner(part.box, c);
@@ -142,7 +141,8 @@ private:
                 const double factor = 1 + slope * metric_length(metric, x - q);
                 if (is_within(own, most * factor, metric)) continue;
                 const Metric within = intersection(own, factor * metric);
-                return departure.take(strict_nonconformity(own, within), x);
+                departure.take(strict_nonconformity(own, within), x);
+                if (departure.worst > field_.target()) return;
             }
             if (is_doubtful) halve(part, metric, parts);
         }
@@ -166,11 +166,11 @@ private:
     }
 
     // A quadratic function has its minimum in a box inside of it, in a face, an edge or a corner.
-    static Point nearest_place(const Cone& cone, const Box& box) {
-        const Point& q = cone.source.position;
+    Point nearest_place(std::size_t source, const Box& box) const {
+        const Point& q = sources_[source].position;
         Point nearest = q.cwiseMax(box.low).cwiseMin(box.high);
-        if (is_isotropic(cone.source.metric) || nearest == q) return nearest;
-        const Eigen::Matrix3d a = cone.inverse_square.matrix();
+        if (is_isotropic(sources_[source].metric) || nearest == q) return nearest;
+        const Eigen::Matrix3d a = inverse_squares_[source].matrix();
         double least = (nearest - q).dot(a * (nearest - q));
         for (int sides = 0; sides < 27; ++sides) {
             // Coordinates on a side are given, at the others the slope is zero.
@@ -197,12 +197,13 @@ private:
     void for_each_leaf_beside(const Point& x, const Visit& visit) const {
         const Box box = tree_.locate(x).box;
         const Point centre = box.centre();
-        const Vector beyond = 1e-9 * box.edges();
+        constexpr double infinity = std::numeric_limits<double>::infinity();
         for (int sides = 1; sides < 8; ++sides) {
             Point p = x;
             for (Axis a = 0; a < 3; ++a) {
                 if ((sides >> a & 1) == 0) continue;
-                p[a] = x[a] < centre[a] ? box.low[a] - beyond[a] : box.high[a] + beyond[a];
+                p[a] = x[a] < centre[a] ? std::nextafter(box.low[a], -infinity)
+                                        : std::nextafter(box.high[a], infinity);
             }
             if (tree_.domain().contains(p)) visit(tree_.locate(p));
         }
@@ -211,7 +212,8 @@ private:
     const Topology<Node>& tree_;
     const Storage& storage_;
     const GoalField& field_;
-    std::vector<Cone> cones_;
+    std::span<const PointSource> sources_;
+    std::vector<Metric> inverse_squares_;  // of the sources, once they are needed
 };
 
 }  // namespace controlspace
