@@ -185,7 +185,7 @@ private:
     // some in each leaf, more in a large one, and the more the closer the target.
     void sample(std::span<const LeafBox> leaves, bool proved) {
         const double places_in_domain = std::min(5e3 / field_.target(), 1e7);
-        const std::uint64_t places_at_least = field_.has_ranges() ? 64 : 16;  // quick, or not
+        constexpr std::uint64_t places_at_least = 16;
         const double volume = tree_.domain().edges().prod();
         std::vector<std::uint64_t> first(leaves.size() + 1, places_used_);
         for (std::size_t i = 0; i < leaves.size(); ++i) {
