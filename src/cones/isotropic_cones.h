@@ -42,8 +42,8 @@ public:
     Range range_in(const Box& box, Hint& hint) const;
 
     /// Whether lengths are, everywhere in their box, at most `factor` times longer or shorter than
-    /// the smallest length of all cones: then nothing, else where not. It is shown by bounds,
-    /// `hint` as in `smallest_length`.
+    /// the smallest length of all cones: then nothing, else a place where not, or where bounds
+    /// could not show it. `hint` as in `smallest_length`.
     std::optional<Doubt> doubt_of(const TrilinearLengths& lengths, double factor, Hint& hint) const;
 
     /// Index of the source that has the `smallest` length at `p`, one of them where several have;
