@@ -38,6 +38,10 @@ Study study_of(const Compare& job) {
     Study study = file.empty() ? Study{} : read_study(file, program_parameters());
     const GivenSettings given = given_settings(job.given);
     apply(given, study);
+    const bool is_named = !file.empty() || study.name != Study{}.name;
+    if (!is_named && study.sources.kind == SourcesKind::file) {
+        study.name = study.sources.file.stem().string();
+    }
     if (job.as_published) {
         for (Run& run : study.runs) {
             run["law"] = {"mean-length"};

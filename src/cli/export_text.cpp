@@ -1,5 +1,6 @@
 // Formats of `export` that need no external library: tables, views and solutions.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <memory>
 
@@ -7,6 +8,7 @@
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
 #include "io/text/medit.h"
+#include "io/text/pos.h"
 
 namespace controlspace {
 namespace {
@@ -31,6 +33,17 @@ std::string write_node_table(const Export& e) {
     return written(e, fmt::format("{} control nodes", sources.size()));
 }
 
+std::string write_view(const Export& e) {
+    const PosCells cells = write_pos_cells(e.output, *e.filled.space);
+    if (cells.has_tensors) {
+        spdlog::warn(
+            "{} holds tensors, which Gmsh's default mesher ignores in a view: use them with MMG or "
+            "BAMG, or write a .sol",
+            e.output.string());
+    }
+    return written(e, fmt::format("{} hexahedra", cells.count));
+}
+
 }  // namespace
 
 std::vector<FieldFormat> add_text_formats(Options& options) {
@@ -39,7 +52,8 @@ std::vector<FieldFormat> add_text_formats(Options& options) {
     options.add({"--mesh", "FILE",
                  "The mesh (.mesh, .meshb) at whose vertices the field is sampled", group},
                 *mesh);
-    return {{{".csv", ".pos"}, write_node_table},
+    return {{{".csv"}, write_node_table},
+            {{".pos"}, write_view},
             {{".sol", ".solb"},
              [mesh](const Export& e) { return write_solution(e, *mesh); },
              group,

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <type_traits>
 
 #include "cli/paper_reference.h"
 
@@ -25,6 +27,23 @@ void describe(CLI::Option& option, const OptionText& text) {
     if (!text.group.empty()) option.group(text.group);
 }
 
+/// What is between commas, where CLI11 would leave out what is empty.
+std::vector<std::string> items_of(const std::string& word) {
+    std::vector<std::string> items;
+    for (std::size_t first = 0;;) {
+        const std::size_t end = word.find(',', first);
+        items.push_back(word.substr(first, end - first));
+        if (end == std::string::npos) return items;
+        first = end + 1;
+    }
+}
+
+/// "-" is standard input, or output.
+void take_dash(CLI::Option& option) {
+    const char* stream = option.check_lname("output") ? "/dev/stdout" : "/dev/stdin";
+    option.transform([stream](std::string name) { return name == "-" ? stream : name; });
+}
+
 }  // namespace
 
 void Options::add(const OptionText& text, bool& value) {
@@ -35,7 +54,9 @@ void Options::add(const OptionText& text, bool& value) {
 
 template <class Value>
 void Options::add(const OptionText& text, Value& value) {
-    describe(*command_->add_option(text.name, value, text.help), text);
+    CLI::Option& option = *command_->add_option(text.name, value, text.help);
+    describe(option, text);
+    if constexpr (std::is_same_v<Value, std::filesystem::path>) take_dash(option);
 }
 template void Options::add(const OptionText&, double&);
 template void Options::add(const OptionText&, int&);
@@ -65,11 +86,11 @@ void Options::add_parameter(const OptionText& text, ValueType type, std::size_t 
     const std::string default_text =
         defaults.empty() ? "" : fmt::format(" (default: {})", to_string(defaults));
     CLI::Option* option = command_->add_option(text.name, words, text.help + default_text);
-    option->delimiter(',')->group(text.group)->option_text(type_name(type, at_most));
+    option->group(text.group)->option_text(type_name(type, at_most));
     if (at_most > 1) {
-        option->expected(static_cast<int>(at_most));
+        option->delimiter(',')->expected(static_cast<int>(at_most));
     } else {
-        option->allow_extra_args(false);
+        option->allow_extra_args(false);  // given_settings() splits it
     }
 }
 
@@ -114,7 +135,17 @@ std::vector<std::string> Options::given_of(const std::string& group) const {
 GivenSettings given_settings(const WordsByKey& given) {
     GivenSettings settings;
     for (const auto& [key, words] : given) {
-        if (!words.empty()) settings.emplace_back(key, words);
+        if (words.empty()) continue;
+        std::vector<std::string> all;
+        for (const std::string& word : words) {
+            const std::vector<std::string> items = items_of(word);
+            if (items.size() > 1 && std::ranges::count(items, "") > 0) {
+                throw InputError(fmt::format("{} {}: a comma without a value: leave it out",
+                                             option_name(key), word));
+            }
+            all.insert(all.end(), items.begin(), items.end());
+        }
+        settings.emplace_back(key, std::move(all));
     }
     return settings;
 }

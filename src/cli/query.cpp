@@ -1,6 +1,7 @@
 // The command `query`: writes the metrics of one structure at given points.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "cli/input_study.h"
 #include "cli/options.h"
 #include "cli/progress.h"
+#include "cli/standard_output.h"
 #include "io/text/csv.h"
 
 namespace controlspace {
@@ -40,6 +42,15 @@ int query(const Query& job) {
     std::vector<PointSource> answers(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) answers[i] = {points[i], metrics[i]};
     write_csv_sources(job.output, answers);
+    const Box domain = filled.space->domain();
+    const auto outside =
+        std::ranges::count_if(points, [&](const Point& p) { return !domain.contains(p); });
+    if (outside > 0) {
+        print_error(
+            fmt::format("{} of {} points are outside the domain {}: they have the metric of its "
+                        "nearest point\n",
+                        outside, points.size(), to_string(domain)));
+    }
     return report_remark(filled);
 }
 

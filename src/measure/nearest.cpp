@@ -1,5 +1,8 @@
 #include "measure/nearest.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
@@ -18,6 +21,9 @@ public:
         std::iota(order_.begin(), order_.end(), NodeIndex{0});
         build(0, order_.size());
     }
+
+    /// Points that follow each other lie near each other.
+    std::span<const NodeIndex> order() const { return order_; }
 
     using Found = std::vector<std::pair<double, NodeIndex>>;  ///< squared distance, point
 
@@ -81,14 +87,27 @@ private:
 
 NodeGraph nearest_neighbours(std::span<const Point> points, std::size_t most) {
     const PointTree tree(points);
+    std::vector<NodeIndex> nearest(points.size() * most);
     NodeGraph graph;
     graph.positions.assign(points.begin(), points.end());
-    graph.first.push_back(0);
-    PointTree::Found found;
-    for (const Point& x : points) {
-        tree.find(x, most, found);
-        for (const auto& [squared, i] : found) graph.neighbours.push_back(i);
-        graph.first.push_back(graph.neighbours.size());
+    graph.first.assign(points.size() + 1, 0);
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, points.size(), 1024), [&](const auto& some) {
+            PointTree::Found found;
+            for (std::size_t k = some.begin(); k < some.end(); ++k) {
+                const NodeIndex i = tree.order()[k];
+                tree.find(points[i], most, found);
+                graph.first[i + 1] = found.size();
+                std::ranges::transform(found,
+                                       nearest.begin() + static_cast<std::ptrdiff_t>(i * most),
+                                       [](const auto& place) { return place.second; });
+            }
+        });
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto begin = nearest.begin() + static_cast<std::ptrdiff_t>(i * most);
+        graph.neighbours.insert(graph.neighbours.end(), begin,
+                                begin + static_cast<std::ptrdiff_t>(graph.first[i + 1]));
+        graph.first[i + 1] += graph.first[i];
     }
     return graph;
 }

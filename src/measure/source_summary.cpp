@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "controlspace/error.h"
@@ -14,23 +15,37 @@ namespace {
 
 constexpr std::size_t near_sources = 6;
 
-std::size_t count_contradictory(std::span<const PointSource> sources) {
+/// The smallest source at each place, and how many share their place with a different one.
+struct DistinctPlaces {
+    std::vector<Point> positions;
+    std::vector<Metric> metrics;
+    std::size_t contradictory = 0;
+};
+
+DistinctPlaces distinct_places(std::span<const PointSource> sources) {
     std::vector<std::size_t> order(sources.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
         return precedes(sources[i].position, sources[j].position);
     });
-    std::size_t count = 0;
+    DistinctPlaces places;
     for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
+        const auto& [position, metric] = sources[order[first]];
+        places.positions.push_back(position);
+        places.metrics.push_back(metric);
         bool all_alike = true;
+        double shortest = mean_length(metric);
         for (last = first + 1; last < order.size(); ++last) {
             const PointSource& source = sources[order[last]];
-            if (source.position != sources[order[first]].position) break;
-            all_alike = all_alike && source.metric == sources[order[first]].metric;
+            if (source.position != position) break;
+            all_alike = all_alike && source.metric == metric;
+            const double length = mean_length(source.metric);
+            if (length < shortest) places.metrics.back() = source.metric;
+            shortest = std::min(shortest, length);
         }
-        if (!all_alike) count += last - first;
+        if (!all_alike) places.contradictory += last - first;
     }
-    return count;
+    return places;
 }
 
 }  // namespace
@@ -56,19 +71,18 @@ LengthSummary summarise_lengths(std::span<const Metric> metrics) {
 SourceSummary summarise(std::span<const PointSource> sources) {
     if (sources.empty()) throw InputError("there are no sources: give one at least");
     SourceSummary summary;
-    summary.contradictory = count_contradictory(sources);
+    const DistinctPlaces places = distinct_places(sources);
+    summary.contradictory = places.contradictory;
     summary.extent = {sources.front().position, sources.front().position};
-    std::vector<Point> positions;
     std::vector<Metric> metrics;
     for (const auto& [position, metric] : sources) {
-        positions.push_back(position);
         metrics.push_back(metric);
         summary.extent.low = summary.extent.low.cwiseMin(position);
         summary.extent.high = summary.extent.high.cwiseMax(position);
     }
     static_cast<LengthSummary&>(summary) = summarise_lengths(metrics);
-    summary.gradation =
-        largest_gradation(nearest_neighbours(positions, near_sources), metrics, GradationLaw::cone);
+    summary.gradation = largest_gradation(nearest_neighbours(places.positions, near_sources),
+                                          places.metrics, GradationLaw::cone);
     return summary;
 }
 

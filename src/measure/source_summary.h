@@ -25,7 +25,8 @@ struct SourceSummary : LengthSummary {
     std::size_t contradictory = 0;  ///< number of sources at the position of a different one
     Box extent;                     ///< the smallest box around them
     /// Largest gradation ratio, under the cone law, from a source to one of the six nearest at
-    /// other positions: gradation with a smaller ratio shortens lengths of the sources.
+    /// other positions: gradation with a smaller ratio shortens lengths of the sources. Of those
+    /// that share a position, the one with the smallest mean length counts.
     double gradation = 1;
 };
 

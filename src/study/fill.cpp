@@ -73,6 +73,11 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     if (c.schedule == GradationSchedule::sources && entry.has<MetricNodes>()) {
         add_largest_ratio(creation.gradation, *space, c.law, c.neighbourhood);
     }
+    if (c.max_depth && space->footprint().depth >= *c.max_depth) {
+        creation.remark = fmt::format(
+            "has leaves of level {}, the deepest allowed: edges there may be longer than tau",
+            *c.max_depth);
+    }
     return filled;
 }
 

@@ -78,8 +78,6 @@ StoredResults read_results(const std::filesystem::path& folder, const StudyRows&
 
 std::vector<Row> rows_to_go_on_from(const StoredResults& earlier, const Study& study,
                                     std::span<const Case> cases, const Provenance& now) {
-    if (earlier.complete) throw InputError("these results are complete: nothing is left to run");
-    require_same_program(earlier.provenance, now);
     require_same_settings(earlier.study, study);
     for (std::size_t i = 0; i < earlier.rows.size(); ++i) {
         if (i < cases.size() && is_outcome_of(earlier.rows[i], cases[i])) continue;
@@ -87,6 +85,8 @@ std::vector<Row> rows_to_go_on_from(const StoredResults& earlier, const Study& s
             "row {} is {}, which is no case {} of this study: give the study that was interrupted",
             i + 1, structure_label(earlier.rows[i].setting), i + 1));
     }
+    if (earlier.complete) throw InputError("these results are complete: nothing is left to run");
+    require_same_program(earlier.provenance, now);
     return earlier.rows;
 }
 

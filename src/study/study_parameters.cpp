@@ -76,7 +76,9 @@ Access<Study> sources() {
                          : what == "planes" ? SourcesKind::planes
                          : what == "none"   ? SourcesKind::none
                                             : SourcesKind::file;
-        s.sources.file = s.sources.kind == SourcesKind::file ? what : "";
+        s.sources.file = s.sources.kind != SourcesKind::file ? ""
+                         : what == "-"                       ? "/dev/stdin"
+                                                             : what;
     };
     access.get = [](const Study& s) { return Values{sources_name(s.sources)}; };
     return access;

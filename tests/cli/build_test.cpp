@@ -88,6 +88,15 @@ TEST_CASE("a target that is missed is reported, with status 3, and what was made
     CHECK_THAT(met.err, Catch::Matchers::StartsWith("K_oL: δ ") && Contains(" reached\n"));
 }
 
+TEST_CASE("leaves that the depth limit keeps too long are remarked on") {
+    const Sandbox box("build-depth");
+    box.write("s.csv", "x,y,z,h\n0,0,0,0.01\n1,1,1,0.1\n");
+    const Outcome limited = box.run("build s.csv -o f.ctrl --quiet --octree-depth 3");
+    CHECK(limited.status == 0);
+    CHECK_THAT(limited.err, Contains("K_oL: has leaves of level 3, the deepest allowed"));
+    CHECK(box.run("build s.csv -o f.ctrl --quiet").err.empty());
+}
+
 TEST_CASE("what is read is not written over") {
     const Sandbox box("build-over");
     box.write("s.csv", sources_csv);

@@ -259,6 +259,7 @@ TEST_CASE("an interrupted study goes on where it was") {
             CHECK(joined["rows"][i][field] == whole["rows"][i][field]);
     }
     check_refused(box.run(study + "--resume out"), "complete");
+    check_refused(box.run(study + "--tau 2 --resume out"), "no case 1 of this study");
 }
 
 TEST_CASE("a dry run lists the cases and writes nothing") {

@@ -119,6 +119,12 @@ TEST_CASE("query writes what a structure answers, as a table of sources") {
         REQUIRE(outcome.status == 0);
         CHECK(outcome.out == expected);
     }
+    const Outcome from_pipe = box.run("query - p.csv --structures direct --g-r 1.5 -o - <s.csv");
+    INFO(from_pipe.err);
+    CHECK(from_pipe.out == expected);
+    box.write("outside.csv", "x,y,z\n0,0,0\n5,0,0\n");
+    CHECK_THAT(box.run("query s.csv outside.csv --quiet --structures K_oV").err,
+               Contains("1 of 2 points are outside the domain ["));
     REQUIRE(box.run("query study.toml p.csv -o out.csv").status == 0);
     CHECK(file_text(box / "out.csv") == expected);
     CHECK_THAT(box.run("info out.csv").out, Contains("3, all positive definite"));
@@ -154,6 +160,7 @@ TEST_CASE("commands on files that cannot be carried out end with one line") {
         {"query s.csv s.csv -o no/out.csv", "cannot write"},
         {"query s.csv s.csv --structures K_oL,K_V", "2 cases"},
         {"query no.toml s.csv", "no.toml"},
+        {"query s.csv s.csv --tau 1,,2", "--tau 1,,2: a comma without a value"},
     }));
     INFO(arguments);
     check_refused(box.run(arguments), expected);

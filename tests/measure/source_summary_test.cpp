@@ -33,9 +33,20 @@ TEST_CASE("sources at one place that ask for different sizes are counted") {
                                      {{1, 0, 0}, Metric::isotropic(0.1)},
                                      {{1, 0, 0}, Metric::isotropic(0.2)}};
     CHECK(summarise(sources).contradictory == 2);
-    CHECK(summarise(sources).gradation == Approx(1.1));
+    CHECK(summarise(sources).gradation == 1);  // the smallest at each place
     sources[0].metric.xx = 0.2;
     CHECK(summarise(sources).contradictory == 4);
+}
+
+TEST_CASE("a million sources in two places are summed up at once") {
+    std::vector<PointSource> sources(1'000'000, {{0, 0, 0}, Metric::isotropic(0.1)});
+    for (std::size_t i = 0; i < sources.size(); i += 2) {
+        sources[i] = {{1, 0, 0}, Metric::isotropic(0.4)};
+    }
+    const SourceSummary s = summarise(sources);
+    CHECK(s.count == sources.size());
+    CHECK(s.contradictory == 0);
+    CHECK(s.gradation == Approx(1.3));
 }
 
 TEST_CASE("a sphere of equal sources asks for no gradation") {

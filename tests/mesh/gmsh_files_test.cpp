@@ -4,8 +4,11 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <fstream>
+#include <random>
 
+#include "case_of_each.h"
 #include "controlspace/sources/riemannian.h"
+#include "controlspace/space/catalogue.h"
 #include "files/text_file.h"
 #include "gmsh/gmsh_session.h"
 #include "io/text/msh.h"
@@ -163,4 +166,59 @@ TEST_CASE("a .msh that lies or breaks off is refused") {
     std::memcpy(&bytes[binary_nodes + 8], &lie, sizeof lie);
     CHECK_THAT(error(bytes), Contains("box.msh, byte ") && Contains("Nodes 2000000"));
     CHECK_THAT(error(bytes.substr(0, binary_nodes + 4)), Contains("the data end within Nodes"));
+}
+
+CASE_OF_EACH(entry, tree_catalogue(), "Gmsh answers by a view of cells as the structure does") {
+    const ScratchDirectory folder;
+    const Box box{Point(-1, -1, -1), Point(1, 2, 1)};
+    const auto builder = entry.make({.domain = box, .finest_length = 0.05, .ratio = 1.25});
+    builder->insert(std::vector<PointSource>{{{0.31, 0.42, 0.13}, Metric::isotropic(0.05)},
+                                             {{-0.7, 1.1, 0.6}, Metric::isotropic(0.1)}});
+    builder->grade({.ratio = 1.25});
+    const auto space = builder->build();
+    const PosCells cells = write_pos_cells(folder.path() / "cells.pos", *space);
+    CHECK_FALSE(cells.has_tensors);
+    CHECK(cells.count >= space->footprint().cells);
+
+    constexpr int places = 1000;
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> unit(0, 1);
+    int equal = 0;
+    in_gmsh_session(1, [&] {
+        gmsh::merge((folder.path() / "cells.pos").string());
+        std::vector<int> views;
+        gmsh::view::getTags(views);
+        for (int i = 0; i < places; ++i) {
+            const Vector t(unit(random), unit(random), unit(random));
+            const Point p = box.low + t.cwiseProduct(box.edges());
+            std::vector<double> value;
+            gmsh::view::probe(views.at(0), p.x(), p.y(), p.z(), value);
+            const double length = sample_at(*space, p).xx;
+            if (value.size() == 1 && std::abs(value[0] - length) <= 0.01 * length) ++equal;
+        }
+    });
+    CHECK(equal >= 0.99 * places);
+}
+
+TEST_CASE("a view of cells holds tensors where sources are anisotropic") {
+    const ScratchDirectory folder;
+    const auto builder = find_entry(tree_catalogue(), "K_oV")
+                             ->make({.domain = {Point::Zero(), Point::Ones()}, .ratio = 1.25});
+    const Metric m = metric_of(Point(0.3, 0.4, 0.5));
+    builder->insert(std::vector<PointSource>{{{0.3, 0.4, 0.5}, m}});
+    builder->grade({.ratio = 1});
+    const auto space = builder->build();
+    CHECK(write_pos_cells(folder.path() / "cells.pos", *space).has_tensors);
+    in_gmsh_session(1, [&] {
+        gmsh::merge((folder.path() / "cells.pos").string());
+        std::vector<int> views;
+        gmsh::view::getTags(views);
+        std::vector<double> value;
+        gmsh::view::probe(views.at(0), 0.3, 0.4, 0.5, value);
+        const Metric expected = to_riemannian(sample_at(*space, {0.3, 0.4, 0.5}));
+        REQUIRE(value.size() == 9);
+        CHECK(value[0] == Approx(expected.xx).epsilon(1e-3));
+        CHECK(value[1] == Approx(expected.xy).epsilon(1e-3));
+        CHECK(value[8] == Approx(expected.zz).epsilon(1e-3));
+    });
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "controlspace/sources/point_source.h"
+#include "controlspace/space/control_space.h"
 
 namespace controlspace {
 
@@ -27,5 +28,17 @@ std::vector<PointSource> parse_pos_sources(std::string_view text, const std::fil
 /// Writes `sources` as such a view: points with sizes where all are isotropic, with tensors
 /// otherwise. Throws InputError if that fails; no part of a file is left.
 void write_pos_sources(const std::filesystem::path& path, std::span<const PointSource> sources);
+
+/// What a view of cells consists of.
+struct PosCells {
+    std::size_t count;
+    bool has_tensors;
+};
+
+/// Writes a field as such a view: a hexahedron for each cell of the structure, with the values at
+/// its corners, so that Gmsh answers inside of it as the structure does. Isotropic cells whose
+/// lengths are not trilinear within 1 % are halved up to twice. Throws InputError for a field
+/// without cells, or if writing fails; no part of a file is left.
+PosCells write_pos_cells(const std::filesystem::path& path, const ControlSpace& space);
 
 }  // namespace controlspace

@@ -54,7 +54,9 @@ std::vector<PointSource> read_sources(const std::filesystem::path& path, const s
     if (extension == ".pos") return read_pos_sources(path, array);
     if (extension == ".msh") return read_msh_sources(path, array);
     // A pipe, as of <(command), has a name that says nothing.
-    if (!std::filesystem::is_regular_file(path, ignored)) return read_csv_sources(path);
+    if (path == "/dev/stdin" || !std::filesystem::is_regular_file(path, ignored)) {
+        return read_csv_sources(path);
+    }
     throw InputError(
         fmt::format("{}: name a .csv, a .mesh beside a .sol, a .pos or a .msh", path.string()));
 }
