@@ -30,10 +30,11 @@ double nonconformity(const Metric& a, const Metric& b) {
 
 double strict_nonconformity(const Metric& a, const Metric& b) {
     const double delta = nonconformity(a, b);
-    // Of common axes, δ is the norm of the excesses along them.
-    if (is_axis_aligned(a) && is_axis_aligned(b)) return delta;
-    return std::max(delta, excess(std::max(growth(a, b), growth(b, a))));
+    if (is_isotropic(a) && is_isotropic(b)) return delta;
+    return std::max(delta, nonconformity_of_factor(std::max(growth(a, b), growth(b, a))));
 }
+
+double nonconformity_of_factor(double k) { return std::sqrt(3.0) * excess(k); }
 
 double largest_factor_within(double delta) {
     const double excess_of_each = delta / std::sqrt(3.0);

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "controlspace/gradation/law.h"
+#include "controlspace/metric/nonconformity.h"
 #include "controlspace/study/parameter.h"
 
 namespace controlspace {
@@ -55,6 +56,18 @@ Access<Case> target() {
     access.set = [set = access.set](Case& c, const Values& values) {
         set(c, values);
         if (c.target_delta && c.split) c.split = SplitRule::middle;
+    };
+    return access;
+}
+
+/// The same by the largest factor between lengths.
+Access<Case> target_factor() {
+    Access<Case> access = target();
+    access.set = [set = access.set](Case& c, const Values& values) {
+        const double factor = values.front().number();
+        if (!(factor >= 1.0001 && factor <= 1e6))
+            throw InputError("give a factor from 1.0001 to 1e6");
+        set(c, Values{nonconformity_of_factor(factor)});
     };
     return access;
 }
@@ -196,6 +209,16 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
                   "Non-conformity to the exact field that trees are adapted to, in place of "
                   "insertion and gradation; 0: not adapted",
                   target(), {0}, has<SourceLeaves>, if_given("δ <= {:.4g}", &Case::target_delta)),
+        {{"within", "",
+          "The same as the largest factor by which a length may differ from the exact field in any "
+          "direction: 1.1 is target_delta = 0.01575",
+          target_factor()},
+         Role::structure,
+         {},
+         {},
+         has<SourceLeaves>,
+         {},
+         "target_delta"},
         structure(
             "equal_delta", "",
             "Largest delta_R for which the voxels of a grid are chosen (in levels voxel_factor "

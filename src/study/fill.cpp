@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "controlspace/error.h"
+#include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/study/run.h"
 #include "measure/stopwatch.h"
@@ -14,6 +17,18 @@ void require_follows(const Case& c, const CatalogueEntry& entry) {
     throw InputError("an analytic field is followed by adaptation: set target_delta, for trees");
 }
 
+/// δ and the factor between lengths, and how they are known.
+std::string outcome_of(const AdaptationReport& report) {
+    if (std::isinf(report.reached)) return "δ unknown: it could not be shown to be finite";
+    const double factor = largest_factor_within(report.reached);
+    if (report.is_bound) {
+        return fmt::format("δ <= {:.4g} everywhere: lengths within {:.4g}x", report.reached,
+                           factor);
+    }
+    return fmt::format("δ {:.4g} at worst where sampled: lengths within {:.4g}x there",
+                       report.reached, factor);
+}
+
 void adapt(Filled& filled, const Case& c, const Workload& workload) {
     AdaptationGoal goal{.sources = workload.sources,
                         .continuous = workload.field.field,
@@ -22,7 +37,7 @@ void adapt(Filled& filled, const Case& c, const Workload& workload) {
     if (c.target_delta) goal.target = *c.target_delta;
     const AdaptationReport report = filled.builder->adapt(goal);
     if (c.target_delta) {
-        filled.creation.remark = fmt::format("δ {:.4g} reached", report.reached);
+        filled.creation.remark = outcome_of(report);
         if (report.met) return;
         filled.creation.shortfall =
             fmt::format("target {:.4g} missed{}{}", goal.target,

@@ -42,9 +42,10 @@ std::string verdict(const Measure& measure, const Rows& rows, const StudyRows& c
 TextTable table_of(const std::string& title, const Rows& rows, const StudyRows& columns) {
     TextTable table{
         title,
-        "Fine: at the finer probes. Coarser: share of them where a requested length exceeds the "
-        "reference's by over 1 % in some direction; worst: largest ratio of the two. Finer, "
-        "shortest: the same for the reference's lengths to the requested ones. G_det, G_dir: "
+        "δ of isotropic lengths that differ by a factor k is √3(k + 1/k - 2): 0.02 is 1.11, 0.1 is "
+        "1.27. Fine: at the finer probes. Within: largest factor there between a requested length "
+        "and the reference's, longer or shorter, in any direction. Coarser, finer: share of them "
+        "where a requested length is longer, shorter by over 1 %. G_det, G_dir: "
         "largest growth of the finished field between places 0.01 to 1 metric length apart, of "
         "elements' mean length and of any length, as gradation ratios.",
         {{"structure", Align::left}},

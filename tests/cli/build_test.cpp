@@ -66,7 +66,9 @@ TEST_CASE("a target that is missed is reported, with status 3, and what was made
     box.write("s.csv", sources_csv);
     box.write("places.csv", places_csv);
     const std::string missed = " --structures K_oL --octree-depth 2 --target-delta 0.01";
-    const std::string reason = "δ 0.2023 reached; target 0.01 missed: leaves of level 2 ";
+    const std::string reason =
+        "δ 0.2023 at worst where sampled: lengths within 1.405x there; target 0.01 missed: leaves "
+        "of level 2 ";
     const auto check_missed = [&](const std::string& arguments) {
         const Outcome outcome = box.run(arguments);
         INFO(arguments << ": " << outcome.err);
@@ -85,7 +87,16 @@ TEST_CASE("a target that is missed is reported, with status 3, and what was made
     CHECK_THAT(file_text(box / "out" / "results.json"), Contains("\"shortfall\":\"target"));
     const Outcome met = box.run("query s.csv places.csv --structures K_oL --target-delta 1");
     CHECK(met.status == 0);
-    CHECK_THAT(met.err, Catch::Matchers::StartsWith("K_oL: δ ") && Contains(" reached\n"));
+    CHECK_THAT(met.err, Catch::Matchers::StartsWith("K_oL: δ <= ") &&
+                            Contains(" everywhere: lengths within "));
+    const Outcome within = box.run("query s.csv places.csv --structures K_oV --within 1.1");
+    CHECK(within.status == 0);
+    CHECK_THAT(within.err, Contains("K_oV: δ <= 0.01575 everywhere: lengths within 1.1x"));
+    const Outcome delta =
+        box.run("query s.csv places.csv --structures K_oV --target-delta 0.015745916432444364");
+    CHECK(delta.out == within.out);
+    check_refused(box.run("query s.csv places.csv --within 1"), "--within: ");
+    check_refused(box.run("query s.csv places.csv --within 1.1 --target-delta 0.1"), "--within");
 }
 
 TEST_CASE("leaves that the depth limit keeps too long are remarked on") {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,9 @@ struct Accuracy {
     /// direction and finer along another.
     double finer_max = 0;
     double finer_share = 0;
+
+    /// Largest factor between lengths in any direction, longer or shorter.
+    double within() const { return std::max(coarser_max, finer_max); }
 };
 
 /// δ_R of the paper (§5.2). Runs on all of TBB's threads, with the same result whatever their

@@ -9,12 +9,16 @@ namespace controlspace {
 /// symmetric; 0 for equal metrics, √3 (k + 1/k - 2) for a and k a.
 double nonconformity(const Metric& a, const Metric& b);
 
-/// The larger of δ and (k - 1)^2 / k, where k is the largest factor by which the lengths of a and b
-/// along one direction differ: at 0.1 no length is off by more than 1.37. δ alone may be small
-/// where thin metrics are turned a little, although some length differs by several times.
+/// The larger of δ and what it is for isotropic metrics that differ by a factor k, where k is the
+/// largest factor by which the lengths of a and b along one direction differ: at 0.1 no length is
+/// off by more than 1.27, whatever the metrics. δ alone may be small where thin metrics are turned
+/// a little, although some length differs by several times.
 double strict_nonconformity(const Metric& a, const Metric& b);
 
-/// The k > 1 for which isotropic metrics that differ by a factor k have this δ.
+/// √3 (k + 1/k - 2): δ of isotropic metrics that differ by a factor k > 0.
+double nonconformity_of_factor(double k);
+
+/// Its inverse: the k >= 1 that has this δ.
 double largest_factor_within(double delta);
 
 /// δ of the Riemannian metrics a^-2 and b^-2, as in the paper's footnote.

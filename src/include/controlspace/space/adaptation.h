@@ -32,6 +32,7 @@ struct AdaptationReport {
     /// next to them in the leaves beside them, at places that the structure was not fitted to, and
     /// by hill climbs from the worst of these; a peak between them may be higher.
     double reached = 0;
+    bool is_bound = false;  ///< `reached` is kept everywhere; otherwise it was sampled
     bool met = false;       ///< reached <= target
     std::string shortfall;  ///< why it was not met, and what would help; empty where it was
 };

@@ -23,7 +23,7 @@ struct Creation {
     std::vector<double> insert_s;        ///< making the structure and inserting all sources
     std::vector<double> gradation_s;
     GradationReport gradation;
-    std::string remark;     ///< "δ 0.0987 reached"
+    std::string remark;     ///< "δ <= 0.1 everywhere: lengths within 1.27x"
     std::string shortfall;  ///< why a requested target was missed; empty where it was met
 };
 

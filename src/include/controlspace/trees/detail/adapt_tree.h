@@ -74,6 +74,11 @@ public:
         return left;
     }
 
+    /// Whether a target that is met is shown by bounds to be kept everywhere.
+    bool shows_bounds() const {
+        return covers() || has_bounds() || (HasConstantLeaves<Storage> && field_.has_ranges());
+    }
+
 private:
     enum class LeafState : std::uint8_t { settled, changed, fresh };
 

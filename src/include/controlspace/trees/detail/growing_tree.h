@@ -74,6 +74,7 @@ protected:
             return done;
         });
         report.met = report.reached <= goal.target;
+        report.is_bound = report.met && adaptation.shows_bounds();
         if (too_deep) {
             report.shortfall = depth_shortfall(cuts().max_depth());
         } else if (too_short) {
