@@ -13,6 +13,7 @@
 #include "cli/threads.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
+#include "controlspace/measure/accuracy.h"
 #include "controlspace/space/control_space_file.h"
 
 namespace controlspace {
@@ -24,6 +25,18 @@ void require_no_settings(const std::filesystem::path& space, const GivenSettings
     throw InputError(fmt::format("{}: {} was made with its own: leave it out",
                                  option_name(given.front().first), space.string()));
 }
+
+namespace {
+
+constexpr int probes = 20;  // along each axis
+
+double largest_factor(const Origin& made, const ControlSpace& space) {
+    const auto exact = make_reference(made.study, made.c, made.workload);
+    return accuracy(space, make_probes(*exact, cell_centres(made.workload.domain, probes)))
+        .within();
+}
+
+}  // namespace
 
 FilledSpace filled_space(const std::filesystem::path& input, const std::filesystem::path& output,
                          const GivenSettings& given, const StudyObserver& observer) {
@@ -51,7 +64,17 @@ FilledSpace filled_space(const std::filesystem::path& input, const std::filesyst
     filled.remark = remark_on(made.creation, filled.space->footprint());
     filled.missed_target = !made.creation.shortfall.empty();
     filled.origin = Origin{std::move(study), c, std::move(workload)};
+    if (!c.target_delta && !has_field(c.sources)) {
+        if (observer.phase_started) observer.phase_started("comparing");
+        filled.within = largest_factor(*filled.origin, *filled.space);
+    }
     return filled;
+}
+
+std::string accuracy_text(const FilledSpace& filled) {
+    if (!filled.within) return "";
+    return fmt::format("; lengths within {:.3g}x of the exact field at {} places", *filled.within,
+                       probes * probes * probes);
 }
 
 int report_remark(const FilledSpace& filled) {
@@ -61,6 +84,13 @@ int report_remark(const FilledSpace& filled) {
     }
     if (!filled.remark.empty()) {
         print_error(fmt::format("{}: {}\n", filled.structure, filled.remark));
+    }
+    constexpr double far = 1.25;  // lengths of edges that conform are within it
+    if (filled.within && *filled.within > far) {
+        print_error(
+            fmt::format("{}: lengths are up to {:.3g}x off those of the exact field: --structures "
+                        "K_oV --within 1.1 follows it\n",
+                        filled.structure, *filled.within));
     }
     return 0;
 }

@@ -167,7 +167,7 @@ void add_quiet(Options& options, bool& quiet) {
     options.add({"--quiet", "", "No progress on standard error"}, quiet);
 }
 
-Run one_structure() { return {{structures_key, {"K_oL"}}, {"splits", {"s_L"}}}; }
+Run one_structure() { return {{structures_key, {"K_oV"}}, {"splits", {"s_L"}}}; }
 
 void add_making_options(Options& options, WordsByKey& given, std::string_view another) {
     const Uses uses{Use::making, Use::reading};

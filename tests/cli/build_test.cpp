@@ -104,8 +104,22 @@ TEST_CASE("leaves that the depth limit keeps too long are remarked on") {
     box.write("s.csv", "x,y,z,h\n0,0,0,0.01\n1,1,1,0.1\n");
     const Outcome limited = box.run("build s.csv -o f.ctrl --quiet --octree-depth 3");
     CHECK(limited.status == 0);
-    CHECK_THAT(limited.err, Contains("K_oL: has leaves of level 3, the deepest allowed"));
-    CHECK(box.run("build s.csv -o f.ctrl --quiet").err.empty());
+    CHECK_THAT(limited.err, Contains("K_oV: has leaves of level 3, the deepest allowed"));
+    CHECK_THAT(box.run("build s.csv -o f.ctrl --quiet").err, !Contains("deepest"));
+}
+
+TEST_CASE("how far a structure is from the exact field is told, and what to do") {
+    const Sandbox box("build-within");
+    box.write("s.csv", "x,y,z,h\n0,0,0,0.01\n1,1,1,0.1\n");
+    const Outcome coarse = box.run("build s.csv -o f.ctrl --structures K_oL");
+    CHECK(coarse.status == 0);
+    CHECK_THAT(coarse.out,
+               Contains("; lengths within ") && Contains("x of the exact field at 8000"));
+    CHECK_THAT(coarse.err, Contains("K_oL: lengths are up to ") && Contains("--within 1.1"));
+    const Outcome fine = box.run("build s.csv -o f.ctrl --within 1.1");
+    CHECK(fine.status == 0);
+    CHECK_THAT(fine.out, !Contains("8000"));
+    CHECK_THAT(fine.err, Contains("everywhere: lengths within 1.1x"));
 }
 
 TEST_CASE("what is read is not written over") {

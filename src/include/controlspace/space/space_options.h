@@ -48,7 +48,8 @@ struct SpaceOptions {
     /// close to that of all at once; `direct` builds its search anew.
     bool takes_later_sources = false;
     /// Cap on memory, gradation included: grids get coarser, trees that outgrow it throw
-    /// InputError.
+    /// InputError. The sources that a builder keeps to grade by them, up to 72 bytes each, and the
+    /// search through them while it does, are not counted.
     std::size_t max_bytes = std::size_t{4} << 30;
 };
 
