@@ -81,7 +81,7 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
     std::vector<Case> cases{setting};
     cases.front().structure = entry.id;
     for (const CaseParameter& p : parameters) {
-        if (p.role != Role::structure) continue;
+        if (p.role != Role::structure || !p.same_as.empty()) continue;
         std::vector<Case> product;
         for (const Case& c : cases) {
             std::vector<Case> made{c};
