@@ -32,11 +32,14 @@ GmshOptions gmsh_options(const MeshSettings& settings, GmshAlgorithm algorithm) 
             .factor = settings.factor,
             .optimize = settings.optimize,
             .threads = settings.threads,
-            .max_tets = settings.max_tets};
+            .max_tets = settings.max_tets,
+            .part = settings.body};
 }
 
 GmshRun start_mesh(const Box& domain, const ControlSpace& field, const MeshSettings& settings) {
-    if (settings.start == MeshStart::coarse) return mesh_with_gmsh(domain, coarse_field(domain));
+    if (settings.start == MeshStart::coarse) {
+        return mesh_with_gmsh(domain, coarse_field(domain), {.part = settings.body});
+    }
     const bool hxt = settings.start == MeshStart::hxt;
     GmshOptions options =
         gmsh_options(settings, hxt ? GmshAlgorithm::hxt : GmshAlgorithm::delaunay);

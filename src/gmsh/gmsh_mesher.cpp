@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,6 +36,69 @@ void add_box(const UnitFrame& frame) {
     const Vector edges = frame.edges();
     gmsh::model::occ::addBox(0, 0, 0, edges.x(), edges.y(), edges.z());
     gmsh::model::occ::synchronize();
+}
+
+using Entities = std::vector<std::pair<int, int>>;  ///< dimension and tag
+
+/// A volume inside of triangles, which are cut into patches along creases.
+void add_surface(const Part& part, const UnitFrame& frame) {
+    constexpr int surface = 2, entity = 1, triangle = 2;
+    std::vector<std::size_t> tags, corners;
+    std::vector<double> coordinates;
+    for (const Point& p : part.vertices) {
+        const Point x = frame.from_domain(p);
+        coordinates.insert(coordinates.end(), x.begin(), x.end());
+        tags.push_back(tags.size() + 1);
+    }
+    for (const Triangle& t : part.triangles) {
+        for (const VertexIndex v : t) corners.push_back(v + std::size_t{1});
+    }
+    gmsh::model::addDiscreteEntity(surface, entity);
+    gmsh::model::mesh::addNodes(surface, entity, tags, coordinates);
+    gmsh::model::mesh::addElementsByType(entity, triangle, {}, corners);
+    constexpr double degree = std::numbers::pi / 180;
+    gmsh::model::mesh::classifySurfaces(part.crease * degree, true, true, std::numbers::pi);
+    gmsh::model::mesh::createGeometry();
+    Entities patches;
+    gmsh::model::getEntities(patches, surface);
+    std::vector<int> all;
+    for (const auto& [dimension, tag] : patches) all.push_back(tag);
+    gmsh::model::geo::addVolume({gmsh::model::geo::addSurfaceLoop(all)});
+    gmsh::model::geo::synchronize();
+}
+
+void add_cad(const Part& part, const UnitFrame& frame) {
+    gmsh::option::setNumber("Geometry.OCCScaling", 1 / frame.scale);
+    Entities shapes;
+    gmsh::model::occ::importShapes(part.cad.string(), shapes);
+    const Vector low = frame.domain.low / frame.scale;
+    gmsh::model::occ::translate(shapes, -low.x(), -low.y(), -low.z());
+    gmsh::model::occ::synchronize();
+    Entities volumes;
+    gmsh::model::getEntities(volumes, 3);
+    if (volumes.empty()) {
+        throw InputError(fmt::format("{} holds no volume: export a solid", part.cad.string()));
+    }
+}
+
+void require_inside(const UnitFrame& frame) {
+    constexpr double tolerance = 1e-6;
+    Vector low, high;
+    gmsh::model::getBoundingBox(-1, -1, low[0], low[1], low[2], high[0], high[1], high[2]);
+    const Vector edges = frame.edges();
+    if ((low.array() >= -tolerance).all() && (high.array() <= edges.array() + tolerance).all()) {
+        return;
+    }
+    const auto place = [&](const Vector& x) { return Point(frame.domain.low + frame.scale * x); };
+    throw InputError(
+        fmt::format("the part {} is not inside of the field's domain {}: make the field for it",
+                    to_string(Box{place(low), place(high)}), to_string(frame.domain)));
+}
+
+void add_geometry(const Part* part, const UnitFrame& frame) {
+    if (part == nullptr) return add_box(frame);
+    part->cad.empty() ? add_surface(*part, frame) : add_cad(*part, frame);
+    require_inside(frame);
 }
 
 void set_options(const GmshOptions& options) {
@@ -128,7 +192,7 @@ GmshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshO
     SizeQuery query(field, frame, options.factor.value_or(standard_factor(options.algorithm)));
     GmshRun run;
     in_gmsh_session(options.threads, [&] {
-        add_box(frame);
+        add_geometry(options.part.get(), frame);
         set_options(options);
         set_size_callback(query);
         const Stopwatch watch;
@@ -149,8 +213,9 @@ GmshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshO
         if (run.mesh.tets.empty()) {
             std::string why;
             gmsh::logger::getLastError(why);
-            throw InputError(fmt::format("Gmsh made no tetrahedra{}{}: try the other algorithm",
-                                         why.empty() ? "" : ": ", why));
+            throw InputError(fmt::format("Gmsh made no tetrahedra{}{}: try the other algorithm{}",
+                                         why.empty() ? "" : ": ", why,
+                                         options.part ? ", and whether the part is closed" : ""));
         }
     });
     return run;

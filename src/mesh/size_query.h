@@ -25,6 +25,8 @@ struct UnitFrame {
         return p.cwiseMax(domain.low).cwiseMin(domain.high);
     }
 
+    Point from_domain(const Point& p) const { return (p - domain.low) / scale; }
+
     Box domain;
     double scale;
 };

@@ -50,6 +50,14 @@ Access<MeshSettings> kinds_of_files() {
 
 std::span<const Parameter<MeshSettings>> mesh_parameters() {
     static const std::vector<Parameter<MeshSettings>> all{
+        {"part", "",
+         "What is meshed: a closed surface (.stl, .obj, .ply, .off) or a solid (.step, .stp, "
+         ".iges, "
+         ".igs, .brep); box: the domain; left out: INPUT, if it is such a file",
+         text<MeshSettings>(&MeshSettings::part)},
+        {"part_crease", "degree",
+         "Angle between triangles of a part from which on their edge is kept",
+         number_of(&MeshSettings::part_crease, within(1, 180))},
         {"mesher", "",
          "delaunay or hxt (Gmsh), mmg (MMG3D), or auto: delaunay where the field is isotropic, "
          "else mmg",

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "controlspace/mesh/part.h"
 #include "controlspace/study/parameter.h"
 
 namespace controlspace {
@@ -31,6 +33,9 @@ struct MeshSettings {
     int rounds = 3;   ///< MMG
     double time_limit_s = 900;
     bool exact = true;  ///< mesh the exact field too
+    std::string part;   ///< a file; "box": the domain; empty: the input, if it is a part
+    double part_crease = 30;
+    std::shared_ptr<const Part> body;  ///< what the part's file holds; none: the domain
     std::vector<std::string> files{"msh", "mesh", "vtu"};
 };
 

@@ -3,11 +3,14 @@
 #include <gmsh.h>
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
 #include <stdexcept>
 
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/mesh/conformity.h"
 #include "controlspace/mesh/mesh_files.h"
+#include "gmsh/gmsh_session.h"
 #include "mesh/fixtures.h"
 #include "sources/files.h"
 
@@ -19,6 +22,28 @@ namespace {
 const Box two_cube{Point::Constant(-1), Point::Constant(1)};
 
 const FormulaField sphere([](const Point& p) { return around_sphere(p, 0.2); });
+
+/// A cylinder of strips around x = 100, of radius 10 and height 30.
+Part strips(VertexIndex n) {
+    Part part;
+    for (const double z : {0.0, 30.0}) {
+        part.vertices.emplace_back(100, 0, z);
+        for (VertexIndex i = 0; i < n; ++i) {
+            const double angle = 2 * M_PI * i / n;
+            part.vertices.emplace_back(100 + 10 * std::cos(angle), 10 * std::sin(angle), z);
+        }
+    }
+    const VertexIndex top = n + 1;
+    for (VertexIndex i = 0; i < n; ++i) {
+        const VertexIndex a = 1 + i, b = 1 + (i + 1) % n;
+        part.triangles.insert(
+            part.triangles.end(),
+            {{0, b, a}, {top, top + a, top + b}, {a, b, top + b}, {a, top + b, top + a}});
+    }
+    return part;
+}
+
+const Box around_strips{Point(85, -15, -5), Point(115, 15, 35)};
 
 /// Without printing either.
 template <class List>
@@ -117,6 +142,54 @@ TEST_CASE("options out of range and meshes beyond all measure are refused") {
                    mesh_with_gmsh({Point::Zero(), Point(1, 1, 0)}, sphere);
                }),
                Contains("domain"));
+}
+
+TEST_CASE("Gmsh fills a part that is given by its surface") {
+    constexpr VertexIndex n = 48;
+    const auto part = std::make_shared<const Part>(strips(n));
+    const FormulaField field([](const Point& p) { return Metric::isotropic(2 + 0.1 * p.z()); });
+    const GmshRun run = mesh_with_gmsh(around_strips, field, {.part = part});
+    // The edges between strips may move along the smooth patch, the rims stay.
+    CHECK(volume(run.mesh) == Approx(15 * n * 100 * std::sin(2 * M_PI / n)).epsilon(0.003));
+    for (const Point& p : run.mesh.vertices) {
+        CHECK(std::hypot(p.x() - 100, p.y()) < 10 + 1e-6);
+        CHECK((p.z() > -1e-6 && p.z() < 30 + 1e-6));
+    }
+    const Conformity c = conformity(run.mesh, field);
+    CHECK(c.l_r > 0.6);
+    CHECK(c.mean_length == Approx(1).epsilon(0.1));
+
+    CHECK_THAT(error_of([&] { mesh_with_gmsh(two_cube, field, {.part = part}); }),
+               Contains("is not inside of the field's domain"));
+    auto open = strips(n);
+    open.triangles.resize(open.triangles.size() - 4);
+    const auto hole = std::make_shared<const Part>(std::move(open));
+    CHECK_THAT(error_of([&] { mesh_with_gmsh(around_strips, field, {.part = hole}); }),
+               Contains("Gmsh"));
+}
+
+TEST_CASE("Gmsh fills a solid of a CAD file") {
+    const ScratchDirectory folder;
+    const std::string name = GENERATE("part.step", "part.brep");
+    const auto path = folder.path() / name;
+    in_gmsh_session(1, [&] {
+        gmsh::model::occ::addCylinder(100, 0, 0, 0, 0, 30, 10);
+        gmsh::model::occ::synchronize();
+        gmsh::write(path.string());
+    });
+    Part part;
+    part.cad = path;
+    const FormulaField field([](const Point&) { return Metric::isotropic(3); });
+    const auto solid = std::make_shared<const Part>(part);
+    const GmshRun run = mesh_with_gmsh(around_strips, field, {.part = solid});
+    CHECK(volume(run.mesh) == Approx(M_PI * 3000).epsilon(0.03));
+    CHECK(conformity(run.mesh, field).l_r > 0.6);
+    CHECK_THAT(error_of([&] { mesh_with_gmsh(two_cube, field, {.part = solid}); }),
+               Contains("is not inside of the field's domain"));
+    part.cad = folder.path() / "none.step";
+    const auto none = std::make_shared<const Part>(part);
+    CHECK_THAT(error_of([&] { mesh_with_gmsh(around_strips, field, {.part = none}); }),
+               Contains("none.step"));
 }
 
 TEST_CASE("a .msh file holds the mesh, as Gmsh reads it") {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 
 #include "controlspace/geometry/box.h"
+#include "controlspace/mesh/part.h"
 #include "controlspace/mesh/tet_mesh.h"
 #include "controlspace/space/control_space.h"
 
@@ -33,6 +35,8 @@ struct GmshOptions {
     /// With one, Delaunay makes the same mesh every time; HXT does in a program's first call only.
     int threads = 1;
     double max_tets = 5e7;  ///< a field that asks for more by estimate is refused
+    /// What is filled, within the domain; none: the domain.
+    std::shared_ptr<const Part> part = {};
 };
 
 /// A mesh, and what it took.
@@ -47,11 +51,12 @@ struct GmshRun {
     bool anisotropic = false;
 };
 
-/// Fills `domain` with tetrahedra of the size that `field` asks for.
+/// Fills `domain`, or the part in it, with tetrahedra of the size that `field` asks for.
 ///
 /// Runs in a GmshSession: what else a program has open in Gmsh is closed. Throws InputError for
-/// options out of range, a field that is not positive definite somewhere or asks for too many
-/// tetrahedra, and what Gmsh could not do, in its words. What the field throws passes through.
+/// options out of range, a part that is not closed or not inside `domain`, a field that is not
+/// positive definite somewhere or asks for too many tetrahedra, and what Gmsh could not do, in its
+/// words. What the field throws passes through.
 GmshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field,
                        const GmshOptions& options = {});
 

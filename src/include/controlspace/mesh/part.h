@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "controlspace/geometry/point.h"
+#include "controlspace/mesh/tet_mesh.h"
+
+namespace controlspace {
+
+/// A body that is filled with tetrahedra: inside a closed surface of triangles, or of a CAD file.
+struct Part {
+    std::vector<Point> vertices;
+    std::vector<Triangle> triangles;
+    /// Angle between the normals of triangles from which on the mesh keeps the edge [degrees].
+    double crease = 30;
+    /// In place of triangles: a .step, .stp, .iges, .igs or .brep.
+    std::filesystem::path cad = {};
+};
+
+}  // namespace controlspace
