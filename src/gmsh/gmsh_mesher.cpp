@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "controlspace/error.h"
+#include "gmsh/gmsh_mesh.h"
 #include "gmsh/gmsh_session.h"
 #include "measure/stopwatch.h"
 #include "mesh/estimate.h"
@@ -129,33 +130,14 @@ void generate(GmshAlgorithm algorithm, double optimize) {
     gmsh::model::mesh::optimize("");
 }
 
-template <std::size_t n>
-std::vector<std::array<VertexIndex, n>> elements(int type,
-                                                 const std::vector<VertexIndex>& index_of_tag) {
-    std::vector<std::size_t> tags, nodes;
-    gmsh::model::mesh::getElementsByType(type, tags, nodes);
-    std::vector<std::array<VertexIndex, n>> result(nodes.size() / n);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-        result[i / n][i % n] = index_of_tag[nodes[i]];
-    }
-    return result;
-}
-
 TetMesh take_mesh(const UnitFrame& frame) {
-    std::vector<std::size_t> tags;
-    std::vector<double> coordinates, unused;
-    gmsh::model::mesh::getNodes(tags, coordinates, unused);
+    const GmshNodes nodes;
     TetMesh mesh;
-    std::vector<VertexIndex> index_of_tag;
-    for (std::size_t i = 0; i < tags.size(); ++i) {
-        if (tags[i] >= index_of_tag.size()) index_of_tag.resize(tags[i] + 1);
-        index_of_tag[tags[i]] = static_cast<VertexIndex>(i);
-        const double* x = &coordinates[3 * i];
-        mesh.vertices.push_back(frame.to_domain(x[0], x[1], x[2]));
+    for (const Point& x : nodes.places()) {
+        mesh.vertices.push_back(frame.to_domain(x.x(), x.y(), x.z()));
     }
-    constexpr int triangle = 2, tetrahedron = 4;  // Gmsh's types of elements
-    mesh.triangles = elements<3>(triangle, index_of_tag);
-    mesh.tets = elements<4>(tetrahedron, index_of_tag);
+    mesh.triangles = nodes.elements<3>(GmshNodes::triangle);
+    mesh.tets = nodes.elements<4>(GmshNodes::tetrahedron);
     turn_upright(mesh);
     return mesh;
 }
