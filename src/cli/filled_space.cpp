@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <utility>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/formats.h"
@@ -53,7 +54,9 @@ FilledSpace filled_space(const std::filesystem::path& input, const std::filesyst
         return filled;
     }
     Study study = study_of_input(input, given);
-    require_no_input(output, {study.sources.file, study.sources.field.file});
+    std::vector<std::filesystem::path> read = files_of(study.sources);
+    read.push_back(study.sources.field.file);
+    require_no_input(output, read);
     filled.threads = limit_threads(study.threads);
     Case c = only_case(study);
     Workload workload = make_workload(study, c.sources, file_readers());

@@ -162,7 +162,8 @@ Json to_json(const Study& study) {
     Json json;
     for (const Parameter<Study>& p : study_parameters()) {
         const Json list = list_of(p.access.type, p.access.get(study));
-        json[p.key] = p.access.at_most != 1 ? list : list.empty() ? Json(nullptr) : list[0];
+        const bool is_one = p.access.at_most == 1 || (p.access.at_most == 0 && list.size() == 1);
+        json[p.key] = !is_one ? list : list.empty() ? Json(nullptr) : list[0];
     }
     return json;
 }

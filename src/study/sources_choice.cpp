@@ -17,7 +17,15 @@ std::string sources_name(const SourcesChoice& s) {
         case SourcesKind::file:
             break;
     }
-    return s.file.string();
+    std::string names;
+    for (const auto& file : files_of(s)) names += (names.empty() ? "" : ",") + file.string();
+    return names;
+}
+
+std::vector<std::filesystem::path> files_of(const SourcesChoice& s) {
+    std::vector<std::filesystem::path> files{s.file};
+    files.insert(files.end(), s.further_files.begin(), s.further_files.end());
+    return files;
 }
 
 AnalyticField make_field(const FieldChoice& choice) {

@@ -139,6 +139,7 @@ Study parse_study(std::string_view text, const std::filesystem::path& place,
     }
     if (study.sources.kind == SourcesKind::file) {
         study.sources.file = place.parent_path() / study.sources.file;
+        for (auto& file : study.sources.further_files) file = place.parent_path() / file;
     }
     std::filesystem::path& field_file = study.sources.field.file;
     if (!field_file.empty()) field_file = place.parent_path() / field_file;

@@ -65,22 +65,44 @@ Access<Study> name() {
 }
 
 Access<Study> sources() {
+    constexpr std::pair<const char*, SourcesKind> words[] = {{"sphere", SourcesKind::sphere},
+                                                             {"planes", SourcesKind::planes},
+                                                             {"none", SourcesKind::none}};
     Access<Study> access;
     access.type = ValueType::text;
-    access.set = [](Study& s, const Values& v) {
-        const std::string& what = v.front().text();
-        if (what.empty()) {
-            throw InputError("no name: give sphere, planes, none or the name of a file");
+    access.at_most = 0;
+    access.set = [words](Study& s, const Values& v) {
+        s.sources.kind = SourcesKind::file;
+        s.sources.file.clear();
+        s.sources.further_files.clear();
+        for (const Value& value : v) {
+            const std::string& what = value.text();
+            if (what.empty()) {
+                throw InputError("no name: give sphere, planes, none or the names of files");
+            }
+            for (const auto& [word, kind] : words) {
+                if (what != word) continue;
+                if (v.size() > 1) {
+                    throw InputError(what + " is no file: give it alone, or only names of files");
+                }
+                s.sources.kind = kind;
+                return;
+            }
+            const char* standard_input = "/dev/stdin";
+            const std::filesystem::path file = what == "-" ? standard_input : what;
+            if (s.sources.file.empty()) {
+                s.sources.file = file;
+            } else {
+                s.sources.further_files.push_back(file);
+            }
         }
-        s.sources.kind = what == "sphere"   ? SourcesKind::sphere
-                         : what == "planes" ? SourcesKind::planes
-                         : what == "none"   ? SourcesKind::none
-                                            : SourcesKind::file;
-        s.sources.file = s.sources.kind != SourcesKind::file ? ""
-                         : what == "-"                       ? "/dev/stdin"
-                                                             : what;
     };
-    access.get = [](const Study& s) { return Values{sources_name(s.sources)}; };
+    access.get = [](const Study& s) {
+        if (s.sources.kind != SourcesKind::file) return Values{sources_name(s.sources)};
+        Values names;
+        for (const auto& file : files_of(s.sources)) names.emplace_back(file.string());
+        return names;
+    };
     return access;
 }
 
@@ -142,7 +164,9 @@ std::function<bool(const Study&)> of_kind(SourcesKind kind) {
 std::function<bool(const Study&)> in_file(std::vector<std::string> endings) {
     return [=](const Study& s) {
         return s.sources.kind == SourcesKind::file &&
-               std::ranges::count(endings, lower_case_extension(s.sources.file)) > 0;
+               std::ranges::any_of(files_of(s.sources), [&](const auto& file) {
+                   return std::ranges::count(endings, lower_case_extension(file)) > 0;
+               });
     };
 }
 /// Whether some run has one of the fields.
@@ -180,8 +204,9 @@ std::vector<Parameter<Study>> table() {
     return {
         {"name", "", "Name of the study, and of its folder of results", name(), Use::results},
         {"sources", "",
-         "sphere or planes (sampled); none (only a field); a file of points with metrics: .csv "
-         "(also from a pipe), .mesh or .meshb with .sol or .solb, .pos, .msh, .vtu or .vtp; or a "
+         "sphere or planes (sampled); none (only a field); files, the smallest of whose metrics "
+         "counts where they overlap: of points with metrics, .csv (- for standard input), .mesh or "
+         ".meshb with .sol or .solb, .pos, .msh, .vtu or .vtp; or a "
          "surface: .stl, .obj, .ply, .off or in a .vdb",
          sources()},
         {"centre", length, "x y z: centre of the sphere", point_of(of_sources(&Sources::centre)),

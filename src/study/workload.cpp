@@ -77,13 +77,28 @@ double finest_length_of(const Workload& workload) {
 
 }  // namespace
 
-std::vector<PointSource> read_source_file(const SourcesChoice& choice, const FileReaders& readers) {
+namespace {
+
+std::vector<PointSource> read_one(const SourcesChoice& choice, const FileReaders& readers) {
     const std::string ending = lower_case_extension(choice.file);
     if (const auto reader = readers.sources.find(ending); reader != readers.sources.end()) {
         return reader->second(choice);
     }
     if (needs_reader(ending)) fail_without_reader(choice.file);
     return read_sources(choice.file, choice.in_file.array);
+}
+
+}  // namespace
+
+std::vector<PointSource> read_source_file(const SourcesChoice& choice, const FileReaders& readers) {
+    std::vector<PointSource> sources;
+    for (const auto& file : files_of(choice)) {
+        SourcesChoice one = choice;
+        one.file = file;
+        const auto more = read_one(one, readers);
+        sources.insert(sources.end(), more.begin(), more.end());
+    }
+    return sources;
 }
 
 Workload make_workload(const Study& study, const SourcesChoice& choice,

@@ -108,6 +108,24 @@ TEST_CASE("leaves that the depth limit keeps too long are remarked on") {
     CHECK_THAT(box.run("build s.csv -o f.ctrl --quiet").err, !Contains("deepest"));
 }
 
+TEST_CASE("sources of several files make one field") {
+    const Sandbox box("build-several");
+    const std::string head = "x,y,z,h\n", first = "0,0,0,0.1\n", second = "1,1,1,0.05\n";
+    box.write("a.csv", head + first);
+    box.write("b.csv", head + second);
+    box.write("both.csv", head + first + second);
+    box.write("study.toml", "sources = ['a.csv', 'b.csv']\nstructures = 'K_oV'\n");
+    box.write("places.csv", "x,y,z\n0.1,0.2,0.3\n0.9,0.9,0.9\n");
+    REQUIRE(box.run("build both.csv -o both.ctrl --within 1.05").status == 0);
+    const std::string expected = box.run("query both.ctrl places.csv").out;
+    REQUIRE(box.run("build --sources a.csv,b.csv -o f.ctrl --within 1.05").status == 0);
+    CHECK(box.run("query f.ctrl places.csv").out == expected);
+    CHECK(box.run("query study.toml places.csv --within 1.05").out == expected);
+    check_refused(box.run("build --sources a.csv,sphere -o g.ctrl"), "sphere is no file");
+    check_refused(box.run("build --sources a.csv,none.csv -o g.ctrl"), "none.csv: no such file");
+    CHECK_FALSE(fs::exists(box / "g.ctrl"));
+}
+
 TEST_CASE("how far a structure is from the exact field is told, and what to do") {
     const Sandbox box("build-within");
     box.write("s.csv", "x,y,z,h\n0,0,0,0.01\n1,1,1,0.1\n");

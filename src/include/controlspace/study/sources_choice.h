@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "controlspace/fields/analytic_field.h"
 #include "controlspace/fields/surface_fields.h"
@@ -42,7 +44,8 @@ struct FileSources {
 /// field with sources on top.
 struct SourcesChoice {
     SourcesKind kind = SourcesKind::sphere;
-    std::filesystem::path file;  ///< file only
+    std::filesystem::path file;                             ///< file only
+    std::vector<std::filesystem::path> further_files = {};  ///< file only: their sources, too
     Sampling sampling = Sampling::regular;
     Point centre = Point::Zero();  ///< sphere only
     double radius = 0.8;           ///< sphere only
@@ -66,7 +69,10 @@ inline bool is_sampled(const SourcesChoice& s) {
 /// Whether there is an analytic field: structures follow it and the sources together.
 inline bool has_field(const SourcesChoice& s) { return s.field.kind != FieldKind::none; }
 
-/// As in options and study files: "sphere", "none", "folder/file.csv".
+/// All files of sources, the first one first.
+std::vector<std::filesystem::path> files_of(const SourcesChoice& s);
+
+/// As in options and study files: "sphere", "none", "folder/file.csv", "a.csv,b.stl".
 std::string sources_name(const SourcesChoice& s);
 
 /// The field of a formula. Throws InputError for parameters out of range. Precondition:
