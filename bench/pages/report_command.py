@@ -50,16 +50,15 @@ def front_tables(rows):
 def measure_cells(row):
     if row.measures is None:
         return ["–"] * 12 + [f"failed: {row.error}"]
-    # Older results do not have the share that is coarser, nor what is finer.
+    # Older results do not have these.
     share = row.measures.get("coarser_fine_share")
-    factors = [row.measures[key] for key in ("coarser_fine_max", "finer_fine_max")
-               if key in row.measures]
+    within = row.measures.get("within_fine_max")
     numbers = [("memory_MB", 2), ("creation_s", 3), ("t_access_ns_random", 1),
                ("t_access_ns_grid", 1), ("delta_R_max", 4), ("delta_R_mean", 4), ("delta_R_p99", 4),
                ("delta_R_fine_max", 4)]
     return [str(row["cells"] or "–"), *(fixed(row[key], digits) for key, digits in numbers),
             "–" if share is None else f"{100 * share:.2f} %",
-            f"{fixed(max(factors), 3)}x" if factors else "–", fixed(row["gradation_max_left"], 4),
+            "–" if within is None else f"{fixed(within, 3)}x", fixed(row["gradation_max_left"], 4),
             row["remark"]]
 
 

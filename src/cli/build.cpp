@@ -35,11 +35,10 @@ int build(const Build& job) {
         save_control_space(output, *filled.space);
     }
     const Footprint footprint = filled.space->footprint();
-    print(fmt::format(
-        "{}: {} with {} control nodes, {:.3g} MB in memory, {:.3g} MB in the file{}\n",
-        output.string(), filled.structure, footprint.control_nodes,
-        static_cast<double>(footprint.bytes_total()) / 1e6,
-        static_cast<double>(std::filesystem::file_size(output)) / 1e6, accuracy_text(filled)));
+    print(fmt::format("{}: {} with {} control nodes, {:.3g} MB in memory, {:.3g} MB in the file\n",
+                      output.string(), filled.structure, footprint.control_nodes,
+                      static_cast<double>(footprint.bytes_total()) / 1e6,
+                      static_cast<double>(std::filesystem::file_size(output)) / 1e6));
     return report_remark(filled);
 }
 

@@ -38,9 +38,11 @@ Study study_of(const Compare& job) {
     Study study = file.empty() ? Study{} : read_study(file, program_parameters());
     const GivenSettings given = given_settings(job.given);
     apply(given, study);
-    const bool is_named = !file.empty() || study.name != Study{}.name;
+    const bool is_named = !file.empty() || std::ranges::any_of(given, [](const auto& s) {
+        return s.first == "name";
+    });
     if (!is_named && study.sources.kind == SourcesKind::file) {
-        study.name = study.sources.file.stem().string();
+        apply({{"name", {study.sources.file.stem().string()}}}, study);
     }
     if (job.as_published) {
         for (Run& run : study.runs) {

@@ -80,7 +80,7 @@ std::string written(const Export& e, const std::string& what) {
     const std::uintmax_t bytes = std::filesystem::file_size(e.output, none);
     const std::string size =
         none ? "" : fmt::format("; {:.1f} MB", static_cast<double>(bytes) / 1e6);
-    return fmt::format("{}: {}{}{}\n", e.output.string(), what, size, accuracy_text(e.filled));
+    return fmt::format("{}: {}{}\n", e.output.string(), what, size);
 }
 
 Action add_export(Options& options) {

@@ -60,25 +60,19 @@ FilledSpace filled_space(const std::filesystem::path& input, const std::filesyst
     filled.threads = limit_threads(study.threads);
     Case c = only_case(study);
     Workload workload = make_workload(study, c.sources, file_readers());
-    DefaultTarget(input, given).set(c, workload.sources);
+    const bool is_by_default = DefaultTarget(input, given).set(c, workload.sources);
     Filled made = make_and_fill(study, c, program_rows(), workload, observer);
     filled.space = made.build(c);
     filled.builder = std::move(made.builder);
     filled.structure = c.structure;
     filled.remark = remark_on(made.creation, filled.space->footprint());
-    filled.missed_target = !made.creation.shortfall.empty();
+    filled.missed_target = !is_by_default && !made.creation.shortfall.empty();
     filled.origin = Origin{std::move(study), c, std::move(workload)};
     if (!c.target_delta && !has_field(c.sources)) {
         if (observer.phase_started) observer.phase_started("comparing");
         filled.within = largest_factor(*filled.origin, *filled.space);
     }
     return filled;
-}
-
-std::string accuracy_text(const FilledSpace& filled) {
-    if (!filled.within) return "";
-    return fmt::format("; lengths within {:.3g}x of the exact field at {} places", *filled.within,
-                       probes * probes * probes);
 }
 
 int report_remark(const FilledSpace& filled) {
@@ -89,12 +83,12 @@ int report_remark(const FilledSpace& filled) {
     if (!filled.remark.empty()) {
         print_error(fmt::format("{}: {}\n", filled.structure, filled.remark));
     }
-    constexpr double far = 1.25;  // lengths of edges that conform are within it
-    if (filled.within && *filled.within > far) {
-        print_error(
-            fmt::format("{}: lengths are up to {:.3g}x off those of the exact field: --structures "
-                        "K_oV --within 1.1 follows it\n",
-                        filled.structure, *filled.within));
+    if (filled.within) {
+        constexpr double far = 1.25;  // edges within it conform
+        print_error(fmt::format(
+            "{}: lengths within {:.3g}x of the exact field's at {} places{}\n", filled.structure,
+            *filled.within, probes * probes * probes,
+            *filled.within > far ? ": --within 1.1 adapts a tree (K_oV) to that field" : ""));
     }
     return 0;
 }

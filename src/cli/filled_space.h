@@ -47,12 +47,8 @@ void require_no_settings(const std::filesystem::path& space, const GivenSettings
 FilledSpace filled_space(const std::filesystem::path& input, const std::filesystem::path& output,
                          const GivenSettings& given, const StudyObserver& observer);
 
-/// "; lengths within 1.06x of the exact field at 8000 places", or nothing where that is not known.
-std::string accuracy_text(const FilledSpace& filled);
-
-/// Writes the remark on the structure to standard error, and what to do where its lengths are far
-/// from the exact field's. Returns the exit status: some_failed where the requested target was
-/// missed.
+/// Writes the remark on the structure, and how far its lengths are from the exact field's, to
+/// standard error. Returns the exit status: some_failed where the requested target was missed.
 int report_remark(const FilledSpace& filled);
 
 }  // namespace controlspace

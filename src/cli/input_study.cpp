@@ -33,20 +33,23 @@ Study study_of_input(const std::filesystem::path& input, const GivenSettings& gi
 }
 
 DefaultTarget::DefaultTarget(const std::filesystem::path& input, const GivenSettings& given)
-    : is_open_(input.extension() != ".toml") {
-    for (const char* key : {structures_key, "target_delta", "within", "field", "tau", "epsilon",
-                            "law", "schedule", "neighbourhood", "octree_depth"}) {
+    : applies_(input.extension() != ".toml") {
+    for (const char* key : {"target_delta", "within", "field", "tau", "epsilon", "law", "schedule",
+                            "neighbourhood", "reference"}) {
         const auto is_given = [&](const auto& setting) { return setting.first == key; };
-        is_open_ = is_open_ && std::ranges::none_of(given, is_given);
+        applies_ = applies_ && std::ranges::none_of(given, is_given);
     }
 }
 
-void DefaultTarget::set(Case& c, std::span<const PointSource> sources) const {
+bool DefaultTarget::set(Case& c, std::span<const PointSource> sources) const {
     constexpr double within = 1.1;
     const auto is_length = [](const PointSource& s) { return is_isotropic(s.metric); };
-    if (is_open_ && !sources.empty() && std::ranges::all_of(sources, is_length)) {
-        c.target_delta = nonconformity_of_factor(within);
+    if (!applies_ || c.structure != "K_oV" || sources.empty() ||
+        !std::ranges::all_of(sources, is_length)) {
+        return false;
     }
+    c.target_delta = nonconformity_of_factor(within);
+    return true;
 }
 
 Case only_case(const Study& study) {

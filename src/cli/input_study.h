@@ -15,16 +15,17 @@ namespace controlspace {
 /// on the paper's sphere. Throws InputError.
 Study study_of_input(const std::filesystem::path& input, const GivenSettings& given);
 
-/// What is chosen once the sources are known, where neither a study file nor a setting says how the
-/// structure is made: of isotropic sources it is adapted until lengths are shown to be within 1.1x
-/// of the exact field's; of others, where that takes long, inserted and graded.
+/// The target of K_oV where neither a study file nor a setting says how it is made: isotropic
+/// sources are followed until lengths are shown to be within 1.1x of the exact field's; others,
+/// where that takes long, are inserted and graded.
 class DefaultTarget {
 public:
     DefaultTarget(const std::filesystem::path& input, const GivenSettings& given);
-    void set(Case& c, std::span<const PointSource> sources) const;
+    /// Sets it, and returns whether it was set.
+    bool set(Case& c, std::span<const PointSource> sources) const;
 
 private:
-    bool is_open_;
+    bool applies_;
 };
 
 /// The one case of a study that makes one structure. Throws InputError where it has more.

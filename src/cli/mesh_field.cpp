@@ -66,7 +66,7 @@ MmgOptions mmg_options(const MeshSettings& settings, const std::filesystem::path
 TetMesh make_mesh(const Box& domain, const ControlSpace& field, const MeshSettings& settings,
                   const std::filesystem::path& folder, MeshRow& row) {
     if (row.mesher == Mesher::mmg) {
-        require_few_tets(domain, field, settings.max_tets);
+        if (!settings.body) require_few_tets(domain, field, settings.max_tets);
         const GmshRun start = start_mesh(domain, field, settings);
         MmgRun run = mesh_with_mmg(start.mesh, field, mmg_options(settings, folder));
         row.seconds = start.seconds + run.seconds + run.query_seconds;

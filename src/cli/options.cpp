@@ -38,10 +38,10 @@ std::vector<std::string> items_of(const std::string& word) {
     }
 }
 
-/// "-" is standard input, or output.
-void take_dash(CLI::Option& option) {
-    const char* stream = option.check_lname("output") ? "/dev/stdout" : "/dev/stdin";
-    option.transform([stream](std::string name) { return name == "-" ? stream : name; });
+/// "-" is standard output where a file is written, and standard input where one is read.
+std::string stream_for_dash(const std::string& name) {
+    if (name == "OUT" || name.ends_with("--output")) return "/dev/stdout";
+    return name.starts_with('-') ? "-" : "/dev/stdin";
 }
 
 }  // namespace
@@ -56,7 +56,11 @@ template <class Value>
 void Options::add(const OptionText& text, Value& value) {
     CLI::Option& option = *command_->add_option(text.name, value, text.help);
     describe(option, text);
-    if constexpr (std::is_same_v<Value, std::filesystem::path>) take_dash(option);
+    if constexpr (std::is_same_v<Value, std::filesystem::path>) {
+        option.transform([stream = stream_for_dash(text.name)](const std::string& file) {
+            return file == "-" ? stream : file;
+        });
+    }
 }
 template void Options::add(const OptionText&, double&);
 template void Options::add(const OptionText&, int&);
@@ -170,6 +174,10 @@ void add_quiet(Options& options, bool& quiet) {
 Run one_structure() { return {{structures_key, {"K_oV"}}, {"splits", {"s_L"}}}; }
 
 void add_making_options(Options& options, WordsByKey& given, std::string_view another) {
+    options.set_footer(
+        "Of isotropic sources, without tau, epsilon, law, schedule or a target, K_oV is adapted\n"
+        "until lengths are within 1.1x of the exact field's; --target-delta 0: inserted and "
+        "graded.");
     const Uses uses{Use::making, Use::reading};
     options.add_case_parameters(one_structure(), "Settings of the structure (a value each)", given,
                                 uses, another);

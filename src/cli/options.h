@@ -94,7 +94,7 @@ void add_quiet(Options& options, bool& quiet);
 /// `another`.
 void add_making_options(Options& options, WordsByKey& given, std::string_view another = {});
 
-/// The structure of commands that make one, where none is given: K_oL, with the split s_L.
+/// The structure of commands that make one, where none is given: K_oV, with the split s_L.
 Run one_structure();
 
 /// The settings of a study for reading files of sources.

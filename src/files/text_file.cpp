@@ -58,7 +58,13 @@ std::string read_file(const std::filesystem::path& path, std::size_t largest, bo
 }  // namespace
 
 std::string read_text_file(const std::filesystem::path& path, std::size_t largest) {
-    std::string text = read_file(path, largest, true);
+    std::string text;
+    if (path == "/dev/stdin") {
+        static const std::string once = read_file(path, largest, true);  // what is read is gone
+        text = once;
+    } else {
+        text = read_file(path, largest, true);
+    }
     text.erase(0, text.size() - text_in(text, path).size());
     return text;
 }

@@ -77,8 +77,9 @@ void add_cad(const Part& part, const UnitFrame& frame) {
     gmsh::model::occ::synchronize();
     Entities volumes;
     gmsh::model::getEntities(volumes, 3);
-    if (volumes.empty()) {
-        throw InputError(fmt::format("{} holds no volume: export a solid", part.cad.string()));
+    if (volumes.size() != 1) {
+        throw InputError(
+            fmt::format("{} holds {} solids: give one", part.cad.string(), volumes.size()));
     }
 }
 
@@ -91,9 +92,9 @@ void require_inside(const UnitFrame& frame) {
         return;
     }
     const auto place = [&](const Vector& x) { return Point(frame.domain.low + frame.scale * x); };
-    throw InputError(
-        fmt::format("the part {} is not inside of the field's domain {}: make the field for it",
-                    to_string(Box{place(low), place(high)}), to_string(frame.domain)));
+    throw InputError(fmt::format(
+        "the part {} is not inside of the field's domain {}: make a field with a larger --domain",
+        to_string(Box{place(low), place(high)}), to_string(frame.domain)));
 }
 
 void add_geometry(const Part* part, const UnitFrame& frame) {
@@ -155,7 +156,8 @@ void require_valid(const Box& domain, const ControlSpace& field, const GmshOptio
                         "from 0.8 on it takes long",
                         optimize));
     }
-    require_few_tets(domain, field, options.max_tets);
+    // Of a part the estimate, which is for the domain, would be too high.
+    if (!options.part) require_few_tets(domain, field, options.max_tets);
 }
 
 }  // namespace
@@ -195,9 +197,9 @@ GmshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshO
         if (run.mesh.tets.empty()) {
             std::string why;
             gmsh::logger::getLastError(why);
-            throw InputError(fmt::format("Gmsh made no tetrahedra{}{}: try the other algorithm{}",
+            throw InputError(fmt::format("Gmsh made no tetrahedra{}{}: {}try the other algorithm",
                                          why.empty() ? "" : ": ", why,
-                                         options.part ? ", and whether the part is closed" : ""));
+                                         options.part ? "check that the part is closed, or " : ""));
         }
     });
     return run;

@@ -19,7 +19,7 @@ void require_follows(const Case& c, const CatalogueEntry& entry) {
 
 /// δ and the factor between lengths, and how they are known.
 std::string outcome_of(const AdaptationReport& report) {
-    if (std::isinf(report.reached)) return "δ unknown: it could not be shown to be finite";
+    if (std::isinf(report.reached)) return "δ unknown: no bound was found";
     const double factor = largest_factor_within(report.reached);
     if (report.is_bound) {
         return fmt::format("δ <= {:.4g} everywhere: lengths within {:.4g}x", report.reached,
@@ -40,8 +40,9 @@ void adapt(Filled& filled, const Case& c, const Workload& workload) {
         filled.creation.remark = outcome_of(report);
         if (report.met) return;
         filled.creation.shortfall =
-            fmt::format("target {:.4g} missed{}{}", goal.target,
-                        report.shortfall.empty() ? "" : ": ", report.shortfall);
+            fmt::format("target {:.4g} (lengths within {:.4g}x) missed{}{}", goal.target,
+                        largest_factor_within(goal.target), report.shortfall.empty() ? "" : ": ",
+                        report.shortfall);
     }
 }
 
@@ -50,6 +51,14 @@ void add_largest_ratio(GradationReport& gradation, const ControlSpace& space, Gr
     if (const auto nodes = control_nodes(space, neighbourhood)) {
         gradation.largest_ratio_left = largest_gradation(nodes->graph, nodes->metrics, law);
     }
+}
+
+// Whether the leaf of a source has an edge longer than tau in its metric.
+bool has_long_leaf(const ControlSpace& space, std::span<const PointSource> sources, double tau) {
+    return std::ranges::any_of(sources, [&](const PointSource& source) {
+        const auto leaf = space.cell_at(source.position);
+        return leaf && std::ranges::max(metric_edge_lengths(source.metric, leaf->edges())) > tau;
+    });
 }
 
 }  // namespace
@@ -88,9 +97,10 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     if (c.schedule == GradationSchedule::sources && entry.has<MetricNodes>()) {
         add_largest_ratio(creation.gradation, *space, c.law, c.neighbourhood);
     }
-    if (c.max_depth && space->footprint().depth >= *c.max_depth) {
+    if (c.max_depth && space->footprint().depth >= *c.max_depth &&
+        has_long_leaf(*space, sources, c.tau)) {
         creation.remark = fmt::format(
-            "has leaves of level {}, the deepest allowed: edges there may be longer than tau",
+            "leaves of sources are longer than tau where level {} is the deepest allowed",
             *c.max_depth);
     }
     return filled;

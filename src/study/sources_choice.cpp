@@ -17,8 +17,8 @@ std::string sources_name(const SourcesChoice& s) {
         case SourcesKind::file:
             break;
     }
-    std::string names;
-    for (const auto& file : files_of(s)) names += (names.empty() ? "" : ",") + file.string();
+    std::string names = s.file.string();
+    for (const auto& file : s.further_files) names += "," + file.string();
     return names;
 }
 

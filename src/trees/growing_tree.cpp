@@ -19,7 +19,7 @@ void fail_too_large(std::size_t max_bytes) {
 }
 
 std::string depth_shortfall(int max_depth) {
-    return fmt::format("leaves of level {} are not cut: raise target_delta or the depth",
+    return fmt::format("leaves of level {} are not cut: raise target_delta (within) or the depth",
                        max_depth);
 }
 

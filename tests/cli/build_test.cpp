@@ -67,7 +67,8 @@ TEST_CASE("a target that is missed is reported, with status 3, and what was made
     box.write("places.csv", places_csv);
     const std::string missed = " --structures K_oL --octree-depth 2 --target-delta 0.01";
     const std::string reason =
-        "δ 0.2023 at worst where sampled: lengths within 1.405x there; target 0.01 missed: leaves "
+        "δ 0.2023 at worst where sampled: lengths within 1.405x there; target 0.01 (lengths within "
+        "1.079x) missed: leaves "
         "of level 2 ";
     const auto check_missed = [&](const std::string& arguments) {
         const Outcome outcome = box.run(arguments);
@@ -102,10 +103,12 @@ TEST_CASE("a target that is missed is reported, with status 3, and what was made
 TEST_CASE("leaves that the depth limit keeps too long are remarked on") {
     const Sandbox box("build-depth");
     box.write("s.csv", "x,y,z,h\n0,0,0,0.01\n1,1,1,0.1\n");
-    const Outcome limited = box.run("build s.csv -o f.ctrl --quiet --octree-depth 3");
+    const std::string build = "build s.csv -o f.ctrl --quiet --tau 1";
+    const Outcome limited = box.run(build + " --octree-depth 3");
     CHECK(limited.status == 0);
-    CHECK_THAT(limited.err, Contains("K_oV: has leaves of level 3, the deepest allowed"));
-    CHECK_THAT(box.run("build s.csv -o f.ctrl --quiet").err, !Contains("deepest"));
+    CHECK_THAT(limited.err,
+               Contains("K_oV: leaves of sources are longer than tau where level 3 is"));
+    CHECK_THAT(box.run(build).err, !Contains("deepest"));
 }
 
 TEST_CASE("sources of several files make one field") {
@@ -131,13 +134,20 @@ TEST_CASE("how far a structure is from the exact field is told, and what to do")
     box.write("s.csv", "x,y,z,h\n0,0,0,0.01\n1,1,1,0.1\n");
     const Outcome coarse = box.run("build s.csv -o f.ctrl --structures K_oL");
     CHECK(coarse.status == 0);
-    CHECK_THAT(coarse.out,
-               Contains("; lengths within ") && Contains("x of the exact field at 8000"));
-    CHECK_THAT(coarse.err, Contains("K_oL: lengths are up to ") && Contains("--within 1.1"));
+    CHECK_THAT(coarse.err, Contains("K_oL: lengths within ") &&
+                               Contains("x of the exact field's at 8000 places: --within 1.1"));
     const Outcome fine = box.run("build s.csv -o f.ctrl --within 1.1");
     CHECK(fine.status == 0);
-    CHECK_THAT(fine.out, !Contains("8000"));
-    CHECK_THAT(fine.err, Contains("everywhere: lengths within 1.1x"));
+    CHECK_THAT(fine.err, Contains("everywhere: lengths within 1.1x") && !Contains("8000"));
+    CHECK(box.run("build s.csv -o f.ctrl").err == fine.err);
+    // Out of reach at this depth: nobody asked for it.
+    const Outcome shallow = box.run("build s.csv -o f.ctrl --octree-depth 3");
+    CHECK(shallow.status == 0);
+    CHECK_THAT(shallow.err, Contains("target 0.01575 (lengths within 1.1x) missed"));
+    box.write("t.csv",
+              "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n0,0,0,0.1,0.2,0.1,0,0,0\n"
+              "1,1,1,0.3,0.2,0.1,0,0,0\n");
+    CHECK_THAT(box.run("build t.csv -o f.ctrl").err, Contains("K_oV: lengths within "));
 }
 
 TEST_CASE("what is read is not written over") {

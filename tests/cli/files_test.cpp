@@ -119,7 +119,8 @@ TEST_CASE("query writes what a structure answers, as a table of sources") {
         REQUIRE(outcome.status == 0);
         CHECK(outcome.out == expected);
     }
-    const Outcome from_pipe = box.run("query - p.csv --structures direct --g-r 1.5 -o - <s.csv");
+    const Outcome from_pipe =
+        box.run("query - p.csv --structures direct --g-r 1.5 -o -", "cat s.csv | ");
     INFO(from_pipe.err);
     CHECK(from_pipe.out == expected);
     box.write("outside.csv", "x,y,z\n0,0,0\n5,0,0\n");

@@ -53,7 +53,7 @@ TEST_CASE("a target that a meshed structure missed is told, with status 3") {
         "--exact no --files none --output out");
     INFO(outcome.err);
     CHECK(outcome.status == 3);
-    CHECK_THAT(outcome.err, Contains("warning: K_oL") && Contains("target 0.001 missed"));
+    CHECK_THAT(outcome.err, Contains("warning: K_oL") && Contains("target 0.001 ("));
     const auto json = nlohmann::json::parse(file_text(box / "out" / "meshes.json"));
     REQUIRE(json["rows"].size() == 1);
     CHECK(json["rows"][0]["error"] == "");

@@ -63,7 +63,7 @@ std::vector<PointSource> read_sources(const std::filesystem::path& path, const s
 
 void write_sources(const std::filesystem::path& path, std::span<const PointSource> sources) {
     const std::string extension = lower_case_extension(path);
-    if (extension == ".csv") return write_csv_sources(path, sources);
+    if (extension == ".csv" || path == "/dev/stdout") return write_csv_sources(path, sources);
     if (extension == ".pos") return write_pos_sources(path, sources);
     if (extension == ".vtu" || extension == ".vtp") return write_vtk_sources(path, sources);
     if (extension == ".mesh" || extension == ".sol" || extension == ".meshb" ||
