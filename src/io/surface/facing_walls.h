@@ -2,22 +2,21 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
 
-#include "io/surface/surface_mesh.h"
+#include "io/surface/smooth_patches.h"
 
 namespace controlspace {
 
 /// What faces a place of a surface: the other side of a wall, or that of a gap.
 class FacingWalls {
 public:
-    /// Keeps references to both. `normals` of the triangles, on either side.
-    FacingWalls(const SurfaceMesh& mesh, const std::vector<Vector>& normals);
+    /// Keeps references to both.
+    FacingWalls(const SurfaceMesh& mesh, const SmoothPatches& patches);
     ~FacingWalls();
 
     /// Distance from a place inside triangle `t` along its normal, on the side where it is shorter,
     /// to the next triangle, if that is parallel within 30 degrees; infinite where there is none.
-    /// Triangles that touch are no gap. Thread-safe.
+    /// Triangles that touch are no gap, and neighbours across smooth edges no walls. Thread-safe.
     double distance(const Point& place, std::uint32_t t) const;
 
 private:

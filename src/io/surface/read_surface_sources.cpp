@@ -94,7 +94,7 @@ public:
     Sizing(const SurfaceMesh& mesh, const CurvatureSizes& sizes, const Bounds& bounds)
         : mesh_(mesh),
           patches_(smooth_patches(mesh, radians(sizes.crease))),
-          walls_(mesh, patches_.normals),
+          walls_(mesh, patches_),
           bounds_(bounds),
           chord_(2 * std::sin(radians(sizes.angle) / 2)),
           across_(1 / sizes.elements_across),

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -66,6 +67,31 @@ private:
 double doubled_area(const Sides& sides, Corner c) {
     const Point& a = sides.point(c);
     return (sides.point(next(c)) - a).cross(sides.point(next(next(c))) - a).norm();
+}
+
+/// The longest side of a triangle with an angle of more than 150 degrees, or none.
+Corner side_of_cap(const Sides& sides, std::uint32_t t) {
+    static const double widest = -std::cos(std::numbers::pi / 6);
+    for (Corner c = 3 * t; c < 3 * t + 3; ++c) {
+        const Vector a = sides.point(next(c)) - sides.point(c);
+        const Vector b = sides.point(next(next(c))) - sides.point(c);
+        if (a.dot(b) < widest * a.norm() * b.norm()) return next(c);
+    }
+    return none;
+}
+
+/// Normals, of which those of caps are their neighbours': three vertices nearly on a line hardly
+/// say how the surface is tilted, and would make creases of smooth edges.
+std::vector<Vector> without_caps(const Sides& sides, const std::vector<Vector>& normals) {
+    std::vector<Vector> result = normals;
+    for (std::uint32_t t = 0; t < normals.size(); ++t) {
+        const Corner side = side_of_cap(sides, t);
+        if (side == none || sides.partner(side) == none) continue;
+        const std::uint32_t other = sides.partner(side) / 3;
+        if (side_of_cap(sides, other) != none) continue;
+        result[t] = (sides.agree(side) ? 1 : -1) * normals[other];
+    }
+    return result;
 }
 
 /// Separates triangles at creases; what the others say of their triangles.
@@ -170,6 +196,7 @@ SmoothPatches smooth_patches(const SurfaceMesh& mesh, double crease) {
     }
     patches.fan_of.resize(mesh.triangles.size());
     Sides sides(mesh, patches.normals);
+    patches.normals = without_caps(sides, patches.normals);
     patches.bends = separate_at_creases(sides, crease);
     orient(sides, patches.normals);
     add_fans(sides, crease, patches);
