@@ -11,7 +11,7 @@ namespace {
 void require_type(ValueType type, const Value& value) {
     const double* x = std::get_if<double>(&value);
     if (type == ValueType::flag) {
-        if (value != "true" && value != "false") {
+        if (value != Value("true") && value != Value("false")) {
             throw InputError(fmt::format("{} is neither true nor false", to_string({value})));
         }
         return;

@@ -206,6 +206,14 @@ TEST_CASE("what is wrong in a study file is named with its line") {
     CHECK(complaint(text).find('\n') == std::string::npos);
 }
 
+TEST_CASE("keys for surfaces are read") {
+    const Study study = parse(
+        "sources = 'a.stl'\nsurface_angle = 10\nsurface_crease = 40\nelements_across = 3\n"
+        "isotropic = true\nsurface_h_min = 0.1\nsurface_h_max = 2");
+    CHECK(study.sources.in_file.curvature == CurvatureSizes{10, 40, 3, true, 0.1, 2});
+    CHECK_FALSE(parse("sources = 'a.stl'\nisotropic = false").sources.in_file.curvature.isotropic);
+}
+
 TEST_CASE("study files that cannot be read are named") {
     CHECK_THROWS_WITH(read_study("no/such/study.toml"), Contains("no/such/study.toml"));
     CHECK_THROWS_AS(read_study("/"), InputError);

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace controlspace {
@@ -50,30 +51,30 @@ struct Equations {
     }
 };
 
-/// Fans of the same patch in two rings around one, it and those that face away left out.
+/// Fans of the same patch in two rings around one, except those that face away in the second.
 std::vector<std::uint32_t> fans_around(const SmoothPatches& patches, const Fan& centre) {
     constexpr double facing = 0.5;
     std::vector<std::uint32_t> found;
-    const auto add_ring = [&](const Fan& fan) {
+    const auto add_ring = [&](const Fan& fan, double least) {
         for (const std::uint32_t t : fan.triangles) {
-            found.insert(found.end(), patches.fan_of[t].begin(), patches.fan_of[t].end());
+            std::ranges::copy_if(patches.fan_of[t], std::back_inserter(found), [&](auto i) {
+                const Fan& other = patches.fans[i];
+                return other.vertex != centre.vertex &&
+                       (other.apex || other.normal.dot(centre.normal) >= least);
+            });
         }
     };
-    const auto tidy = [&] {
+    const auto keep_one_each = [&] {
         std::sort(found.begin(), found.end());
         found.erase(std::unique(found.begin(), found.end()), found.end());
     };
-    add_ring(centre);
-    tidy();
+    add_ring(centre, -2);
+    keep_one_each();
     const std::vector<std::uint32_t> first_ring = found;
     for (const std::uint32_t i : first_ring) {
-        if (!patches.fans[i].apex) add_ring(patches.fans[i]);
+        if (!patches.fans[i].apex) add_ring(patches.fans[i], facing);
     }
-    tidy();
-    std::erase_if(found, [&](std::uint32_t i) {
-        const Fan& fan = patches.fans[i];
-        return fan.vertex == centre.vertex || (!fan.apex && fan.normal.dot(centre.normal) < facing);
-    });
+    keep_one_each();
     return found;
 }
 

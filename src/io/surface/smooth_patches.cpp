@@ -178,9 +178,10 @@ void add_fans(const Sides& sides, double crease, SmoothPatches& patches) {
         patches.fan_of[t][c % 3] = i;
         if (sides.partner(c) == none || sides.partner(previous) == none) fan.closed = false;
     }
+    const double least = std::max(std::cos(crease), 0.1);
     for (std::size_t i = 0; i < weights.size(); ++i) {
         Vector& normal = patches.fans[i].normal;
-        patches.fans[i].apex = !(normal.stableNorm() >= std::cos(crease) * weights[i]);
+        patches.fans[i].apex = !(normal.stableNorm() >= least * weights[i]);
         normal.stableNormalize();
     }
 }
