@@ -1,5 +1,9 @@
 #include "cli/formats.h"
 
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
 #include "cli/child_reading.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/io/read_surface_sources.h"
@@ -32,7 +36,12 @@ Sources read_vtk(const SourcesChoice& choice) {
     return read_vtk_sources(choice.file, choice.in_file.array);
 }
 Sources read_surface(const SourcesChoice& choice) {
-    return read_surface_sources(choice.file, choice.in_file.curvature);
+    SurfaceSources read = read_surface_sources(choice.file, choice.in_file.curvature);
+    if (read.skipped > 0) {
+        spdlog::warn("{}: {} vertices are skipped: no triangle there has an area",
+                     choice.file.string(), read.skipped);
+    }
+    return std::move(read.sources);
 }
 void try_surface(const SourcesChoice& choice) { read_surface_mesh(choice.file); }
 

@@ -89,6 +89,13 @@ void Options::add_parameter(const OptionText& text, ValueType type, std::size_t 
                             const Values& defaults, std::vector<std::string>& words) {
     const std::string default_text =
         defaults.empty() ? "" : fmt::format(" (default: {})", to_string(defaults));
+    if (type == ValueType::flag) {
+        command_
+            ->add_flag_callback(
+                text.name, [&words] { words = {"true"}; }, text.help)
+            ->group(text.group);
+        return;
+    }
     CLI::Option* option = command_->add_option(text.name, words, text.help + default_text);
     option->group(text.group)->option_text(type_name(type, at_most));
     if (at_most > 1) {

@@ -15,7 +15,7 @@ SurfaceMesh read_surface_mesh(const fs::path& path) {
     return module_table<CgalModule>("cgal").read_surface_mesh(path);
 }
 
-std::vector<PointSource> read_surface_sources(const fs::path& path, const CurvatureSizes& sizes) {
+SurfaceSources read_surface_sources(const fs::path& path, const CurvatureSizes& sizes) {
     return module_table<CgalModule>("cgal").read_surface_sources(path, sizes);
 }
 

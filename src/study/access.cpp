@@ -10,6 +10,12 @@ namespace {
 
 void require_type(ValueType type, const Value& value) {
     const double* x = std::get_if<double>(&value);
+    if (type == ValueType::flag) {
+        if (value != Value("true") && value != Value("false")) {
+            throw InputError(fmt::format("{} is neither true nor false", to_string({value})));
+        }
+        return;
+    }
     if (type == ValueType::text) {
         if (x != nullptr) throw InputError(fmt::format("{} is not a text", *x));
         return;

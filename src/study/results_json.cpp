@@ -12,6 +12,7 @@ namespace {
 
 Json to_json(ValueType type, const Value& value) {
     if (type == ValueType::whole_number) return static_cast<std::int64_t>(value.number());
+    if (type == ValueType::flag) return value.text() == "true";
     return std::visit([](const auto& v) { return Json(v); }, value);
 }
 
@@ -34,6 +35,8 @@ Values values_from(const Json& json) {
     const auto add = [&](const Json& item) {
         if (item.is_string()) {
             values.emplace_back(item.get<std::string>());
+        } else if (item.is_boolean()) {
+            values.emplace_back(item.get<bool>() ? "true" : "false");
         } else {
             values.emplace_back(item.get<double>());
         }

@@ -80,8 +80,11 @@ private:
                 values.emplace_back(static_cast<double>(n->get()));
             } else if (const auto* s = item.as_string()) {
                 values.emplace_back(s->get());
+            } else if (const auto* b = item.as_boolean()) {
+                values.emplace_back(b->get() ? "true" : "false");
             } else {
-                fail(place_, item.source(), "give numbers, texts, or an array of them");
+                fail(place_, item.source(),
+                     "give numbers, texts, true or false, or an array of them");
             }
         };
         if (const toml::array* array = node.as_array()) {

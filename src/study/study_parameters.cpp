@@ -201,6 +201,7 @@ std::vector<Parameter<Study>> table() {
                                          field_is({"sphere", "planes"})};
     const AppliesTo<Study> field_file{"field = \"file\"", field_is({"file"})};
     using Sources = SourcesChoice;
+    const auto angle = [](double x) { return within(0, 180)(positive(x)); };
     return {
         {"name", "", "Name of the study, and of its folder of results", name(), Use::results},
         {"sources", "",
@@ -283,9 +284,18 @@ std::vector<Parameter<Study>> table() {
         {"surface_angle", "degrees",
          "Sources of a surface (.stl, .obj, .ply, .off): part of the circle of curvature that an "
          "edge spans",
-         number_of(of_curvature(&CurvatureSizes::angle),
-                   [](double x) { return within(0, 180)(positive(x)); }),
-         reading, surface},
+         number_of(of_curvature(&CurvatureSizes::angle), angle), reading, surface},
+        {"surface_crease", "degrees",
+         "Sources of a surface: edges where the normal turns by more bound its smooth patches, and "
+         "are not curvature",
+         number_of(of_curvature(&CurvatureSizes::crease), angle), reading, surface},
+        {"elements_across", "",
+         "Sources of a surface: number of lengths across walls and gaps, thickness / length",
+         number_of(of_curvature(&CurvatureSizes::elements_across), positive), reading, surface},
+        {"isotropic", "",
+         "Sources of a surface: the shortest length in all directions; left out: lengths by both "
+         "principal curvatures and across walls",
+         flag<Study>(of_curvature(&CurvatureSizes::isotropic)), reading, surface},
         {"surface_h_min", length,
          "Sources of a surface: smallest length; left out: a thousandth of the diagonal of its box",
          length_if_given(of_curvature(&CurvatureSizes::h_min)), reading, surface},

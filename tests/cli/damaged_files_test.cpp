@@ -138,7 +138,11 @@ void check_damaged(const Sandbox& box, const std::string& name, const std::strin
         const Outcome outcome = box.run(command + name);
         CAPTURE(outcome.err);
         CHECK((outcome.status == 0 || outcome.status == 2));
-        CHECK(lines(outcome.err) == (outcome.status == 0 ? 0 : 1));
+        // Triangles without an area are no error.
+        if (outcome.status == 0 && !outcome.err.empty()) {
+            CHECK_THAT(outcome.err, Catch::Matchers::Contains("vertices are skipped"));
+        }
+        if (outcome.status != 0 || !outcome.err.empty()) CHECK(lines(outcome.err) == 1);
         CHECK(outcome.out.empty() == (outcome.status != 0));
     }
 }

@@ -155,6 +155,9 @@ TEST_CASE("commands on files that cannot be carried out end with one line") {
         {"info s.csv --source-array a", "source_array is for .vtu, .vtp, .msh and .pos"},
         {"info s.csv --surface-h-min 1",
          "surface_h_min is for surfaces: .stl, .obj, .ply and .off"},
+        {"info s.csv --isotropic", "isotropic is for surfaces: .stl, .obj, .ply and .off"},
+        {"info s.stl --surface-crease 200", "--surface-crease: 200 is out of range"},
+        {"info s.stl --elements-across 0", "--elements-across: 0 is not positive"},
         {"query s.csv", "POINTS"},
         {"query s.csv p.csv", "p.csv:1: column 'z' is missing"},
         {"query s.csv none.csv", "none.csv holds no points"},
@@ -167,3 +170,24 @@ TEST_CASE("commands on files that cannot be carried out end with one line") {
     check_refused(box.run(arguments), expected);
     for (const char* name : {"out.csv", "out.xyz", "out.mesh"}) CHECK_FALSE(fs::exists(box / name));
 }
+
+#ifdef CONTROLSPACE_CGAL
+TEST_CASE("settings for surfaces are used, and vertices that are left out counted") {
+    const Sandbox box("surface");
+    box.write("plate.obj",
+              "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"   // two plates,
+              "v 0 0 0.1\nv 1 0 0.1\nv 1 1 0.1\nv 0 1 0.1\nf 5 6 7 8\n"  // 0.1 apart,
+              "v 2 0 0\nv 3 0 0\nf 2 9 10\n");                           // and a line
+    const auto finest = [&](const std::string& options) {
+        const Outcome outcome = box.run("info plate.obj --surface-h-max 0.5 " + options);
+        INFO(outcome.err);
+        CHECK(outcome.status == 0);
+        CHECK(lines(outcome.err) == 1);
+        CHECK_THAT(outcome.err, Contains("plate.obj: 2 vertices are skipped: no triangle"));
+        return outcome.out.substr(outcome.out.find("lengths"), 28);
+    };
+    CHECK_THAT(finest(""), Contains("0.05 to 0.5"));
+    CHECK_THAT(finest("--elements-across 4"), Contains("0.025 to 0.5"));
+    CHECK_THAT(finest("--isotropic"), Contains("0.05 to 0.05"));
+}
+#endif

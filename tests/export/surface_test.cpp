@@ -1,14 +1,9 @@
 // Sources by curvature on surfaces whose curvature is known.
-#include <fmt/format.h>
-
-#include <Eigen/Geometry>
-#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
-#include <numbers>
 
 #include "controlspace/io/read_surface_sources.h"
+#include "export/surfaces.h"
 #include "io/surface/surface_mesh.h"
 #include "sources/files.h"
 
@@ -17,50 +12,6 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
-struct Surface {
-    std::vector<Point> vertices;
-    std::vector<std::array<std::size_t, 3>> triangles;
-};
-
-/// A patch of n x m quadrangles, each cut in two; closed along u or v where that is said.
-Surface patch(std::size_t n, std::size_t m, bool closed_u, bool closed_v,
-              const std::function<Point(double, double)>& at) {
-    Surface s;
-    const std::size_t columns = closed_u ? n : n + 1, rows = closed_v ? m : m + 1;
-    for (std::size_t j = 0; j < rows; ++j) {
-        for (std::size_t i = 0; i < columns; ++i) {
-            s.vertices.push_back(at(double(i) / double(n), double(j) / double(m)));
-        }
-    }
-    const auto index = [&](std::size_t i, std::size_t j) {
-        return (j % rows) * columns + i % columns;
-    };
-    for (std::size_t j = 0; j < m; ++j) {
-        for (std::size_t i = 0; i < n; ++i) {
-            s.triangles.push_back({index(i, j), index(i + 1, j), index(i + 1, j + 1)});
-            s.triangles.push_back({index(i, j), index(i + 1, j + 1), index(i, j + 1)});
-        }
-    }
-    return s;
-}
-
-/// The torus of radii 3 and 1 around the z axis.
-Surface torus() {
-    return patch(96, 48, true, true, [](double u, double v) {
-        const double r = 3 + std::cos(2 * pi * v);
-        return Point(r * std::cos(2 * pi * u), r * std::sin(2 * pi * u), std::sin(2 * pi * v));
-    });
-}
-
-std::string off_text(const Surface& s) {
-    std::string text =
-        fmt::format("OFF\n# a comment\n{} {} 0\n", s.vertices.size(), s.triangles.size());
-    for (const Point& p : s.vertices) text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
-    for (const auto& t : s.triangles) text += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
-    return text;
-}
 std::string obj_text(const Surface& s) {
     std::string text;
     for (const Point& p : s.vertices) text += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
@@ -106,8 +57,6 @@ std::string stl_bytes(const Surface& s) {
     return bytes;
 }
 
-double chord(double degrees) { return 2 * std::sin(degrees / 2 * pi / 180); }
-
 /// Length that a metric asks for along `direction`.
 double length_along(const Metric& m, const Vector& direction) {
     return 1 / metric_length(m, direction.normalized());
@@ -125,9 +74,10 @@ TEST_CASE("lengths on a torus follow both curvatures, in all formats") {
         {"b.stl", stl_bytes},
     }));
     CAPTURE(name);
-    const Surface surface = torus();
+    const Surface surface = torus(48);
     const auto sources = read_surface_sources(scratch.file(name, text(surface)),
-                                              {.angle = 20, .h_min = 1e-3, .h_max = 100});
+                                              {.angle = 20, .h_min = 1e-3, .h_max = 100})
+                             .sources;
     REQUIRE(sources.size() == surface.vertices.size());
     for (const auto& [p, metric] : sources) {
         const double r = std::hypot(p.x(), p.y());
@@ -147,52 +97,59 @@ TEST_CASE("lengths on a torus follow both curvatures, in all formats") {
 TEST_CASE("bounds hold where the curvature asks for more or less") {
     const ScratchDirectory scratch;
     // A cylinder of radius 1: flat along z.
-    const Surface cylinder = patch(40, 20, true, false, [](double u, double v) {
-        return Point(std::cos(2 * pi * u), std::sin(2 * pi * u), 4 * v);
-    });
+    const Surface cylinder = cone(1, 1, 4, 40, 20);
     const auto path = scratch.file("c.off", off_text(cylinder));
-    for (const auto& [p, metric] : read_surface_sources(path, {.h_min = 0.01, .h_max = 0.5})) {
+    for (const auto& [p, metric] :
+         read_surface_sources(path, {.h_min = 0.01, .h_max = 0.5}).sources) {
         CHECK(length_along(metric, Vector::UnitZ()) == Approx(0.5));
         CHECK(length_along(metric, {-p.y(), p.x(), 0}) == Approx(chord(15)).epsilon(0.04));
     }
-    for (const PointSource& s : read_surface_sources(path, {.h_min = 0.4, .h_max = 0.5})) {
+    for (const PointSource& s : read_surface_sources(path, {.h_min = 0.4, .h_max = 0.5}).sources) {
         CHECK(eigen_frame(s.metric).lengths[0] == Approx(0.4));
     }
     // Left out: 0.1 of the diagonal.
     const double diagonal = std::sqrt(4 + 4 + 16);
-    CHECK(length_along(read_surface_sources(path).front().metric, Vector::UnitZ()) ==
+    CHECK(length_along(read_surface_sources(path).sources.front().metric, Vector::UnitZ()) ==
           Approx(0.1 * diagonal));
     const auto error = [&](const CurvatureSizes& sizes) {
         return error_of([&] { read_surface_sources(path, sizes); });
     };
     CHECK_THAT(error({.h_min = 1, .h_max = 0.5}), Contains("lengths from 1 to 0.5"));
     CHECK_THAT(error({.angle = 200}), Contains("an angle of 200"));
+    CHECK_THAT(error({.crease = 0}), Contains("a crease angle of 0: give one above 0, up to 180"));
+    CHECK_THAT(error({.elements_across = 0}),
+               Contains("0 elements across walls and gaps: give a positive number"));
 }
 
 TEST_CASE("triangles of their own corners are joined where they touch") {
     const ScratchDirectory scratch;
-    const Surface square =
-        patch(2, 2, false, false, [](double u, double v) { return Point(u, v, 0); });
+    const Surface square = patch({2, 2}, [](double u, double v) { return Point(u, v, 0); });
     const SurfaceMesh mesh = read_surface_mesh(scratch.file("s.stl", stl_text(square)));
     REQUIRE(mesh.vertices.size() == 9);
-    REQUIRE(mesh.first.size() == 10);
-    // Vertices in ascending order of x: the fifth is the middle, which has six neighbours.
+    // In ascending order of x: the fifth is the middle.
     CHECK(mesh.vertices[4] == Point(0.5, 0.5, 0));
-    CHECK(mesh.first[5] - mesh.first[4] == 6);
-    CHECK(mesh.neighbours.size() == 2 * 16);
+    CHECK(std::ranges::count_if(mesh.triangles,
+                                [](const auto& t) { return std::ranges::count(t, 4U) == 1; }) == 6);
 }
 
-TEST_CASE("surfaces without curvature to be found are refused") {
+TEST_CASE("copies of a triangle and triangles without an area are left out") {
+    const ScratchDirectory scratch;
+    const auto path = scratch.file("t.obj",
+                                   "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nv 3 0 0\n"
+                                   "f 1 2 3\nf 3 2 1\nf 1 2 4\nf 1 4 5\nf 2 2 3\n");
+    CHECK(read_surface_mesh(path).triangles.size() == 1);
+    const SurfaceSources read = read_surface_sources(path, {.h_max = 2});
+    CHECK(read.sources.size() == 3);
+    CHECK(read.skipped == 2);
+}
+
+TEST_CASE("surfaces without triangles are refused") {
     const ScratchDirectory scratch;
     const auto error = [&](const std::string& name, const std::string& text) {
         return error_of([&] { read_surface_sources(scratch.file(name, text)); });
     };
-    CHECK_THAT(error("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
-               Contains("t.obj: the 3 vertices around 0 0 0 do not say how"));
-    // All vertices on two lines.
-    const Surface strip =
-        patch(12, 1, false, false, [](double u, double v) { return Point(u, v, 0); });
-    CHECK_THAT(error("t.off", off_text(strip)), Contains("do not say how the surface is curved"));
+    CHECK_THAT(error("t.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"),
+               Contains("t.obj: no triangle has an area"));
     CHECK_THAT(error("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"), Contains("t.obj: "));
     CHECK_THAT(error("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), Contains("t.obj: no "));
 }

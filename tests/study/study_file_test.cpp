@@ -157,7 +157,9 @@ TEST_CASE("what is wrong in a study file is named with its line") {
         {"[[runs]]\nseed = 1", ":2: unknown key 'seed': known are structures, "},
         {"tau = [1", "folder/my-study.toml:1: "},
         {"\ntau = 'a'", ":2: tau: 'a' is not a number"},
-        {"tau = true", ":1: give numbers, texts"},
+        {"tau = true", ":1: tau: 'true' is not a number"},
+        {"isotropic = 1", ":1: isotropic: 1 is neither true nor false"},
+        {"tau = 1979-05-27", ":1: give numbers, texts"},
         {"tau = [1, [2]]", ":1: give numbers, texts"},
         {"tau = []", ":1: tau: no value"},
         {"structures = []", ":1: structures: no value"},
@@ -202,6 +204,14 @@ TEST_CASE("what is wrong in a study file is named with its line") {
     INFO(text);
     CHECK_THAT(complaint(text), Contains(expected));
     CHECK(complaint(text).find('\n') == std::string::npos);
+}
+
+TEST_CASE("keys for surfaces are read") {
+    const Study study = parse(
+        "sources = 'a.stl'\nsurface_angle = 10\nsurface_crease = 40\nelements_across = 3\n"
+        "isotropic = true\nsurface_h_min = 0.1\nsurface_h_max = 2");
+    CHECK(study.sources.in_file.curvature == CurvatureSizes{10, 40, 3, true, 0.1, 2});
+    CHECK_FALSE(parse("sources = 'a.stl'\nisotropic = false").sources.in_file.curvature.isotropic);
 }
 
 TEST_CASE("study files that cannot be read are named") {

@@ -1,92 +1,48 @@
 #include "controlspace/io/read_surface_sources.h"
 
-#include <CGAL/Eigen_svd.h>
-#include <CGAL/Monge_via_jet_fitting.h>
-#include <CGAL/Simple_cartesian.h>
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "controlspace/error.h"
-#include "controlspace/geometry/box.h"
-#include "io/surface/surface_mesh.h"
+#include "controlspace/metric/blend.h"
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/order_free_intersection.h"
+#include "io/surface/curvature.h"
+#include "io/surface/facing_walls.h"
 
 namespace controlspace {
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;
-using Fit = CGAL::Monge_via_jet_fitting<Kernel, Kernel, CGAL::Eigen_svd>;
-
-constexpr std::size_t order = 2;
-constexpr std::size_t coefficients = (order + 1) * (order + 2) / 2;
-
-/// Vertices around vertex `i`, itself first, ring by ring.
-void gather(const SurfaceMesh& mesh, std::uint32_t i, int rings,
-            std::vector<std::uint32_t>& found) {
-    found.assign(1, i);
-    std::size_t ring_begin = 0;
-    for (int ring = 0; ring < rings; ++ring) {
-        const std::size_t ring_end = found.size();
-        for (std::size_t k = ring_begin; k < ring_end; ++k) {
-            for (std::size_t n = mesh.first[found[k]]; n < mesh.first[found[k] + 1]; ++n) {
-                const std::uint32_t next = mesh.neighbours[n];
-                if (std::find(found.begin(), found.end(), next) == found.end()) {
-                    found.push_back(next);
-                }
-            }
-        }
-        ring_begin = ring_end;
-    }
-}
-
-/// The jet at vertex `i`, from two rings around it; from more where these do not determine it, as
-/// they do not where all lie on two lines.
-Fit::Monge_form form_at(const SurfaceMesh& mesh, std::uint32_t i, const std::string& name) {
-    constexpr int fewest_rings = 2, most_rings = 4;
-    constexpr double well_determined = 1e4;
-    std::vector<std::uint32_t> around;
-    for (int rings = fewest_rings; rings <= most_rings; ++rings) {
-        gather(mesh, i, rings, around);
-        if (around.size() < coefficients) continue;
-        std::vector<Kernel::Point_3> points;
-        for (const std::uint32_t k : around) {
-            const Point& p = mesh.vertices[k];
-            points.emplace_back(p.x(), p.y(), p.z());
-        }
-        Fit fit;
-        const Fit::Monge_form form = fit(points.begin(), points.end(), order, order);
-        if (fit.condition_number() < well_determined) return form;
-    }
-    const Point& p = mesh.vertices[i];
-    throw InputError(fmt::format(
-        "{}: the {} vertices around {} {} {} do not say how the surface is curved: give "
-        "smaller triangles there",
-        name, around.size(), p.x(), p.y(), p.z()));
-}
-
-Vector vector_of(const Kernel::Vector_3& v) { return {v.x(), v.y(), v.z()}; }
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Bounds {
     double h_min, h_max;
 };
 
-Bounds bounds_of(const std::filesystem::path& path, const CurvatureSizes& sizes,
-                 const SurfaceMesh& mesh) {
-    if (!(sizes.angle > 0 && sizes.angle <= 180)) {
-        throw InputError(fmt::format("an angle of {}: give one of up to 180", sizes.angle));
+void require_valid(const CurvatureSizes& sizes) {
+    for (const auto& [name, angle] : {std::pair("an", sizes.angle), {"a crease", sizes.crease}}) {
+        if (angle > 0 && angle <= 180) continue;
+        throw InputError(fmt::format("{} angle of {}: give one above 0, up to 180", name, angle));
     }
-    Box extent{mesh.vertices.front(), mesh.vertices.front()};
-    for (const Point& p : mesh.vertices) {
-        extent = {extent.low.cwiseMin(p), extent.high.cwiseMax(p)};
+    if (!is_length(sizes.elements_across)) {
+        throw InputError(fmt::format("{} elements across walls and gaps: give a positive number",
+                                     sizes.elements_across));
     }
-    const double diagonal = extent.edges().norm();
+}
+
+Bounds bounds_of(const std::filesystem::path& path, const CurvatureSizes& sizes, double diagonal) {
     const Bounds bounds{sizes.h_min != 0 ? sizes.h_min : 1e-3 * diagonal,
                         sizes.h_max != 0 ? sizes.h_max : 0.1 * diagonal};
-    if (!is_length(bounds.h_min) || !is_length(bounds.h_max) || bounds.h_min > bounds.h_max) {
+    constexpr double most_anisotropic = 1e7;  // of metrics that can be intersected
+    if (!is_length(bounds.h_min) || !is_length(bounds.h_max) || bounds.h_min > bounds.h_max ||
+        bounds.h_max > most_anisotropic * bounds.h_min) {
         throw InputError(fmt::format(
             "{}: lengths from {} to {}: give other bounds (--surface-h-min, --surface-h-max)",
             path.string(), bounds.h_min, bounds.h_max));
@@ -94,36 +50,182 @@ Bounds bounds_of(const std::filesystem::path& path, const CurvatureSizes& sizes,
     return bounds;
 }
 
-}  // namespace
+double shortest(const Metric& m) { return eigen_frame(m).lengths[0]; }
 
-std::vector<PointSource> read_surface_sources(const std::filesystem::path& path,
-                                              const CurvatureSizes& sizes) {
-    const SurfaceMesh mesh = read_surface_mesh(path);
-    const Bounds bounds = bounds_of(path, sizes, mesh);
-    // Chord of the circle of radius 1.
-    const double chord = 2 * std::sin(sizes.angle / 2 * std::numbers::pi / 180);
-    const auto length = [&](double curvature) {
-        return std::clamp(chord / std::abs(curvature), bounds.h_min, bounds.h_max);
-    };
-
-    const auto source_at = [&](std::uint32_t i) {
-        const Fit::Monge_form form = form_at(mesh, i, path.string());
-        const double h1 = length(form.principal_curvatures(0));
-        const double h2 = length(form.principal_curvatures(1));
-        Eigen::Matrix3d frame;
-        frame << vector_of(form.maximal_principal_direction()),
-            vector_of(form.minimal_principal_direction()), vector_of(form.normal_direction());
-        return PointSource{mesh.vertices[i], metric_from_frame({h1, h2, std::min(h1, h2)}, frame)};
-    };
-    std::vector<PointSource> sources(mesh.vertices.size());
-    constexpr std::size_t vertices_per_task = 256;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sources.size(), vertices_per_task),
+/// `work` for each number below `count`, in parallel.
+template <class Work>
+void for_each(std::size_t count, const Work& work) {
+    constexpr std::size_t per_task = 64;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, per_task),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                           for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                              sources[i] = source_at(static_cast<std::uint32_t>(i));
+                              work(static_cast<std::uint32_t>(i));
                           }
                       });
-    return sources;
+}
+
+/// Part of a triangle. Metrics inside are blended linearly, as lengths on a cone are linear.
+struct Piece {
+    std::array<Point, 3> at;
+    std::array<Metric, 3> metric;
+    std::array<bool, 3> is_corner;  ///< of the triangle
+
+    /// Near the centroid, which itself often lies over an edge of the wall behind.
+    static constexpr std::array<double, 3> inside{0.35, 0.34, 0.31};
+
+    Point place() const { return inside[0] * at[0] + inside[1] * at[1] + inside[2] * at[2]; }
+    Metric metric_there() const {
+        return blend_lengths(inside, [&](std::size_t k) { return metric[k]; });
+    }
+    /// The part that is left where the corner `moved` goes to the middle of the edge to `kept`.
+    Piece half(std::size_t kept, std::size_t moved) const {
+        Piece half = *this;
+        half.at[moved] = 0.5 * (at[kept] + at[moved]);
+        half.metric[moved] = blend_lengths(
+            2, [](std::size_t) { return 0.5; },
+            [&](std::size_t k) { return metric[k == 0 ? kept : moved]; });
+        half.is_corner[moved] = false;
+        return half;
+    }
+};
+
+class Sizing {
+public:
+    Sizing(const SurfaceMesh& mesh, const CurvatureSizes& sizes, const Bounds& bounds)
+        : mesh_(mesh),
+          patches_(smooth_patches(mesh, radians(sizes.crease))),
+          walls_(mesh, patches_),
+          bounds_(bounds),
+          chord_(2 * std::sin(radians(sizes.angle) / 2)),
+          across_(1 / sizes.elements_across),
+          isotropic_(sizes.isotropic) {}
+
+    SurfaceSources sources() {
+        metrics_.resize(patches_.fans.size());
+        for_each(metrics_.size(), [&](std::uint32_t i) {
+            metrics_[i] = metric_of(curvature_at(mesh_, patches_, patches_.fans[i]));
+        });
+        std::vector<std::vector<PointSource>> inside(mesh_.triangles.size());
+        corner_walls_.resize(mesh_.triangles.size());
+        for_each(inside.size(), [&](std::uint32_t t) { divide(t, triangle(t), false, inside[t]); });
+        SurfaceSources result = at_vertices();
+        for (const auto& sources : inside) {
+            result.sources.insert(result.sources.end(), sources.begin(), sources.end());
+        }
+        return result;
+    }
+
+private:
+    static double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+
+    double length(double curvature) const {
+        return std::clamp(chord_ / curvature, bounds_.h_min, bounds_.h_max);
+    }
+
+    Metric metric_of(const Curvature& curvature) const {
+        const double h1 = length(curvature.along[0]), h2 = length(curvature.along[1]);
+        return metric_from_frame({h1, h2, std::min(h1, h2)}, curvature.frame);
+    }
+
+    /// `m` with the length across a wall or gap.
+    Metric with_wall(const Metric& m, const Vector& normal, double thickness) const {
+        const double across = std::max(across_ * thickness, bounds_.h_min);
+        if (across >= bounds_.h_max) return m;
+        return intersection(m, layer_metric(normal, across, bounds_.h_max));
+    }
+
+    Metric as_wanted(const Metric& m) const {
+        return isotropic_ ? Metric::isotropic(shortest(m)) : m;
+    }
+
+    /// A triangle; without the curvature of its corners if it is far flatter itself, as the large
+    /// triangles of a plate between fillets are.
+    Piece triangle(std::uint32_t t) const {
+        constexpr double far_flatter = 4;
+        const double own = length(patches_.bends[t]);
+        Piece piece;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t i = patches_.fan_of[t][k];
+            const Fan& fan = patches_.fans[i];
+            const bool flatter = !fan.apex && own > far_flatter * shortest(metrics_[i]);
+            piece.at[k] = mesh_.vertices[fan.vertex];
+            piece.metric[k] = flatter ? Metric::isotropic(own) : metrics_[i];
+            piece.is_corner[k] = true;
+        }
+        return piece;
+    }
+
+    /// Halves a piece until its edges are short enough, then adds a source there if it `is_part` of
+    /// a triangle.
+    void divide(std::uint32_t t, const Piece& piece, bool is_part,
+                std::vector<PointSource>& sources) {
+        constexpr double longest = 2;
+        const Point place = piece.place();
+        const double wall = walls_.distance(place, t);
+        const Metric metric = as_wanted(with_wall(piece.metric_there(), patches_.normals[t], wall));
+        std::array<double, 3> edges;
+        for (std::size_t k = 0; k < 3; ++k) {
+            edges[k] = metric_length(metric, piece.at[(k + 1) % 3] - piece.at[k]);
+        }
+        const auto widest = std::max_element(edges.begin(), edges.end());
+        if (*widest > longest) {
+            const auto a = static_cast<std::size_t>(widest - edges.begin()), b = (a + 1) % 3;
+            divide(t, piece.half(a, b), true, sources);
+            divide(t, piece.half(b, a), true, sources);
+            return;
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (piece.is_corner[k]) corner_walls_[t][k] = wall;
+        }
+        if (is_part) sources.push_back({place, metric});
+    }
+
+    /// The intersection of the metrics of a vertex's fans.
+    SurfaceSources at_vertices() const {
+        std::vector<std::vector<Metric>> metrics(mesh_.vertices.size());
+        for (std::uint32_t i = 0; i < patches_.fans.size(); ++i) {
+            const Fan& fan = patches_.fans[i];
+            double wall = infinity;
+            for (const std::uint32_t t : fan.triangles) {
+                for (std::size_t k = 0; k < 3; ++k) {
+                    if (patches_.fan_of[t][k] == i) wall = std::min(wall, corner_walls_[t][k]);
+                }
+            }
+            metrics[fan.vertex].push_back(with_wall(metrics_[i], fan.normal, wall));
+        }
+        std::vector<PointSource> sources(mesh_.vertices.size());
+        for_each(sources.size(), [&](std::uint32_t v) {
+            if (metrics[v].empty()) return;
+            const Metric met = metrics[v].size() == 1
+                                   ? metrics[v].front()
+                                   : order_free_intersection(metrics[v]).metric();
+            sources[v] = {mesh_.vertices[v], as_wanted(met)};
+        });
+        SurfaceSources result;
+        for (std::size_t v = 0; v < sources.size(); ++v) {
+            if (!metrics[v].empty()) result.sources.push_back(sources[v]);
+        }
+        result.skipped = sources.size() - result.sources.size();
+        return result;
+    }
+
+    const SurfaceMesh& mesh_;
+    const SmoothPatches patches_;
+    const FacingWalls walls_;
+    const Bounds bounds_;
+    const double chord_, across_;
+    const bool isotropic_;
+    std::vector<Metric> metrics_;                      ///< of fans, by curvature
+    std::vector<std::array<double, 3>> corner_walls_;  ///< distances next to corners of triangles
+};
+
+}  // namespace
+
+SurfaceSources read_surface_sources(const std::filesystem::path& path,
+                                    const CurvatureSizes& sizes) {
+    require_valid(sizes);
+    const SurfaceMesh mesh = read_surface_mesh(path);
+    return Sizing(mesh, sizes, bounds_of(path, sizes, mesh.diagonal)).sources();
 }
 
 }  // namespace controlspace

@@ -4,12 +4,15 @@
 #include <CGAL/Simple_cartesian.h>
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <exception>
 #include <string>
+#include <utility>
 
 #include "controlspace/error.h"
+#include "controlspace/geometry/box.h"
 #include "files/text_file.h"
 #include "geometry/point_order.h"
 #include "io/text/metric_rows.h"
@@ -57,40 +60,68 @@ Soup read_soup(const std::filesystem::path& path) {
     return soup;
 }
 
+/// The vertices of all polygons, each place once and in ascending order.
+std::vector<Point> places_of(const Soup& soup) {
+    std::vector<Point> places;
+    for (const auto& polygon : soup.polygons) {
+        for (const std::size_t corner : polygon) places.push_back(point(soup, corner));
+    }
+    std::sort(places.begin(), places.end(), precedes);
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    return places;
+}
+
+/// Shortest height of a triangle.
+double height(const Point& a, const Point& b, const Point& c) {
+    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    return longest > 0 ? (b - a).cross(c - a).norm() / longest : 0;
+}
+
+/// Leaves out later triangles with the vertices of an earlier one.
+void remove_copies(std::vector<std::array<std::uint32_t, 3>>& triangles) {
+    using Key = std::pair<std::array<std::uint32_t, 3>, std::size_t>;
+    std::vector<Key> keys;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        keys.emplace_back(triangles[t], t);
+        std::sort(keys.back().first.begin(), keys.back().first.end());
+    }
+    std::sort(keys.begin(), keys.end());
+    const auto same = [](const Key& a, const Key& b) { return a.first == b.first; };
+    keys.erase(std::unique(keys.begin(), keys.end(), same), keys.end());
+    std::sort(keys.begin(), keys.end(),
+              [](const Key& a, const Key& b) { return a.second < b.second; });
+    for (std::size_t i = 0; i < keys.size(); ++i) triangles[i] = triangles[keys[i].second];
+    triangles.resize(keys.size());
+}
+
 }  // namespace
 
 SurfaceMesh read_surface_mesh(const std::filesystem::path& path) {
     const Soup soup = read_soup(path);
-    SurfaceMesh mesh;
-    for (const auto& polygon : soup.polygons) {
-        for (const std::size_t corner : polygon) mesh.vertices.push_back(point(soup, corner));
+    SurfaceMesh mesh{.vertices = places_of(soup), .triangles = {}};
+    if (mesh.vertices.empty()) fail(path, "polygons without corners: nothing to read");
+    Box extent{mesh.vertices.front(), mesh.vertices.front()};
+    for (const Point& p : mesh.vertices) {
+        extent = {extent.low.cwiseMin(p), extent.high.cwiseMax(p)};
     }
-    std::sort(mesh.vertices.begin(), mesh.vertices.end(), precedes);
-    mesh.vertices.erase(std::unique(mesh.vertices.begin(), mesh.vertices.end()),
-                        mesh.vertices.end());
+    mesh.diagonal = extent.edges().norm();
     const auto vertex = [&](std::size_t corner) {
         const auto place = std::lower_bound(mesh.vertices.begin(), mesh.vertices.end(),
                                             point(soup, corner), precedes);
         return static_cast<std::uint32_t>(place - mesh.vertices.begin());
     };
-    std::vector<std::array<std::uint32_t, 2>> sides;  // both ways
     for (const auto& polygon : soup.polygons) {
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            const std::uint32_t a = vertex(polygon[i]);
-            const std::uint32_t b = vertex(polygon[(i + 1) % polygon.size()]);
-            if (a == b) continue;
-            sides.push_back({a, b});
-            sides.push_back({b, a});
+        for (std::size_t i = 2; i < polygon.size(); ++i) {
+            const std::uint32_t a = vertex(polygon[0]), b = vertex(polygon[i - 1]),
+                                c = vertex(polygon[i]);
+            if (height(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]) <= rounding(mesh)) {
+                continue;
+            }
+            mesh.triangles.push_back({a, b, c});
         }
     }
-    std::sort(sides.begin(), sides.end());
-    sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
-    mesh.first.assign(mesh.vertices.size() + 1, 0);
-    for (const auto& [a, b] : sides) {
-        ++mesh.first[a + 1];
-        mesh.neighbours.push_back(b);
-    }
-    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) mesh.first[i + 1] += mesh.first[i];
+    if (mesh.triangles.empty()) fail(path, "no triangle has an area: nothing to read");
+    remove_copies(mesh.triangles);
     return mesh;
 }
 

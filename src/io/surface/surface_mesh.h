@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -8,17 +9,21 @@
 
 namespace controlspace {
 
-/// A surface as its vertices and which of them share a polygon's side: vertex i has the neighbours
-/// `neighbours[first[i]] .. neighbours[first[i + 1] - 1]`.
+/// A surface of triangles, with the indices of their vertices; in no common orientation.
 struct SurfaceMesh {
     std::vector<Point> vertices;
-    std::vector<std::size_t> first;
-    std::vector<std::uint32_t> neighbours;
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+    double diagonal = 0;  ///< of the box around the vertices
 };
 
-/// Reads a surface of polygons (.stl, .obj, .ply, .off); vertices at the same place are one. Throws
-/// InputError that names the file for what cannot be read, for more vertices than the file has room
-/// for, and for one without polygons.
+/// Longest distance that is taken for rounding: coordinates of .stl files have 24 bits.
+inline double rounding(const SurfaceMesh& mesh) { return 0x1p-23 * mesh.diagonal; }
+
+/// Reads a surface of polygons (.stl, .obj, .ply, .off), which are cut into triangles; vertices at
+/// the same place are one. Triangles whose height is rounding, which have no normal, are left out,
+/// and so is the second of two with the same vertices. Throws InputError that names the file for
+/// what cannot be read, for more vertices than the file has room for, and for one where no triangle
+/// has an area.
 SurfaceMesh read_surface_mesh(const std::filesystem::path& path);
 
 }  // namespace controlspace

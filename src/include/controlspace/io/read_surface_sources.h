@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <vector>
 
@@ -7,27 +8,43 @@
 
 namespace controlspace {
 
-/// How lengths follow from the curvature of a surface: along each principal direction of curvature
-/// κ the chord 2 sin(angle / 2) / |κ|, which spans `angle` of the circle of curvature, within
-/// bounds in the units of the file.
+/// How lengths follow from the shape of a surface, all within bounds in the units of the file:
+/// - along each principal direction of curvature κ the chord 2 sin(angle / 2) / |κ|, which spans
+///   `angle` of the circle of curvature; across the surface the smaller of the two;
+/// - across walls and gaps their thickness / elements_across.
+///
+/// Curvature is that of smooth patches, which end at creases: edges where the normal turns by more
+/// than `crease`. Flat patches request h_max.
 struct CurvatureSizes {
-    double angle = 15;  ///< [degrees]
-    double h_min = 0;   ///< 0: a thousandth of the diagonal of the surface's box
-    double h_max = 0;   ///< 0: a tenth of it
+    double angle = 15;           ///< [degrees]
+    double crease = 30;          ///< [degrees]
+    double elements_across = 2;  ///< lengths across walls and gaps
+    bool isotropic = false;      ///< the shortest length in all directions
+    double h_min = 0;            ///< 0: a thousandth of the diagonal of the surface's box
+    double h_max = 0;            ///< 0: a tenth of it
 
     bool operator==(const CurvatureSizes&) const = default;
 };
 
-/// Sources at the vertices of a surface of polygons (.stl, .obj, .ply, .off), each vertex once. A
-/// jet of second order is fitted to the vertices around each; across the surface the length is the
-/// smaller of those along it.
+/// Sources on a surface.
+struct SurfaceSources {
+    std::vector<PointSource> sources;
+    std::size_t skipped = 0;  ///< vertices without a source: no triangle there has an area
+};
+
+/// Sources at the vertices of a surface of polygons (.stl, .obj, .ply, .off), each vertex once, and
+/// inside triangles with edges of a metric length of more than 2. Where patches meet, a vertex has
+/// the intersection of their metrics. An apex, without a tangent plane, has h_min.
 ///
-/// Throws InputError that names the file for what cannot be read; for a vertex where those around
-/// do not determine the curvature; and for bounds or an angle out of range.
+/// The distance across a wall or gap is measured along the normal, to surfaces that are parallel
+/// within 30 degrees.
+///
+/// Throws InputError that names the file for what cannot be read, where no triangle has an area,
+/// and for angles, elements or bounds out of range.
 ///
 /// CGAL trusts what a file says: a damaged one may crash it, or take all memory. Read files of
 /// unknown origin in a process of their own first, as the program does.
-std::vector<PointSource> read_surface_sources(const std::filesystem::path& path,
-                                              const CurvatureSizes& sizes = {});
+SurfaceSources read_surface_sources(const std::filesystem::path& path,
+                                    const CurvatureSizes& sizes = {});
 
 }  // namespace controlspace

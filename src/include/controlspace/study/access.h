@@ -134,6 +134,20 @@ Access<Target> text(Place place) {
     return access;
 }
 
+/// The bool at `place`; one that is false is none.
+template <class Target, class Place>
+Access<Target> flag(Place place) {
+    Access<Target> access;
+    access.type = ValueType::flag;
+    access.set = [=](Target& target, const Values& values) {
+        std::invoke(place, target) = values.front().text() == "true";
+    };
+    access.get = [=](const Target& target) {
+        return std::invoke(place, target) ? Values{"true"} : Values{};
+    };
+    return access;
+}
+
 /// The three coordinates at `place`.
 template <class Target, class Place>
 Access<Target> point(Place place) {

@@ -17,7 +17,8 @@ struct Value : std::variant<double, std::string> {
 };
 using Values = std::vector<Value>;
 
-enum class ValueType { number, whole_number, text };
+/// The values of a flag are the texts "true" and "false".
+enum class ValueType { number, whole_number, text, flag };
 
 /// "1, 0.5".
 std::string to_string(const Values& values);

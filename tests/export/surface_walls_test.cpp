@@ -1,0 +1,113 @@
+// Lengths across walls and gaps.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "controlspace/io/read_surface_sources.h"
+#include "export/surfaces.h"
+#include "sources/files.h"
+
+using namespace controlspace;
+
+namespace {
+
+std::vector<PointSource> sources_of(const Surface& surface, const CurvatureSizes& sizes) {
+    const ScratchDirectory scratch;
+    return read_surface_sources(scratch.file("s.off", off_text(surface)), sizes).sources;
+}
+
+/// Sources on the plane where x[axis] = `at`, away from its rim: those inside `inside`.
+std::vector<PointSource> within(const std::vector<PointSource>& sources,
+                                const Eigen::AlignedBox3d& inside) {
+    std::vector<PointSource> found;
+    for (const PointSource& s : sources) {
+        if (inside.contains(s.position)) found.push_back(s);
+    }
+    return found;
+}
+
+double along(const Metric& m, const Vector& direction) { return 1 / metric_length(m, direction); }
+
+/// A plate with a fin of thickness 0.004 on it.
+Surface plate_with_fin(std::size_t n) {
+    Surface surface = box({0, 0, 0}, {1, 1, 0.2}, n);
+    surface += box({0, 0.498, 0.2}, {1, 0.502, 0.5}, n);
+    return surface;
+}
+
+}  // namespace
+
+TEST_CASE("a fin on a plate has lengths across it, and stays long along") {
+    const std::size_t n = GENERATE(1, 4, 16);
+    const double across = GENERATE(1.0, 2.0);
+    const auto sources = sources_of(plate_with_fin(n), {.elements_across = across, .h_min = 1e-4});
+    const auto fin = within(sources, {Point(0.1, 0.45, 0.25), Point(0.9, 0.55, 0.45)});
+    CHECK(fin.size() > 8);
+    for (const auto& [p, metric] : fin) {
+        CHECK(along(metric, Vector::UnitY()) == Approx(0.004 / across).epsilon(0.01));
+        CHECK(along(metric, Vector::UnitX()) > 0.1);
+        CHECK(along(metric, Vector::UnitZ()) > 0.1);
+    }
+    for (const auto& [p, metric] : within(sources, {Point(0.1, 0.1, -0.1), Point(0.9, 0.4, 0.1)})) {
+        CHECK(along(metric, Vector::UnitX()) > 0.1);
+        CHECK(along(metric, Vector::UnitZ()) == Approx(0.2 / across).epsilon(0.01).margin(0.06));
+    }
+}
+
+TEST_CASE("isotropic lengths are the shortest of the anisotropic ones") {
+    const Surface surface = plate_with_fin(2);
+    const auto sources = sources_of(surface, {.isotropic = true});
+    const auto fin = within(sources, {Point(0.1, 0.45, 0.25), Point(0.9, 0.55, 0.45)});
+    // Every place of the fin is within two lengths of a source.
+    CHECK(double(fin.size()) > 0.5 * 0.8 * 0.2 / (0.004 * 0.004));
+    for (const PointSource& s : sources) REQUIRE(is_isotropic(s.metric));
+    for (const auto& [p, metric] : fin) CHECK(metric.xx == Approx(0.002).epsilon(0.01));
+}
+
+TEST_CASE("a gap has lengths across it, on both sides, whatever the orientation") {
+    const double gap = GENERATE(0.1, 0.02, 0.005);
+    const std::size_t n = GENERATE(1, 3, 10);
+    Surface surface = box({0, 0, 0}, {1, 1, 1}, n);
+    surface += box({0, 0, 1 + gap}, {1, 1, 2 + gap}, n + 1);
+    const Eigen::Affine3d map = somewhere(10);
+    const Vector normal = map.linear().col(2).normalized();
+    int seen = 0;
+    for (const auto& [q, metric] :
+         sources_of(transformed(surface, map), {.elements_across = 3, .h_min = 0.01, .h_max = 2})) {
+        const Point p = map.inverse() * q;
+        const bool beside_gap = std::abs(p.z() - 1 - gap / 2) < 0.501 * gap;
+        const bool inside = p.head(2).minCoeff() > 0.05 && p.head(2).maxCoeff() < 0.95;
+        if (!inside) continue;
+        CAPTURE(p.x(), p.y(), p.z());
+        CHECK(along(metric, normal) == Approx(beside_gap ? 10 * gap / 3 : 2).epsilon(0.01));
+        seen += beside_gap;
+    }
+    CHECK(seen >= 8);
+}
+
+TEST_CASE("a shell of two spheres has its thickness, and follows both curvatures") {
+    Surface shell = sphere(48, 24);
+    shell += transformed(sphere(40, 20), Eigen::Affine3d(Eigen::Scaling(0.98)));
+    for (const auto& [p, metric] : sources_of(shell, {.h_min = 1e-4})) {
+        if (std::abs(p.z()) > 0.7) continue;
+        const Vector normal = p.normalized();
+        CHECK(along(metric, normal) == Approx(0.01).epsilon(0.2));
+        const double around = along(metric, Vector(-p.y(), p.x(), 0).normalized());
+        CHECK(around == Approx(chord(15) * p.norm()).epsilon(0.05));
+    }
+}
+
+TEST_CASE("walls that touch, and surfaces at an angle to each other, are no gaps") {
+    Surface surface = box({0, 0, 0}, {1, 1, 1}, 1);
+    surface += box({0.1, 0.1, 1}, {0.9, 0.9, 2}, 2);  // stands on it
+    for (const PointSource& s : sources_of(surface, {.elements_across = 1, .h_max = 0.5})) {
+        CHECK(eigen_frame(s.metric).lengths[0] == Approx(0.5));
+    }
+    // A wedge of 60 degrees.
+    const Surface wedge = patch({2, 6}, [](double u, double v) {
+        const double x = 2 * u - 1;
+        return Point(std::abs(x), v, x * std::tan(pi / 6));
+    });
+    for (const PointSource& s : sources_of(wedge, {.elements_across = 10, .h_max = 0.2})) {
+        CHECK(eigen_frame(s.metric).lengths[0] == Approx(0.2));
+    }
+}
