@@ -1,15 +1,20 @@
 #include "cli/formats.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "cli/child_reading.h"
+#include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
-#include "controlspace/io/read_surface_sources.h"
 #include "controlspace/io/read_vdb.h"
 #include "controlspace/io/read_vtk_sources.h"
+#include "gmsh/cad_surface.h"
 #include "io/surface/surface_mesh.h"
+#include "io/surface/surface_sources.h"
 #include "modules/load.h"
 
 namespace controlspace {
@@ -21,7 +26,7 @@ using Sources = std::vector<PointSource>;
 /// of a file, and may crash or exhaust the memory if it is damaged; therefore it is first read in a
 /// child process. Our own readers (read_sources) check files.
 struct SourceFormat {
-    const char* ending;
+    std::string_view ending;
     const char* module;  ///< that reads it
     Sources (*read)(const SourcesChoice& choice);
     /// The part of `read` that may crash, if the rest starts threads, which a forked process must
@@ -35,15 +40,23 @@ Sources read_vdb(const SourcesChoice& choice) {
 Sources read_vtk(const SourcesChoice& choice) {
     return read_vtk_sources(choice.file, choice.in_file.array);
 }
-Sources read_surface(const SourcesChoice& choice) {
-    SurfaceSources read = read_surface_sources(choice.file, choice.in_file.curvature);
-    if (read.skipped > 0) {
+Sources sources_on(const SurfaceMesh& surface, const SourcesChoice& choice) {
+    load_module("cgal");
+    SurfaceSources found = surface_sources(surface, choice.in_file.curvature, choice.file);
+    if (found.skipped > 0) {
         spdlog::warn("{}: {} vertices are skipped: no triangle there has an area",
-                     choice.file.string(), read.skipped);
+                     choice.file.string(), found.skipped);
     }
-    return std::move(read.sources);
+    return std::move(found.sources);
+}
+Sources read_surface(const SourcesChoice& choice) {
+    return sources_on(read_surface_mesh(choice.file), choice);
 }
 void try_surface(const SourcesChoice& choice) { read_surface_mesh(choice.file); }
+Sources read_cad(const SourcesChoice& choice) {
+    return sources_on(read_cad_surface(choice.file), choice);
+}
+void try_cad(const SourcesChoice& choice) { read_cad_surface(choice.file); }
 
 constexpr SourceFormat formats[] = {
     {".vdb", "openvdb", read_vdb},
@@ -53,6 +66,11 @@ constexpr SourceFormat formats[] = {
     {".obj", "cgal", read_surface, try_surface},
     {".ply", "cgal", read_surface, try_surface},
     {".off", "cgal", read_surface, try_surface},
+    {".step", "gmsh", read_cad, try_cad},
+    {".stp", "gmsh", read_cad, try_cad},
+    {".iges", "gmsh", read_cad, try_cad},
+    {".igs", "gmsh", read_cad, try_cad},
+    {".brep", "gmsh", read_cad, try_cad},
 };
 
 Sources read_by(const SourceFormat& format, const SourcesChoice& choice) {
@@ -63,12 +81,37 @@ Sources read_by(const SourceFormat& format, const SourcesChoice& choice) {
     return format.read(choice);
 }
 
+const SourceFormat* format_of(const std::filesystem::path& file) {
+    const auto* format =
+        std::ranges::find(formats, lower_case_extension(file), &SourceFormat::ending);
+    return format == std::end(formats) ? nullptr : format;
+}
+
 }  // namespace
+
+bool is_part(const std::filesystem::path& file) {
+    const SourceFormat* format = format_of(file);
+    return format != nullptr && format->try_read != nullptr;
+}
+
+Part read_part(const std::filesystem::path& file, double crease) {
+    const SourceFormat* format = format_of(file);
+    if (!is_part(file)) {
+        throw InputError(fmt::format(
+            "{} is no part: name a .stl, .obj, .ply, .off, .step, .stp, .iges, .igs or .brep",
+            file.string()));
+    }
+    load_module(format->module);
+    require_readable(file, [&] { format->try_read({.file = file}); });
+    if (format->read == read_cad) return {.cad = file};
+    SurfaceMesh surface = read_surface_mesh(file);
+    return {std::move(surface.vertices), std::move(surface.triangles), crease};
+}
 
 FileReaders file_readers() {
     FileReaders readers;
     for (const SourceFormat& format : formats) {
-        readers.sources[format.ending] = [&format](const SourcesChoice& choice) {
+        readers.sources[std::string(format.ending)] = [&format](const SourcesChoice& choice) {
             return read_by(format, choice);
         };
     }
@@ -83,7 +126,7 @@ FileReaders file_readers() {
 
 std::string source_formats_help() {
     return "Sources: .csv; .mesh, .sol, .meshb or .solb, the other beside it; .pos; .msh; .vtu, "
-           ".vtp; or a surface: .stl, .obj, .ply, .off, or in a .vdb";
+           ".vtp; or a surface: .stl, .obj, .ply, .off, or in a .vdb; or CAD: .step, .iges, .brep";
 }
 
 }  // namespace controlspace

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
+#include "controlspace/mesh/part.h"
 #include "controlspace/study/workload.h"
 
 namespace controlspace {
@@ -9,6 +11,12 @@ namespace controlspace {
 /// Readers of files of sources and fields, of all formats beyond those of read_sources. Formats
 /// that an external library reads need its module.
 FileReaders file_readers();
+
+/// Whether a file holds a surface or a solid, by its ending.
+bool is_part(const std::filesystem::path& file);
+
+/// A part to be meshed; `crease` as of Part. Throws InputError.
+Part read_part(const std::filesystem::path& file, double crease);
 
 /// The formats of sources, for help texts.
 std::string source_formats_help();

@@ -167,6 +167,15 @@ GivenSettings without_settings_of_meshing(const GivenSettings& given) {
     return left;
 }
 
+/// What is filled; none for the domain.
+std::shared_ptr<const Part> part_of(const MeshSettings& settings,
+                                    const std::filesystem::path& input) {
+    std::filesystem::path file = settings.part;
+    if (file.empty()) file = is_part(input) ? input : "box";
+    if (file == "box") return nullptr;
+    return std::make_shared<const Part>(read_part(file, settings.part_crease));
+}
+
 int mesh(const MeshJob& job, const std::string& command_line) {
     const GivenSettings given = given_settings(job.given);
     const bool is_saved = is_control_space(job.input);
@@ -175,6 +184,7 @@ int mesh(const MeshJob& job, const std::string& command_line) {
     if (study.name == Study{}.name) study.name = "mesh";
     MeshSettings settings;
     apply(given, mesh_parameters(), settings);
+    settings.body = part_of(settings, job.input);
     const auto threads = limit_threads(study.threads);
     Interruption interruption;
     const auto saved = is_saved ? load_control_space(job.input, structures()) : nullptr;

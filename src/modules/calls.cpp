@@ -15,8 +15,13 @@ SurfaceMesh read_surface_mesh(const fs::path& path) {
     return module_table<CgalModule>("cgal").read_surface_mesh(path);
 }
 
-SurfaceSources read_surface_sources(const fs::path& path, const CurvatureSizes& sizes) {
-    return module_table<CgalModule>("cgal").read_surface_sources(path, sizes);
+SurfaceSources surface_sources(const SurfaceMesh& mesh, const CurvatureSizes& sizes,
+                               const fs::path& file) {
+    return module_table<CgalModule>("cgal").surface_sources(mesh, sizes, file);
+}
+
+SurfaceMesh read_cad_surface(const fs::path& path) {
+    return module_table<GmshModule>("gmsh").read_cad_surface(path);
 }
 
 GmshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshOptions& options) {

@@ -6,6 +6,6 @@ CONTROLSPACE_MODULE {
     static const controlspace::CgalModule table{
         .version = controlspace::version(),
         .read_surface_mesh = controlspace::read_surface_mesh,
-        .read_surface_sources = controlspace::read_surface_sources};
+        .surface_sources = controlspace::surface_sources};
     return &table;
 }

@@ -4,11 +4,12 @@
 
 #include "baselines/openvdb/catalogue.h"
 #include "controlspace/gmsh/gmsh_mesher.h"
-#include "controlspace/io/read_surface_sources.h"
 #include "controlspace/io/read_vdb.h"
 #include "controlspace/io/read_vtk_sources.h"
 #include "controlspace/io/write_vdb.h"
+#include "gmsh/cad_surface.h"
 #include "io/surface/surface_mesh.h"
+#include "io/surface/surface_sources.h"
 
 namespace controlspace {
 
@@ -35,13 +36,14 @@ struct VtkModule {
 struct CgalModule {
     std::string_view version;
     decltype(&controlspace::read_surface_mesh) read_surface_mesh;
-    decltype(&controlspace::read_surface_sources) read_surface_sources;
+    decltype(&controlspace::surface_sources) surface_sources;
 };
 
-/// The module of Gmsh, which is under the GPL: meshes and .msh files.
+/// The module of Gmsh, which is under the GPL: meshes and CAD files.
 struct GmshModule {
     std::string_view version;
     decltype(&controlspace::mesh_with_gmsh) mesh_with_gmsh;
+    decltype(&controlspace::read_cad_surface) read_cad_surface;
 };
 
 }  // namespace controlspace

@@ -192,8 +192,9 @@ std::vector<Parameter<Study>> table() {
                                    [](const Study& s) { return is_sampled(s.sources); }};
     const AppliesTo<Study> arrays{".vtu, .vtp, .msh and .pos",
                                   in_file({".vtu", ".vtp", ".msh", ".pos"})};
-    const AppliesTo<Study> surface{"surfaces: .stl, .obj, .ply and .off",
-                                   in_file({".stl", ".obj", ".ply", ".off"})};
+    const AppliesTo<Study> surface{
+        "surfaces: .stl, .obj, .ply, .off, .step, .iges and .brep",
+        in_file({".stl", ".obj", ".ply", ".off", ".step", ".stp", ".iges", ".igs", ".brep"})};
     const AppliesTo<Study> vdb{"sources in a .vdb", in_file({".vdb"})};
     const AppliesTo<Study> field_sphere{"field = \"sphere\"", field_is({"sphere"})};
     const AppliesTo<Study> field_planes{"field = \"planes\"", field_is({"planes"})};
@@ -208,7 +209,7 @@ std::vector<Parameter<Study>> table() {
          "sphere or planes (sampled); none (only a field); files, the smallest of whose metrics "
          "counts where they overlap: of points with metrics, .csv (- for standard input), .mesh or "
          ".meshb with .sol or .solb, .pos, .msh, .vtu or .vtp; or a "
-         "surface: .stl, .obj, .ply, .off or in a .vdb",
+         "surface: .stl, .obj, .ply, .off, .step, .iges, .brep or in a .vdb",
          sources()},
         {"centre", length, "x y z: centre of the sphere", point_of(of_sources(&Sources::centre)),
          making, sphere},

@@ -24,7 +24,8 @@ namespace {
 
 /// Formats that other libraries read.
 bool needs_reader(const std::string& ending) {
-    constexpr std::string_view endings[] = {".vdb", ".vtu", ".vtp", ".stl", ".obj", ".ply", ".off"};
+    constexpr std::string_view endings[] = {".vdb", ".vtu",  ".vtp", ".stl",  ".obj", ".ply",
+                                            ".off", ".step", ".stp", ".iges", ".igs", ".brep"};
     return std::ranges::count(endings, ending) > 0;
 }
 

@@ -46,6 +46,47 @@ TEST_CASE("one command makes meshes, and says how they conform") {
     }
 }
 
+TEST_CASE("a part is meshed, by its own field or another's") {
+    const Sandbox box("mesh-part");
+    // A brick of 2 x 1 x 1.
+    box.write("brick.off",
+              "OFF\n8 6 0\n0 0 0\n2 0 0\n2 1 0\n0 1 0\n0 0 1\n2 0 1\n2 1 1\n0 1 1\n"
+              "4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n");
+    const std::string quick =
+        "--exact no --probe-grid 5 --files mesh --optimize 0 --mesher delaunay ";
+    const auto meshed = [&](const std::string& arguments) {
+        const Outcome outcome = box.run("mesh " + arguments + " " + quick);
+        INFO(outcome.err);
+        REQUIRE(outcome.status == 0);
+    };
+    // Of the vertices of the mesh: whether all lie in the brick.
+    const auto is_brick = [&](const std::string& folder) {
+        std::istringstream text(file_text(box / folder / "00-K_oV.mesh"));
+        for (std::string word; text >> word && word != "Vertices";) {
+        }
+        std::size_t n = 0;
+        text >> n;
+        bool inside = n > 8;
+        for (double x, y, z, label; n > 0 && text >> x >> y >> z >> label; --n) {
+            inside = inside && x > -1e-6 && x < 2 + 1e-6 && y > -1e-6 && y < 1 + 1e-6 &&
+                     z > -1e-6 && z < 1 + 1e-6;
+        }
+        return inside && n == 0;
+    };
+    meshed("brick.off --isotropic --output own");
+    CHECK(is_brick("own"));
+    box.write("s.csv", "x,y,z,h\n1,0.5,0.5,0.1\n-1,-1,-1,0.5\n3,3,3,0.5\n");
+    meshed("s.csv --part brick.off --output other");
+    CHECK(is_brick("other"));
+    meshed("s.csv --output domain");
+    CHECK_FALSE(is_brick("domain"));
+    check_refused(box.run("mesh s.csv --part none.off"), "none.off");
+    check_refused(box.run("mesh s.csv --part s.csv"), "s.csv is no part: name a .stl");
+    box.write("far.csv", "x,y,z,h\n5,5,5,0.1\n6,6,6,0.1\n");
+    CHECK_THAT(box.run("mesh far.csv --part brick.off --output far " + quick).err,
+               Contains("is not inside of the field's domain"));
+}
+
 TEST_CASE("a target that a meshed structure missed is told, with status 3") {
     const Sandbox box("mesh-missed");
     const Outcome outcome = box.run(

@@ -221,11 +221,16 @@ private:
 
 }  // namespace
 
+SurfaceSources surface_sources(const SurfaceMesh& mesh, const CurvatureSizes& sizes,
+                               const std::filesystem::path& file) {
+    require_valid(sizes);
+    return Sizing(mesh, sizes, bounds_of(file, sizes, mesh.diagonal)).sources();
+}
+
 SurfaceSources read_surface_sources(const std::filesystem::path& path,
                                     const CurvatureSizes& sizes) {
     require_valid(sizes);
-    const SurfaceMesh mesh = read_surface_mesh(path);
-    return Sizing(mesh, sizes, bounds_of(path, sizes, mesh.diagonal)).sources();
+    return surface_sources(read_surface_mesh(path), sizes, path);
 }
 
 }  // namespace controlspace

@@ -10,8 +10,8 @@ namespace controlspace {
 
 /// A body that is filled with tetrahedra: inside a closed surface of triangles, or of a CAD file.
 struct Part {
-    std::vector<Point> vertices;
-    std::vector<Triangle> triangles;
+    std::vector<Point> vertices = {};
+    std::vector<Triangle> triangles = {};
     /// Angle between the normals of triangles from which on the mesh keeps the edge [degrees].
     double crease = 30;
     /// In place of triangles: a .step, .stp, .iges, .igs or .brep.

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "io/surface/surface_mesh.h"
+
+namespace controlspace {
+
+/// Triangles of the surface of a CAD file, which turn by 10 degrees from one to the next where it
+/// is curved. Runs in a GmshSession. Throws InputError that names the file for what Gmsh cannot
+/// read, and for one without surfaces.
+SurfaceMesh read_cad_surface(const std::filesystem::path& path);
+
+}  // namespace controlspace
