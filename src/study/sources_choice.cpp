@@ -18,7 +18,7 @@ std::string sources_name(const SourcesChoice& s) {
             break;
     }
     std::string names = s.file.string();
-    for (const auto& file : s.further_files) names += "," + file.string();
+    for (const auto& file : s.further_files) names.append(1, ',').append(file.string());
     return names;
 }
 
