@@ -62,9 +62,17 @@ std::span<const Point> points_in(const double* positions, std::size_t begin, std
     return {reinterpret_cast<const Point*>(positions) + begin, end - begin};
 }
 
-double smallest_length(const ControlSpace& space, const Point& p) {
-    const Metric m = sample_at(space, p);
-    return is_isotropic(m) ? m.xx : eigen_frame(m).lengths[0];
+// As cspace_size(). Meshers call it for every point: nothing is put on record that costs time.
+double size_at(const cspace* handle, const Point& p) noexcept {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (handle == nullptr || !handle->space) return none;
+    if (std::isnan(p.x()) || std::isnan(p.y()) || std::isnan(p.z())) return none;
+    try {
+        const Metric m = sample_at(*handle->space, p);
+        return is_isotropic(m) ? m.xx : eigen_frame(m).lengths[0];
+    } catch (...) {
+        return none;
+    }
 }
 
 // Metric lengths of the edges from a[begin..end) to b[begin..end).
@@ -125,19 +133,16 @@ cspace_status cspace_sample_lengths(const cspace* space, size_t n, const double*
 }
 
 double cspace_size(const cspace* space, double x, double y, double z) {
-    double length = std::numeric_limits<double>::quiet_NaN();
-    const Point p(x, y, z);
-    if (p.array().isNaN().any()) return length;
-    guarded([&] { length = smallest_length(space_of(space), p); });
-    return length;
+    return size_at(space, {x, y, z});
 }
 
 double cspace_gmsh_size(int, int, double x, double y, double z, double lc, void* data) {
-    return std::fmin(lc, cspace_size(static_cast<const cspace*>(data), x, y, z));
+    const double length = size_at(static_cast<const cspace*>(data), {x, y, z});
+    return length < lc || std::isnan(lc) ? length : lc;
 }
 
 double cspace_gmsh_size_4_8(int, int, double x, double y, double z, void* data) {
-    const double length = cspace_size(static_cast<const cspace*>(data), x, y, z);
+    const double length = size_at(static_cast<const cspace*>(data), {x, y, z});
     return std::isnan(length) ? std::numeric_limits<double>::max() : length;
 }
 

@@ -21,6 +21,8 @@ double timed_size(int dim, int tag, double x, double y, double z, double lc, voi
     const long start = now();
     const double h = t->size(dim, tag, x, y, z, lc, t->data);
     const long end = now();
-    if (end - start < 100000) t->nanoseconds += 16 * ((end - start) - (now() - end));
+    const long of_clock = now() - end;
+    const long most = 100000;
+    if (end - start < most && of_clock < most) t->nanoseconds += 16 * (end - start - of_clock);
     return h;
 }

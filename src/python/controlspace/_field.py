@@ -193,8 +193,8 @@ def build(
     box: lowest and highest corner, (2, 3). None: the box of the points and 5 % of its longest edge.
     growth: gradation ratio g_r >= 1, growth of lengths per metric length of distance.
     delta: largest non-conformity to the exact field, above 0, that a tree is refined to; guaranteed
-    for lengths, sampled for metrics; a UserWarning says that it was missed. None with a structure:
-    the sources are inserted and graded, which is faster and less accurate.
+    for lengths (not in K_Li and K_oLi), sampled for metrics; a UserWarning says that it was missed.
+    None with a structure: sources are inserted and graded, which is faster and less accurate.
     h_min, h_max: limits of the requested lengths, in all directions. Far from all sources lengths
     still grow, up to half of the box's diagonal.
     options: further ones of cspace_create (controlspace.h): tau=0.5, split="s_G", max_memory=1.
