@@ -2,29 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <exception>
-#include <iterator>
 #include <memory>
-#include <new>
-#include <optional>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "c/handle.h"
 #include "c/option_text.h"
 #include "controlspace/baselines/catalogue.h"
-#include "controlspace/error.h"
-#include "controlspace/sources/riemannian.h"
 #include "controlspace/space/control_space_file.h"
 #include "controlspace/version.h"
-
-struct cspace {
-    std::unique_ptr<controlspace::ControlSpaceBuilder> builder;  // none of a compact form
-    std::unique_ptr<controlspace::ControlSpace> space;           // what it has built last
-};
 
 namespace {
 
@@ -32,42 +20,6 @@ using namespace controlspace;
 
 // What the caller of this thread may ask for: the one thing that outlives a call.
 thread_local std::string last_error;
-
-cspace_status fail(cspace_status status, const char* what) noexcept {
-    try {
-        last_error = what;
-    } catch (...) {
-        last_error.clear();
-    }
-    return status;
-}
-
-// Runs `action`; what it throws becomes a status.
-template <class Action>
-cspace_status guarded(Action&& action) noexcept {
-    try {
-        action();
-        return CSPACE_OK;
-    } catch (const InputError& error) {
-        return fail(CSPACE_BAD_INPUT, error.what());
-    } catch (const std::bad_alloc&) {
-        return fail(CSPACE_FAILURE, "out of memory");
-    } catch (const std::exception& error) {
-        return fail(CSPACE_FAILURE, error.what());
-    } catch (...) {
-        return fail(CSPACE_FAILURE, "unknown failure");
-    }
-}
-
-void require(const void* argument, const char* name) {
-    if (argument == nullptr) throw InputError(fmt::format("{} is NULL", name));
-}
-
-const ControlSpace& space_of(const cspace* handle) {
-    require(handle, "space");
-    if (!handle->space) throw std::runtime_error("the space could not be finished: free it");
-    return *handle->space;
-}
 
 // Changes what the handle holds by `edit(builder)`, and builds it again.
 template <class Edit>
@@ -86,15 +38,6 @@ void change(cspace* handle, Edit&& edit) {
     handle->space = handle->builder->build();
 }
 
-Point point_at(const double* positions, std::size_t i) {
-    return {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
-}
-
-Metric metric_at(const double* metrics, std::size_t i) {
-    const double* m = metrics + 6 * i;
-    return {m[0], m[1], m[2], m[3], m[4], m[5]};
-}
-
 // Puts `metric_of(i)` at each position.
 template <class MetricOf>
 std::vector<PointSource> sources_at(std::size_t n, const double* positions, MetricOf&& metric_of) {
@@ -110,20 +53,6 @@ std::vector<PointSource> sources_of(std::size_t n, const double* positions, cons
     return sources_at(n, positions, [&](std::size_t i) { return metric_at(metrics, i); });
 }
 
-// Writes `converted` of each of `n` metrics; what converts to nothing is named by its index.
-template <class Converted>
-void convert(std::size_t n, const double* from, double* to, Converted&& converted) {
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::optional<Metric> m = converted(metric_at(from, i));
-        if (!m) {
-            throw InputError(fmt::format(
-                "metric {} is not positive definite: check the order of its numbers", i));
-        }
-        const double numbers[] = {m->xx, m->yy, m->zz, m->xy, m->xz, m->yz};
-        std::copy(std::begin(numbers), std::end(numbers), to + 6 * i);
-    }
-}
-
 const CatalogueEntry& entry_named(std::string_view name) {
     const CatalogueEntry* entry = find_entry(structures(), name);
     if (entry != nullptr) return *entry;
@@ -131,6 +60,29 @@ const CatalogueEntry& entry_named(std::string_view name) {
 }
 
 }  // namespace
+
+namespace controlspace {
+
+cspace_status fail(cspace_status status, const char* what) noexcept {
+    try {
+        last_error = what;
+    } catch (...) {
+        last_error.clear();
+    }
+    return status;
+}
+
+void require(const void* argument, const char* name) {
+    if (argument == nullptr) throw InputError(fmt::format("{} is NULL", name));
+}
+
+const ControlSpace& space_of(const cspace* handle) {
+    require(handle, "space");
+    if (!handle->space) throw std::runtime_error("the space could not be finished: free it");
+    return *handle->space;
+}
+
+}  // namespace controlspace
 
 const char* cspace_version(void) { return version().data(); }
 
@@ -189,39 +141,6 @@ cspace_status cspace_adapt(cspace* space, size_t n, const double* positions, con
             report = builder.adapt({sources, nullptr, ratio, target});
         });
         if (reached != nullptr) *reached = report.reached;
-    });
-}
-
-cspace_status cspace_sample(const cspace* space, size_t n, const double* positions,
-                            double* metrics) {
-    return guarded([&] {
-        if (n > 0) require(positions, "positions");
-        if (n > 0) require(metrics, "metrics");
-        for (std::size_t i = 0; i < n; ++i) {
-            if (!point_at(positions, i).array().isNaN().any()) continue;
-            throw InputError(fmt::format("position {} is NaN", i));
-        }
-        // Point and Metric are three and six numbers without gaps (spaces/state.h).
-        space_of(space).sample({reinterpret_cast<const Point*>(positions), n},
-                               {reinterpret_cast<Metric*>(metrics), n});
-    });
-}
-
-cspace_status cspace_to_riemannian(size_t n, const double* metrics, double* riemannian) {
-    return guarded([&] {
-        if (n > 0) require(metrics, "metrics");
-        if (n > 0) require(riemannian, "riemannian");
-        convert(n, metrics, riemannian, [](const Metric& m) {
-            return is_source_metric(m) ? std::optional(to_riemannian(m)) : std::nullopt;
-        });
-    });
-}
-
-cspace_status cspace_from_riemannian(size_t n, const double* riemannian, double* metrics) {
-    return guarded([&] {
-        if (n > 0) require(riemannian, "riemannian");
-        if (n > 0) require(metrics, "metrics");
-        convert(n, riemannian, metrics, from_riemannian);
     });
 }
 

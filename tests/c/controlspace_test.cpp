@@ -144,6 +144,72 @@ TEST_CASE("C: a tree that is given a target is that of C++") {
     cspace_free(space);
 }
 
+TEST_CASE("C: lengths, also as Gmsh asks for them, are the smallest of the metrics") {
+    cspace* space = made("K_oV");
+    REQUIRE(cspace_insert(space, 1, place.data(), tensor.data()) == CSPACE_OK);
+    REQUIRE(cspace_grade(space, 1.5) == CSPACE_OK);
+    const std::vector<double> metrics = sampled(space);
+    const std::vector<Point> x = random_points(domain, 200, 1);
+    std::vector<double> lengths(x.size());
+    REQUIRE(cspace_sample_lengths(space, x.size(), x.front().data(), lengths.data()) == CSPACE_OK);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        const double* m = metrics.data() + 6 * k;
+        const double length = eigen_frame({m[0], m[1], m[2], m[3], m[4], m[5]}).lengths[0];
+        CHECK(lengths[k] == Approx(length));
+        const auto [px, py, pz] = std::array{x[k].x(), x[k].y(), x[k].z()};
+        CHECK(cspace_size(space, px, py, pz) == lengths[k]);
+        CHECK(cspace_gmsh_size(3, 1, px, py, pz, 1e22, space) == lengths[k]);
+        CHECK(cspace_gmsh_size(3, 1, px, py, pz, 1e-6, space) == 1e-6);
+        CHECK(cspace_gmsh_size_4_8(3, 1, px, py, pz, space) == lengths[k]);
+    }
+    const double nan = std::nan("");
+    CHECK(std::isnan(cspace_size(space, 0, nan, 0)));
+    CHECK(std::isnan(cspace_size(nullptr, 0, 0, 0)));
+    CHECK(cspace_gmsh_size(3, 1, 0, nan, 0, 0.5, space) == 0.5);
+    CHECK(cspace_gmsh_size_4_8(3, 1, 0, nan, 0, space) > 1e100);
+    cspace_free(space);
+}
+
+TEST_CASE("C: lengths of edges") {
+    cspace* space = made("K_oL");
+    const double length = 0.1;
+    REQUIRE(cspace_insert_lengths(space, 1, place.data(), &length) == CSPACE_OK);
+    REQUIRE(cspace_grade(space, 1) == CSPACE_OK);
+    const std::array<double, 6> from{0, 0, 0, 0.1, 0.2, 0.3}, to{0.5, 0, 0, 0.1, 0.2, 0.2};
+    std::array<double, 2> lengths{};
+    REQUIRE(cspace_edge_lengths(space, 2, from.data(), to.data(), lengths.data()) == CSPACE_OK);
+    CHECK(lengths[0] == Approx(5));
+    CHECK(lengths[1] == Approx(1));
+    CHECK(cspace_edge_lengths(space, 2, from.data(), nullptr, lengths.data()) == CSPACE_BAD_INPUT);
+    cspace_free(space);
+}
+
+TEST_CASE("C: large batches run on all cores, with the same bits", "[threads]") {
+    cspace* space = made("K_oV");
+    REQUIRE(cspace_insert(space, 1, place.data(), tensor.data()) == CSPACE_OK);
+    REQUIRE(cspace_grade(space, 1.5) == CSPACE_OK);
+    constexpr std::size_t n = 150000, few = 1000;
+    std::vector<Point> x = random_points(domain, n, 1);
+    std::vector<double> metrics(6 * n), lengths(n), first(6 * few);
+    REQUIRE(cspace_sample(space, n, x.front().data(), metrics.data()) == CSPACE_OK);
+    REQUIRE(cspace_sample_lengths(space, n, x.front().data(), lengths.data()) == CSPACE_OK);
+    for (const std::size_t begin : {std::size_t{0}, n - few}) {
+        REQUIRE(cspace_sample(space, few, x[begin].data(), first.data()) == CSPACE_OK);
+        CHECK(std::equal(first.begin(), first.end(), metrics.begin() + 6 * begin));
+        REQUIRE(cspace_sample_lengths(space, few, x[begin].data(), first.data()) == CSPACE_OK);
+        CHECK(std::equal(lengths.begin() + begin, lengths.begin() + begin + few, first.begin()));
+    }
+    lengths.assign(n, -1);
+    x[n - 2].y() = x[n / 2].x() = std::nan("");
+    CHECK(cspace_sample_lengths(space, n, x.front().data(), lengths.data()) == CSPACE_BAD_INPUT);
+    CHECK_THAT(cspace_last_error(), Contains("position 75000 is NaN"));
+    CHECK(lengths[0] == -1);
+    metrics[6 * (n / 3)] = metrics[6 * (n - 1)] = -1;
+    CHECK(cspace_to_riemannian(n, metrics.data(), metrics.data()) == CSPACE_BAD_INPUT);
+    CHECK_THAT(cspace_last_error(), Contains("metric 50000 is not positive definite"));
+    cspace_free(space);
+}
+
 TEST_CASE("C: metrics become Riemannian ones and come back") {
     std::array<double, 12> metrics{0.5, 0.25, 0.1, 0, 0, 0};
     std::copy(tensor.begin(), tensor.end(), metrics.begin() + 6);

@@ -73,10 +73,9 @@ private:
 /// time, so that metrics are prefetched while weights are computed. `values` provides
 /// box(leaf), prefetch_box(leaf), if it is worth it, corners(leaf), and metrics(), which these
 /// number.
-template <class Values>
+template <std::size_t at_a_time, class Values>
 void trilinear_in_leaves(const Values& values, std::span<const LeafIndex> leaves,
                          std::span<const Point> x, std::span<Metric> out) {
-    constexpr std::size_t at_a_time = 32;  // what they read fits into the nearest cache
     WeightsInBoxes<at_a_time> weights;
     const auto metrics = values.metrics();
     for (std::size_t first = 0; first < x.size(); first += at_a_time) {
@@ -96,6 +95,17 @@ void trilinear_in_leaves(const Values& values, std::span<const LeafIndex> leaves
                 8, [&](std::size_t c) { return weights(i, c); },
                 [&](std::size_t c) -> auto& { return metrics[corners[c]]; });
         }
+    }
+}
+
+template <class Values>
+void trilinear_in_leaves(const Values& values, std::span<const LeafIndex> leaves,
+                         std::span<const Point> x, std::span<Metric> out) {
+    constexpr std::size_t most = 32;  // what they read fits into the nearest cache
+    if (x.size() == 1) {
+        trilinear_in_leaves<1>(values, leaves, x, out);
+    } else {
+        trilinear_in_leaves<most>(values, leaves, x, out);
     }
 }
 

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <exception>
+#include <memory>
+#include <new>
+
+#include "controlspace/controlspace.h"
+#include "controlspace/error.h"
+#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_space_builder.h"
+
+struct cspace {
+    std::unique_ptr<controlspace::ControlSpaceBuilder> builder;  // none of a compact form
+    std::unique_ptr<controlspace::ControlSpace> space;           // what it has built last
+};
+
+namespace controlspace {
+
+/// Keeps the reason for cspace_last_error(); returns `status`.
+cspace_status fail(cspace_status status, const char* what) noexcept;
+
+/// Runs `action`; what it throws becomes a status.
+template <class Action>
+cspace_status guarded(Action&& action) noexcept {
+    try {
+        action();
+        return CSPACE_OK;
+    } catch (const InputError& error) {
+        return fail(CSPACE_BAD_INPUT, error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(CSPACE_FAILURE, "out of memory");
+    } catch (const std::exception& error) {
+        return fail(CSPACE_FAILURE, error.what());
+    } catch (...) {
+        return fail(CSPACE_FAILURE, "unknown failure");
+    }
+}
+
+/// Throws InputError for NULL.
+void require(const void* argument, const char* name);
+
+/// The control space to be read. Throws where there is none.
+const ControlSpace& space_of(const cspace* handle);
+
+inline Point point_at(const double* positions, std::size_t i) {
+    return {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
+}
+
+inline Metric metric_at(const double* metrics, std::size_t i) {
+    const double* m = metrics + 6 * i;
+    return {m[0], m[1], m[2], m[3], m[4], m[5]};
+}
+
+}  // namespace controlspace

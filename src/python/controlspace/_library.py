@@ -1,0 +1,56 @@
+"""The C library, whose functions controlspace.h describes."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from ctypes import POINTER, c_char_p, c_double, c_int, c_size_t, c_void_p
+from pathlib import Path
+
+# Either from the package, or from a build folder.
+_FILE = os.environ.get("CONTROLSPACE_LIBRARY") or Path(__file__).parent / "libcontrolspace.so"
+_OK, _BAD_INPUT = 0, 2
+
+# Arrays go as addresses: see _arrays.py.
+_FUNCTIONS = {
+    "version": (c_char_p,),
+    "last_error": (c_char_p,),
+    "structure": (c_char_p, c_size_t),
+    "create": (c_int, c_char_p, c_void_p, c_char_p, POINTER(c_void_p)),
+    "free": (None, c_void_p),
+    "insert": (c_int, c_void_p, c_size_t, c_void_p, c_void_p),
+    "insert_lengths": (c_int, c_void_p, c_size_t, c_void_p, c_void_p),
+    "grade": (c_int, c_void_p, c_double),
+    "adapt": (c_int, c_void_p, c_size_t, c_void_p, c_void_p, c_double, c_double, POINTER(c_double)),
+    "sample": (c_int, c_void_p, c_size_t, c_void_p, c_void_p),
+    "sample_lengths": (c_int, c_void_p, c_size_t, c_void_p, c_void_p),
+    "edge_lengths": (c_int, c_void_p, c_size_t, c_void_p, c_void_p, c_void_p),
+    "to_riemannian": (c_int, c_size_t, c_void_p, c_void_p),
+    "domain": (c_int, c_void_p, c_void_p),
+    "save": (c_int, c_void_p, c_char_p),
+    "load": (c_int, c_char_p, POINTER(c_void_p)),
+}
+
+library = ctypes.CDLL(os.fspath(_FILE))
+for _name, (_result, *_arguments) in _FUNCTIONS.items():
+    _function = getattr(library, "cspace_" + _name)
+    _function.restype, _function.argtypes = _result, _arguments
+
+# One place takes less time than giving the global lock away and back.
+size_at = ctypes.PyDLL(os.fspath(_FILE)).cspace_size
+size_at.restype, size_at.argtypes = c_double, (c_void_p, c_double, c_double, c_double)
+
+
+def call(name: str, *arguments: object) -> None:
+    """Calls the function cspace_NAME; its failure becomes an exception."""
+    status = getattr(library, "cspace_" + name)(*arguments)
+    if status == _OK:
+        return
+    reason = library.cspace_last_error().decode(errors="replace")
+    if status == _BAD_INPUT:
+        raise ValueError(reason)
+    raise MemoryError(reason) if reason == "out of memory" else RuntimeError(reason)
+
+
+def version() -> str:
+    return str(library.cspace_version().decode())
