@@ -62,7 +62,7 @@ std::span<const Point> points_in(const double* positions, std::size_t begin, std
     return {reinterpret_cast<const Point*>(positions) + begin, end - begin};
 }
 
-// As cspace_size(). Meshers call it for every point: nothing is put on record that costs time.
+// As cspace_size(): meshers call it for every point, so that no reason of a failure is kept.
 double size_at(const cspace* handle, const Point& p) noexcept {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     if (handle == nullptr || !handle->space) return none;
