@@ -189,7 +189,8 @@ def build(
 
     points: (n, 3), n >= 1.
     h: lengths (n,); or metrics M, (n, 6) as xx yy zz xy xz yz, or (n, 3, 3).
-    structure: one of `structures()`. None: the octree K_oV, adapted to delta = 0.1.
+    structure: one of `structures()`. None: the octree K_oV; of lengths it is adapted to delta = 0.1,
+    of metrics, where that takes long, only if delta is given.
     box: lowest and highest corner, (2, 3). None: the box of the points and 5 % of its longest edge.
     growth: gradation ratio g_r >= 1, growth of lengths per metric length of distance.
     delta: largest non-conformity to the exact field, above 0, that a tree is refined to; guaranteed
@@ -208,7 +209,9 @@ def build(
     if not 1 <= growth < math.inf:
         raise ValueError(f"growth is {growth}: give 1 or more")
     if structure is None:
-        structure, delta = "K_oV", 0.1 if delta is None else delta
+        structure = "K_oV"
+        if delta is None and h.ndim == 1:
+            delta = 0.1
     given = {"g_r": growth, "finest_length": finest, **options}
     handle = ctypes.c_void_p()
     call(
