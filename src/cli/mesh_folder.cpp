@@ -43,8 +43,10 @@ void MeshFolder::add(MeshRow row, const Box& domain, const ControlSpace& referen
         const TetMesh mesh = make_mesh(domain, meshed, settings_, path_, row);
         row.peak_bytes = std::max(row.peak_bytes, peak_memory());
         row.conformity = conformity(mesh, reference);
-        std::string name = fmt::format("{:02}-{}", rows_.size(), mesh_label(row));
-        const auto unfit = [](char c) { return c == ' ' || c == '/' || c == ',' || c == '<'; };
+        // The structure's name; what follows, "δ <= 0.1", is in the table.
+        const std::string label = mesh_label(row);
+        std::string name = fmt::format("{:02}-{}", rows_.size(), label.substr(0, label.find(',')));
+        const auto unfit = [](char c) { return c == ' ' || c == '/'; };
         std::replace_if(name.begin(), name.end(), unfit, '-');
         const auto whole = interruption.postpone();
         write_mesh(path_ / name, mesh, meshed, settings_);

@@ -279,7 +279,7 @@ class Page(unittest.TestCase):
         self.assertEqual(len(tables), 2)
         self.assertEqual(tables[0].rows[0], [
             "K_oL", "103", "1.23", "1.750", "51.0", "11.0", "1.7800", "0.1000", "0.4000",
-            "2.7800", "7.00 %", "1.400", "1.2499", ""])
+            "2.7800", "7.00 %", "1.400x", "1.2499", ""])
         self.assertEqual(tables[0].rows[1][-1], "failed: no memory")
         # A measure of somebody's own.
         row = json_row("K_oL")

@@ -54,6 +54,7 @@ def json_row(structure="K_L", split=None, **changes):
            "delta_R_fine_max": 2.78, "delta_R_fine_mean": 0.17, "delta_R_fine_p95": 0.3,
            "delta_R_fine_p99": 0.4, "delta_metric_R_max": 5.0, "coarser_max": 1.3,
            "coarser_share": 0.06, "coarser_fine_max": 1.4, "coarser_fine_share": 0.07,
+           "within_max": 1.3, "within_fine_max": 1.4,
            "gradation_max_left": 1.2499, "gradation_operations": 12345,
            "checksum": "0123456789abcdef", "remark": "", "error": "", "fields": None, "labels": None}
     # Settings that the rows above do not have stand before the sources.
