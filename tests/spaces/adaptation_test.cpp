@@ -309,7 +309,8 @@ TEST_CASE("a target out of reach is told, with what was reached") {
         const AdaptationReport report = space->adapt({sources, nullptr, g, 0.1});
         CHECK_FALSE(report.met);
         CHECK(report.reached > 0.1);
-        CHECK(report.shortfall.find("raise target_delta (within) or the depth") != std::string::npos);
+        CHECK(report.shortfall.find("raise target_delta (within) or the depth") !=
+              std::string::npos);
         CHECK(space->footprint().cells == 64);
     }
     for (const CatalogueEntry& entry : structures()) {
