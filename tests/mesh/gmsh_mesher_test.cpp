@@ -156,7 +156,7 @@ TEST_CASE("Gmsh fills a part that is given by its surface") {
         CHECK((p.z() > -1e-6 && p.z() < 30 + 1e-6));
     }
     const Conformity c = conformity(run.mesh, field);
-    CHECK(c.l_r > 0.5);
+    CHECK(c.l_r > 0.7);
     CHECK(c.mean_length == Approx(1).epsilon(0.1));
 
     CHECK_THAT(error_of([&] { mesh_with_gmsh(two_cube, field, {.part = part}); }),
@@ -183,7 +183,7 @@ TEST_CASE("Gmsh fills a solid of a CAD file") {
     const auto solid = std::make_shared<const Part>(part);
     const GmshRun run = mesh_with_gmsh(around_strips, field, {.part = solid});
     CHECK(volume(run.mesh) == Approx(M_PI * 3000).epsilon(0.03));
-    CHECK(conformity(run.mesh, field).l_r > 0.5);
+    CHECK(conformity(run.mesh, field).l_r > 0.7);
     CHECK_THAT(error_of([&] { mesh_with_gmsh(two_cube, field, {.part = solid}); }),
                Contains("is not inside of the field's domain"));
     part.cad = folder.path() / "none.step";
