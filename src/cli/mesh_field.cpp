@@ -68,7 +68,9 @@ TetMesh make_mesh(const Box& domain, const ControlSpace& field, const MeshSettin
     if (row.mesher == Mesher::mmg) {
         if (!settings.body) require_few_tets(domain, field, settings.max_tets);
         const GmshRun start = start_mesh(domain, field, settings);
-        MmgRun run = mesh_with_mmg(start.mesh, field, mmg_options(settings, folder));
+        MmgOptions options = mmg_options(settings, folder);
+        if (settings.body) options.hausdorff = 1e-3 * domain.edges().norm();
+        MmgRun run = mesh_with_mmg(start.mesh, field, options);
         row.seconds = start.seconds + run.seconds + run.query_seconds;
         row.processor_seconds = start.processor_seconds + run.processor_seconds + run.query_seconds;
         row.queries = start.queries + run.queries;

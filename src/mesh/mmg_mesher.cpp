@@ -70,9 +70,11 @@ TetMesh remesh(const TetMesh& mesh, const std::vector<Metric>& metrics, const fs
     const fs::path log = folder.path() / "log", out = folder.path() / "out.mesh";
     write_medit_mesh(folder.path() / "in.mesh", mesh);
     write_medit_solution(folder.path() / "in.sol", metrics);
-    const std::vector<std::string> words{
-        program.string(), "-v",   "1",      "-hgrad", "-1",      "-in",
-        "in.mesh",        "-sol", "in.sol", "-out",   "out.mesh"};
+    std::vector<std::string> words{program.string(), "-v",   "1",      "-hgrad", "-1",      "-in",
+                                   "in.mesh",        "-sol", "in.sol", "-out",   "out.mesh"};
+    if (options.hausdorff > 0) {
+        words.insert(words.end(), {"-hausd", fmt::format("{}", options.hausdorff)});
+    }
     const Stopwatch watch;
     const ChildOutcome outcome = run_child(words, folder.path(), log, options.time_limit_s);
     run.seconds += watch.seconds();

@@ -19,6 +19,8 @@ struct MmgOptions {
     double factor = mmg_factor;  ///< of lengths
     int rounds = 3;
     double time_limit_s = 900;  ///< of a round
+    /// How far curved boundaries may move [length]; 0: MMG's own, which is for parts of length 1.
+    double hausdorff = 0;
     /// Where a folder for temporary files is made. It is removed, unless something fails.
     std::filesystem::path folder = ".";
 };
