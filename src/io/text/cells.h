@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "controlspace/geometry/box.h"
@@ -11,5 +12,9 @@ namespace controlspace {
 /// they lie in the domain. Found by asking for the element at places, so that nothing needs to be
 /// known of the structure; in ascending order of their low corners, x first.
 std::vector<Box> elements_of(const ControlSpace& space);
+
+/// The corners of a box (numbered as by `corner`) in the order of VTK's and Gmsh's hexahedra, which
+/// goes around each face.
+inline constexpr std::array<int, 8> hexahedron_corners{0, 1, 3, 2, 4, 5, 7, 6};
 
 }  // namespace controlspace

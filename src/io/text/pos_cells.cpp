@@ -110,7 +110,7 @@ PosCells write_pos_cells(const std::filesystem::path& path, const ControlSpace& 
     for (std::size_t i = 0; i < all.boxes.size(); ++i) {
         coordinates.clear();
         values.clear();
-        for (const int c : {0, 1, 3, 2, 4, 5, 7, 6}) {  // Gmsh goes around each face
+        for (const int c : hexahedron_corners) {
             const Point x = corner(all.boxes[i], c);
             coordinates.insert(coordinates.end(), x.begin(), x.end());
             const Metric& m = all.metrics[8 * i + static_cast<std::size_t>(c)];

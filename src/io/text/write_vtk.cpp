@@ -47,7 +47,7 @@ void write_leaves(const std::filesystem::path& path, const ControlSpace& space) 
     std::vector<Point> centres;
     for (const Box& box : leaves) {
         centres.push_back(box.centre());
-        for (const int i : {0, 1, 3, 2, 4, 5, 7, 6}) {  // VTK goes around each face
+        for (const int i : hexahedron_corners) {
             const auto place =
                 std::lower_bound(corners.begin(), corners.end(), corner(box, i), precedes);
             cells.points.push_back(place - corners.begin());
