@@ -11,6 +11,7 @@
 #include "cones/cone_field.h"
 #include "controlspace/error.h"
 #include "controlspace/space/detail/goal_field.h"
+#include "controlspace/space/detail/own_growths.h"
 #include "controlspace/space/detail/saved.h"
 #include "controlspace/space/detail/shared_builder.h"
 #include "controlspace/space/detail/state.h"
@@ -46,9 +47,9 @@ public:
         ControlNodes nodes;
         NodeGraph graph;
         graph.first.assign(sources_.size() + 1, 0);
-        for (const auto& [position, metric] : sources_) {
-            graph.positions.push_back(position);
-            nodes.metrics.push_back(metric);
+        for (const PointSource& source : sources_) {
+            graph.positions.push_back(source.position);
+            nodes.metrics.push_back(source.metric);
         }
         nodes.graph = std::move(graph);
         return nodes;
@@ -65,6 +66,9 @@ public:
         state("sources.metrics", nodes.metrics);
         state("sources.ratio", ratio_);
         state("sources.intersection", intersection_, IntersectionRule::in_turn);
+        OwnGrowths growths;
+        for (std::size_t i = 0; i < sources_.size(); ++i) growths.add(i, sources_[i].growth);
+        growths.save(state, "sources.growths");
     }
     void load(const StateReader& state) {
         std::vector<Point> positions;
@@ -77,9 +81,13 @@ public:
         }
         state.require(positions.size() == metrics.size(), "sources.metrics", "has another length");
         require_valid(GradationOptions{.ratio = ratio_});
+        OwnGrowths growths;
+        growths.load(state, "sources.growths", positions.size());
         sources_.clear();
         sources_.reserve(positions.size());
-        for (std::size_t i = 0; i < positions.size(); ++i) append({positions[i], metrics[i]}, i);
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            append({positions[i], metrics[i], growths[i]}, i);
+        }
     }
 
     const Box& domain() const { return domain_; }

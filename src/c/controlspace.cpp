@@ -38,19 +38,27 @@ void change(cspace* handle, Edit&& edit) {
     handle->space = handle->builder->build();
 }
 
-// Puts `metric_of(i)` at each position.
-template <class MetricOf>
-std::vector<PointSource> sources_at(std::size_t n, const double* positions, MetricOf&& metric_of) {
+std::vector<PointSource> sources_in(const cspace_sources* given) {
+    require(given, "sources");
+    if (given->size < sizeof(cspace_sources)) {
+        throw InputError(fmt::format("sources->size is {}: give sizeof(cspace_sources), {}",
+                                     given->size, sizeof(cspace_sources)));
+    }
     std::vector<PointSource> sources;
-    sources.reserve(n);
-    for (std::size_t i = 0; i < n; ++i) sources.push_back({point_at(positions, i), metric_of(i)});
+    if (given->n == 0) return sources;
+    require(given->positions, "positions");
+    if (given->lengths == nullptr) require(given->metrics, "metrics");
+    if (given->lengths != nullptr && given->metrics != nullptr) {
+        throw InputError("sources have lengths and metrics: give one of them");
+    }
+    sources.reserve(given->n);
+    for (std::size_t i = 0; i < given->n; ++i) {
+        sources.push_back({point_at(given->positions, i),
+                           given->lengths != nullptr ? Metric::isotropic(given->lengths[i])
+                                                     : metric_at(given->metrics, i),
+                           given->growths != nullptr ? given->growths[i] : 0});
+    }
     return sources;
-}
-
-std::vector<PointSource> sources_of(std::size_t n, const double* positions, const double* metrics) {
-    if (n > 0) require(positions, "positions");
-    if (n > 0) require(metrics, "metrics");
-    return sources_at(n, positions, [&](std::size_t i) { return metric_at(metrics, i); });
 }
 
 const CatalogueEntry& entry_named(std::string_view name) {
@@ -109,39 +117,46 @@ const char* cspace_structure(size_t i) {
 
 void cspace_free(cspace* space) { delete space; }
 
+cspace_status cspace_insert_sources(cspace* space, const cspace_sources* sources) {
+    return guarded([&] {
+        const std::vector<PointSource> all = sources_in(sources);
+        change(space, [&](auto& builder) { builder.insert(all); });
+    });
+}
+
 cspace_status cspace_insert(cspace* space, size_t n, const double* positions,
                             const double* metrics) {
-    return guarded([&] {
-        const std::vector<PointSource> sources = sources_of(n, positions, metrics);
-        change(space, [&](auto& builder) { builder.insert(sources); });
-    });
+    const cspace_sources sources{sizeof sources, n, positions, metrics, nullptr, nullptr};
+    return cspace_insert_sources(space, &sources);
 }
 
 cspace_status cspace_insert_lengths(cspace* space, size_t n, const double* positions,
                                     const double* lengths) {
-    return guarded([&] {
-        if (n > 0) require(positions, "positions");
-        if (n > 0) require(lengths, "lengths");
-        const std::vector<PointSource> sources =
-            sources_at(n, positions, [&](std::size_t i) { return Metric::isotropic(lengths[i]); });
-        change(space, [&](auto& builder) { builder.insert(sources); });
-    });
+    if (n > 0 && lengths == nullptr) return guarded([] { require(nullptr, "lengths"); });
+    const cspace_sources sources{sizeof sources, n, positions, nullptr, lengths, nullptr};
+    return cspace_insert_sources(space, &sources);
 }
 
 cspace_status cspace_grade(cspace* space, double ratio) {
     return guarded([&] { change(space, [&](auto& builder) { builder.grade({.ratio = ratio}); }); });
 }
 
-cspace_status cspace_adapt(cspace* space, size_t n, const double* positions, const double* metrics,
-                           double ratio, double target, double* reached) {
+cspace_status cspace_adapt_sources(cspace* space, const cspace_sources* sources, double ratio,
+                                   double target, double* reached) {
     return guarded([&] {
-        const std::vector<PointSource> sources = sources_of(n, positions, metrics);
+        const std::vector<PointSource> all = sources_in(sources);
         AdaptationReport report;
         change(space, [&](auto& builder) {
-            report = builder.adapt({sources, nullptr, ratio, target});
+            report = builder.adapt({all, nullptr, ratio, target});
         });
         if (reached != nullptr) *reached = report.reached;
     });
+}
+
+cspace_status cspace_adapt(cspace* space, size_t n, const double* positions, const double* metrics,
+                           double ratio, double target, double* reached) {
+    const cspace_sources sources{sizeof sources, n, positions, metrics, nullptr, nullptr};
+    return cspace_adapt_sources(space, &sources, ratio, target, reached);
 }
 
 cspace_status cspace_domain(const cspace* space, double* domain) {

@@ -38,6 +38,11 @@ std::string sources_info(const SourceSummary& s) {
         "  gradation    {:.4g} (largest g_r of the cone law, over the six nearest of each "
         "source)\n",
         s.gradation);
+    if (s.own_growths > 0) {
+        text +=
+            fmt::format("  growth       {} sources have gradation ratios of their own, {} to {}\n",
+                        s.own_growths, s.least_growth, s.most_growth);
+    }
     if (s.contradictory > 0) {
         text += fmt::format("  conflicts    {} sources share their position with a different one\n",
                             s.contradictory);

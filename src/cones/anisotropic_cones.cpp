@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
-#include "cones/cone.h"
 #include "cones/undominated.h"
+#include "controlspace/sources/cone.h"
 #include "metric/decompose.h"
 #include "metric/running_intersection.h"
 
@@ -34,11 +34,10 @@ namespace controlspace {
 // (`uncertainty_`), so that in doubt a cone is intersected.
 
 AnisotropicCones::AnisotropicCones(std::span<const PointSource> sources, double g, double cap)
-    : AnisotropicCones(undominated_sources(sources, g, cap), g) {}
+    : AnisotropicCones(undominated_sources(sources, g, cap)) {}
 
-AnisotropicCones::AnisotropicCones(UndominatedSources sources, double g)
-    : g_(g),
-      least_length_(sources.least_length),
+AnisotropicCones::AnisotropicCones(UndominatedSources sources)
+    : least_length_(sources.least_length),
       dropped_(sources.dropped),
       uncertainty_(sources.uncertainty),
       tree_(std::move(sources.tree)) {}
@@ -66,7 +65,7 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double
     const auto open_node = [&](std::uint32_t n) {
         const TensorNode& node = tree_.node(n);
         const std::uint32_t first_child = tree_.first_child(n);
-        const Lanes factor = least_cone_factors(node, g_, uncertainty_, p);
+        const Lanes factor = least_cone_factors(node, uncertainty_, p);
         const Lanes shortest = certain * factor * node.length;
         for (unsigned lanes = may_matter(factor, node.square, shortest); lanes != 0;
              lanes &= lanes - 1) {
@@ -77,19 +76,18 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double
     const auto open_leaf = [&](std::uint32_t n) {
         const TensorLeaf& leaf = tree_.leaf(n);
         const std::size_t first_item = std::size_t{tree_.leaf_number(n)} * lane_count;
-        const Lanes factor = cone_factors(leaf, g_, p);
+        const Lanes factor = cone_factors(leaf, p);
         for (unsigned lanes = may_matter(factor, square(leaf.metric), factor * leaf.length);
              lanes != 0; lanes &= lanes - 1) {
             const int lane = std::countr_zero(lanes);
-            const Metric metric = leaf.metric[lane];
+            const PointSource source = leaf[lane];
             // As the definition computes it: of like cones the last bit decides which comes first.
-            const double exactly = is_axis_aligned(metric)
-                                       ? cone_factor({leaf.position[lane], metric}, g_, p)
-                                       : factor[lane];
+            const double exactly =
+                is_axis_aligned(source.metric) ? cone_factor(source, 1, p) : factor[lane];
             queue.push(exactly * leaf.length[lane],
                        1 + tree_.indices()[first_item + static_cast<std::size_t>(lane)],
                        static_cast<std::uint32_t>(cones.size()));
-            cones.push_back(exactly * metric);
+            cones.push_back(exactly * source.metric);
         }
     };
     const auto changes_nothing = [&](const LengthQueue::Waiting& cone) {

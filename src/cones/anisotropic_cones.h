@@ -17,7 +17,7 @@ namespace controlspace {
 /// bounding-volume hierarchy; only cones that provably leave the result as it is are left out.
 class AnisotropicCones {
 public:
-    /// g >= 1. Lengths of `cap` or more do not matter.
+    /// g >= 1, the ratio of sources that have none. Lengths of `cap` or more do not matter.
     AnisotropicCones(std::span<const PointSource> sources, double g, double cap);
 
     /// Memory of `intersect`, to be kept from one call to the next.
@@ -43,9 +43,8 @@ public:
     std::size_t bytes_topology() const { return tree_.bytes() - bytes_payload(); }
 
 private:
-    AnisotropicCones(UndominatedSources sources, double g);
+    explicit AnisotropicCones(UndominatedSources sources);
 
-    double g_;
     double least_length_;  ///< of all sources
     std::size_t dropped_;
     double uncertainty_;  ///< relative, of lengths computed from the metrics given

@@ -9,18 +9,18 @@ namespace controlspace {
 
 // When one cone covers another in a box
 // -------------------------------------
-// Let c be the centre of the box, R half its diagonal, and f_i(p) = h_i + (g-1) |p - Q_i|. On the
+// Let c be the centre of the box, R half its diagonal, and f_i(p) = h_i + s_i |p - Q_i|. On the
 // way from c to any p of the box, which is no longer than R, f_a - f_i changes at the rate
-// (g-1) |u_a - u_i| at most, with the unit vectors u_a of p - Q_a and u_i of p - Q_i. That is never
-// more than 2 (g-1), and never more than
-//     2 (g-1) |Q_a - Q_i| / (|p - Q_a| + |p - Q_i|),
+// |s_a u_a - s_i u_i| at most, with the unit vectors u_a of p - Q_a and u_i of p - Q_i. That is
+// never more than s_a + s_i, and never more than |s_a - s_i| + s_i |u_a - u_i|, or
+//     |s_a - s_i| + 2 s_i |Q_a - Q_i| / (|p - Q_a| + |p - Q_i|),
 // where either distance is the one from c, less R, at least. (For a = |a| u and b = |b| v
 //     (|a| + |b|)^2 |u - v|^2 <= 4 |a - b|^2,
 // since the right side less the left is 2 (|a| - |b|)^2 (1 + u.v).) So
 //     f_a(p) <= f_i(p) + f_a(c) - f_i(c) + R times either,
 // which is within the fraction t of f_i(p) where all behind the first f_i is not above
-// t (h_i + (g-1) max(|c - Q_i| - R, 0)). For many sources the same is shown at once by bounds of
-// |c - Q_i|, h_i and |Q_a - Q_i|.
+// t (h_i + s_i max(|c - Q_i| - R, 0)). For many sources the same is shown at once by bounds of
+// |c - Q_i|, h_i, s_i and |Q_a - Q_i|.
 //
 // In a part of the box R is less, and another source may do: what no source covers in the whole box
 // is tested in its octants, and theirs, before more sources are chosen.
@@ -32,9 +32,8 @@ constexpr std::size_t most_given = 512;
 
 }  // namespace
 
-void ConeCover::reset(const Box& box, double slope, double cap, double tolerance) {
+void ConeCover::reset(const Box& box, double cap, double tolerance) {
     box_ = box;
-    slope_ = slope;
     cap_ = cap;
     tolerance_ = tolerance * (1 - rounding);
     size_ = 0;
@@ -49,22 +48,22 @@ void ConeCover::enter(const Box& box) {
 }
 
 void ConeCover::measure(Anchor& anchor) const {
-    const double distance = (anchor.position - centre_).norm();
-    anchor.at_centre = anchor.length + slope_ * distance;
+    const double distance = (anchor.cone.position - centre_).norm();
+    anchor.at_centre = anchor.cone.length + anchor.cone.slope * distance;
     anchor.away = std::max(distance - radius_, 0.0);
 }
 
-bool ConeCover::choose(std::uint32_t source, const Point& position, double length) {
+bool ConeCover::choose(std::uint32_t source, const IsotropicCone& cone) {
     if (size_ == room) return false;
     sources_[size_] = source;
-    anchors_[size_] = {position, length, 0, 0};
+    anchors_[size_] = {cone, 0, 0};
     measure(anchors_[size_++]);
     return true;
 }
 
-bool ConeCover::give(std::uint32_t source, const Point& position, double length) {
+bool ConeCover::give(std::uint32_t source, const IsotropicCone& cone) {
     if (lists_.front().sources.size() == most_given) return false;
-    lists_.front().add(source, position, length);
+    lists_.front().add(source, cone);
     return true;
 }
 
@@ -75,18 +74,15 @@ void ConeCover::list_uncovered(const List& from, List& to) const {
         const auto is_covered = covered(eights[e]);
         for (Eigen::Index i = 0; i < lane_count; ++i) {
             if (is_covered[i]) continue;
-            to.add(from.sources[ConeList::Place{e, i}.number()], eights[e].position[i],
-                   eights[e].length[i]);
+            to.add(from.sources[ConeList::Place{e, i}.number()], eights[e][i]);
         }
     }
 }
 
 // Near to the smallest, sources cover the most.
 bool ConeCover::choose_smallest(const List& list) {
-    const ConeList::Place place = list.cones.smallest_at(centre_, slope_);
-    const ConeList::Eight& eight = list.cones.eights()[place.eight];
-    return choose(list.sources[place.number()], eight.position[place.lane],
-                  eight.length[place.lane]);
+    const ConeList::Place place = list.cones.smallest_at(centre_);
+    return choose(list.sources[place.number()], list.cones[place]);
 }
 
 bool ConeCover::complete() { return complete(box_, 0); }

@@ -12,8 +12,8 @@
 
 namespace controlspace {
 
-/// A choice of sources whose cones h_i + (g-1) |p - Q_i| alone make a length that is nowhere in a
-/// box longer than the smallest of all sources by more than a fraction, the tolerance.
+/// A choice of isotropic sources whose cones h_i + s_i |p - Q_i| alone make a length that is
+/// nowhere in a box longer than the smallest of all sources by more than a fraction, the tolerance.
 ///
 /// Use: `reset`, `choose` a source that is likely to cover many, `give` all sources that `covered`
 /// does not show to be covered, then `complete`.
@@ -22,37 +22,40 @@ public:
     /// Most sources that are chosen.
     static constexpr std::size_t room = 16;
 
-    /// Nothing chosen, nothing given. `slope` is g - 1; lengths of `cap` or more do not matter.
-    void reset(const Box& box, double slope, double cap, double tolerance);
+    /// Nothing chosen, nothing given. Lengths of `cap` or more do not matter.
+    void reset(const Box& box, double cap, double tolerance);
 
-    /// Which sources at these distances from the centre of the box, with these lengths (lower
-    /// bounds of both will do), are covered. `apart(q)` is their distance from the point q, or
-    /// more.
+    /// Which sources at these distances from the centre of the box, with these lengths and slopes
+    /// (lower bounds of all three will do), are covered. `apart(q)` is their distance from the
+    /// point q, or more.
     template <class Numbers, class Apart>
-    auto covered(const Numbers& distances, const Numbers& lengths, const Apart& apart) const {
+    auto covered(const Numbers& distances, const Numbers& lengths, const Numbers& slopes,
+                 const Apart& apart) const {
         const Numbers away = (distances - radius_).max(0);
-        const Numbers least = lengths + slope_ * away;
-        const Numbers most_at_centre = lengths + slope_ * distances + tolerance_ * least;
-        const double change = 2 * slope_ * radius_;
+        const Numbers least = lengths + slopes * away;
+        const Numbers most_at_centre = lengths + slopes * distances + tolerance_ * least;
         auto is_covered = ((1 + tolerance_) * least >= cap_).eval();
         for (std::size_t i = 0; i < size_ && !is_covered.all(); ++i) {
             const Anchor& a = anchors_[i];
             const Numbers gaps = a.at_centre - most_at_centre;
-            is_covered = is_covered || gaps + change <= 0 ||
-                         gaps * (a.away + away) + change * apart(a.position) <= 0;
+            const double slope = a.cone.slope;
+            is_covered = is_covered || gaps + (slope + slopes) * radius_ <= 0 ||
+                         (gaps + (slope - slopes).abs() * radius_) * (a.away + away) +
+                                 2 * slopes * radius_ * apart(a.cone.position) <=
+                             0;
         }
         return is_covered;
     }
     template <int n>
     auto covered(const ConeLanes<n>& cones) const {
-        return covered(cones.distances(centre_), cones.length,
+        return covered(cones.distances(centre_), cones.length, cones.slope,
                        [&](const Point& q) { return cones.distances(q); });
     }
 
     /// Chooses this source; false, without effect, if there is no room.
-    bool choose(std::uint32_t source, const Point& position, double length);
+    bool choose(std::uint32_t source, const IsotropicCone& cone);
     /// Records one that is not covered; false if there are too many.
-    bool give(std::uint32_t source, const Point& position, double length);
+    bool give(std::uint32_t source, const IsotropicCone& cone);
     /// Chooses among the sources given until all of them are covered; false if there is no room.
     bool complete();
 
@@ -61,8 +64,7 @@ public:
 
 private:
     struct Anchor {
-        Point position;
-        double length;
+        IsotropicCone cone;
         double at_centre;  ///< length of its cone there
         double away;       ///< from all of the box, at least
     };
@@ -74,8 +76,8 @@ private:
             cones.clear();
             sources.clear();
         }
-        void add(std::uint32_t source, const Point& position, double length) {
-            cones.add(position, length);
+        void add(std::uint32_t source, const IsotropicCone& cone) {
+            cones.add(cone);
             sources.push_back(source);
         }
     };
@@ -88,7 +90,7 @@ private:
     bool complete(const Box& box, std::size_t depth);
 
     Box box_;
-    double slope_ = 0, cap_ = 0, tolerance_ = 0;
+    double cap_ = 0, tolerance_ = 0;
     Point centre_ = Point::Zero();
     double radius_ = 0;
     std::size_t size_ = 0;

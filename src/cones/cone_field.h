@@ -17,7 +17,7 @@
 namespace controlspace {
 
 /// The exact field: at p, the intersection of `largest` with the cones
-/// M_i (1 + (g-1) |M_i^-1 (p - Q_i)|) of all sources i.
+/// M_i (1 + (g_i-1) |M_i^-1 (p - Q_i)|) of all sources i, g_i their own ratios or the field's, g.
 ///
 /// Order-free, it is the largest metric within all of them. In turn (paper §5.2), the result
 /// depends on the order, which is part of the definition: cones are taken by their smallest length

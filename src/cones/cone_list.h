@@ -9,16 +9,37 @@
 
 namespace controlspace {
 
-/// Isotropic cones h_i + (g-1) |p - Q_i| side by side; infinite lengths fill up the last lanes.
+/// The lengths h + s |p - Q|, s = g - 1, that an isotropic source at Q allows.
+struct IsotropicCone {
+    Point position;
+    double length;  ///< h
+    double slope;   ///< s
+
+    /// Up to rounding.
+    double length_at(const Point& p) const { return length + slope * (p - position).norm(); }
+};
+
+/// Isotropic cones side by side; infinite lengths fill up the last lanes.
 template <int n>
 struct ConeLanes {
     VectorLanesOf<n> position;
     LanesOf<n> length = LanesOf<n>::Constant(std::numeric_limits<double>::infinity());
+    LanesOf<n> slope = LanesOf<n>::Zero();
 
     LanesOf<n> distances(const Point& p) const { return position.distances(p); }
-    /// Up to rounding. `slope` is g - 1.
-    LanesOf<n> lengths_at(const Point& p, double slope) const {
-        return length + slope * distances(p);
+    /// Up to rounding.
+    LanesOf<n> lengths_at(const Point& p) const { return length + slope * distances(p); }
+    /// Lower bounds of them everywhere at most `radius` away from `p`.
+    LanesOf<n> least_lengths(const Point& p, double radius) const {
+        return length + slope * (distances(p) - radius).max(0);
+    }
+    void set(Eigen::Index lane, const IsotropicCone& cone) {
+        position.set(lane, cone.position);
+        length[lane] = cone.length;
+        slope[lane] = cone.slope;
+    }
+    IsotropicCone operator[](Eigen::Index lane) const {
+        return {position[lane], length[lane], slope[lane]};
     }
 };
 
@@ -39,23 +60,23 @@ public:
         size_ = 0;
         eights_.clear();
     }
-    void add(const Point& position, double length) {
+    void add(const IsotropicCone& cone) {
         const auto lane = static_cast<Eigen::Index>(size_++ % lane_count);
         if (lane == 0) eights_.emplace_back();
-        eights_.back().position.set(lane, position);
-        eights_.back().length[lane] = length;
+        eights_.back().set(lane, cone);
     }
 
     std::size_t size() const { return size_; }
     const std::vector<Eight>& eights() const { return eights_; }
+    IsotropicCone operator[](const Place& place) const { return eights_[place.eight][place.lane]; }
 
     /// The cone that is the smallest at `p`, the first of several; there must be one.
-    Place smallest_at(const Point& p, double slope) const {
+    Place smallest_at(const Point& p) const {
         Place place;
         double smallest = std::numeric_limits<double>::infinity();
         for (std::size_t e = 0; e < eights_.size(); ++e) {
             Eigen::Index lane = 0;
-            const double least = eights_[e].lengths_at(p, slope).minCoeff(&lane);
+            const double least = eights_[e].lengths_at(p).minCoeff(&lane);
             if (!(least < smallest)) continue;
             smallest = least;
             place = {e, lane};

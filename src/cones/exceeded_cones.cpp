@@ -22,7 +22,7 @@ void find_in_vector(const TensorLeaf& leaf, std::uint32_t first_member, const Ex
                     Exceeded& exceeded) {
     const CholeskyLanes<lane_count> factorisation(leaf.metric);
     const auto [x, y, z] = factorisation.solve(displacements(leaf.position, exceeding.p));
-    const Lanes factor = 1 + exceeding.slope * (x.square() + y.square() + z.square()).sqrt();
+    const Lanes factor = 1 + (leaf.growth - 1) * (x.square() + y.square() + z.square()).sqrt();
     const Lanes squared = factor.square();
     const TensorLanes seen = seen_from(exceeding.factor, factorisation);
     const Lanes most = exceeded.limit() * squared;

@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-#include "cones/cone.h"
+#include "controlspace/metric/metric.h"
 
 namespace controlspace {
 
@@ -21,19 +21,19 @@ Lanes IsotropicCones::Node::distances(const Point& p) const {
     return (above.square() + beside.square()).sqrt();
 }
 
-Lanes IsotropicCones::lower_bounds(const Node& node, const Point& p) const {
-    return safely_ * (node.length + slope_ * node.distances(p));
+Lanes IsotropicCones::lower_bounds(const Node& node, const Point& p, double radius) const {
+    return safely_ * (node.length + node.slope * (node.distances(p) - radius).max(0));
 }
 
 double IsotropicCones::length_at(const Leaf& leaf, Eigen::Index lane, const Point& p) const {
-    const double h = leaf.length[lane];
-    return cone_factor({leaf.position[lane], Metric::isotropic(h)}, g_, p) * h;
+    const auto [position, h, slope] = leaf[lane];
+    return (1 + slope * metric_length(Metric::isotropic(h), p - position)) * h;
 }
 
 void IsotropicCones::visit_leaf(Hint index, const Point& p, double& smallest, Hint& hint) const {
     // First as bounds have them, all lanes: only those near to the least may have the smallest.
     const Leaf& leaf = tree_.leaves()[index];
-    const LanesOf<leaf_size> lengths = leaf.lengths_at(p, slope_);
+    const LanesOf<leaf_size> lengths = leaf.lengths_at(p);
     const double least = lengths.minCoeff();
     if (!(safely_ * least < smallest)) return;
     const double doubtful = least / (safely_ * safely_);
@@ -72,28 +72,31 @@ Eigen::Index IsotropicCones::lane_of(const Point& p, double smallest, Hint leaf)
     return lane;
 }
 
-// No cone's length differs by more than (g-1) R between the centre of a box and a place in it, R
-// half its diagonal: what is 2 (g-1) R above the smallest at the centre is nowhere the smallest.
+// With R half the diagonal of a box, the cone that is the smallest at its centre is longer by (g-1)
+// R at most at any place in it: what is above that at all places is nowhere the smallest.
 bool IsotropicCones::gather(const Box& box, NearbyCones& nearby, Hint& hint) const {
-    nearby.reset(slope_, cap_);
+    nearby.reset(cap_);
     const Point p = box.centre();
-    const double reach =
-        (smallest_length(p, hint) + 2 * slope_ * box.half_diagonal()) / (safely_ * safely_);
+    const double radius = box.half_diagonal();
+    const double smallest = smallest_length(p, hint);
+    const double rise =
+        smallest < cap_ ? tree_.leaves()[hint].slope[lane_of(p, smallest, hint)] * radius : 0;
+    const double reach = (smallest + rise) / (safely_ * safely_);
     const double beyond = std::nextafter(reach, std::numeric_limits<double>::infinity());
     std::array<const Leaf*, 32> leaves;
     std::size_t found = 0;
-    const bool are_few = tree_.search([&] { return beyond; },
-                                      [&](const Node& node) { return lower_bounds(node, p); },
-                                      [&](std::uint32_t number) {
-                                          if (found == leaves.size()) return false;
-                                          leaves[found++] = &tree_.leaf(number);
-                                          return true;
-                                      });
+    const bool are_few = tree_.search(
+        [&] { return beyond; }, [&](const Node& node) { return lower_bounds(node, p, radius); },
+        [&](std::uint32_t number) {
+            if (found == leaves.size()) return false;
+            leaves[found++] = &tree_.leaf(number);
+            return true;
+        });
     if (!are_few) return false;
     for (const Leaf* leaf : std::span(leaves).first(found)) {
-        const LanesOf<leaf_size> lengths = leaf->lengths_at(p, slope_);
+        const LanesOf<leaf_size> lengths = leaf->least_lengths(p, radius);
         for (Eigen::Index i = 0; i < leaf_size; ++i) {
-            if (lengths[i] <= reach) nearby.add(leaf->position[i], leaf->length[i]);
+            if (lengths[i] <= reach) nearby.add((*leaf)[i]);
         }
     }
     return true;
@@ -102,18 +105,18 @@ bool IsotropicCones::gather(const Box& box, NearbyCones& nearby, Hint& hint) con
 // Those are given that the source which is the smallest at the centre does not cover.
 bool IsotropicCones::cover(const Box& box, double tolerance, ConeCover& cover, Hint& hint) const {
     constexpr double never = std::numeric_limits<double>::infinity();
-    cover.reset(box, slope_, cap_, tolerance);
+    cover.reset(box, cap_, tolerance);
     const Point centre = box.centre();
     const double smallest = smallest_length(centre, hint);
     if (smallest < cap_) {
         const Leaf& leaf = tree_.leaves()[hint];
         const Eigen::Index lane = lane_of(centre, smallest, hint);
-        cover.choose(source_in(hint, lane), leaf.position[lane], leaf.length[lane]);
+        cover.choose(source_in(hint, lane), leaf[lane]);
     }
     const auto bounds = [&](const Node& node) -> Lanes {
         const Lanes reach = (node.half_thickness.square() + node.radius.square()).sqrt();
         const auto covered = cover.covered(
-            node.distances(centre), node.length,
+            node.distances(centre), node.length, node.slope,
             [&](const Point& q) -> Lanes { return node.centre.distances(q) + reach; });
         return covered.select(Lanes::Constant(never), Lanes::Zero());
     };
@@ -123,7 +126,7 @@ bool IsotropicCones::cover(const Box& box, double tolerance, ConeCover& cover, H
         for (Eigen::Index i = 0; i < leaf_size; ++i) {
             if (covered[i]) continue;
             const std::uint32_t source = source_in(tree_.leaf_number(number), i);
-            if (!cover.give(source, leaf.position[i], leaf.length[i])) return false;
+            if (!cover.give(source, leaf[i])) return false;
         }
         return true;
     };
@@ -150,7 +153,7 @@ IsotropicCones::Range IsotropicCones::range_in(const Box& box, Hint& hint) const
         return search(
             cap, 0, hint,
             [&](const Node& node) -> Lanes {
-                return safely_ * (node.length + slope_ * of_node(node.distances(centre)));
+                return safely_ * (node.length + node.slope * of_node(node.distances(centre)));
             },
             [&](Hint index, double& smallest) {
                 const Leaf& leaf = tree_.leaves()[index];
@@ -158,7 +161,7 @@ IsotropicCones::Range IsotropicCones::range_in(const Box& box, Hint& hint) const
                 const Numbers y = of_leaf((leaf.position.y - centre.y()).abs(), half.y());
                 const Numbers z = of_leaf((leaf.position.z - centre.z()).abs(), half.z());
                 const Numbers away = (x.square() + y.square() + z.square()).sqrt();
-                const double least = (leaf.length + slope_ * away).minCoeff();
+                const double least = (leaf.length + leaf.slope * away).minCoeff();
                 if (!(least < smallest)) return;
                 smallest = least;
                 hint = index;

@@ -17,12 +17,13 @@
 
 namespace controlspace {
 
-/// Lower envelope of the cones h_i + (g-1) |p - Q_i| of isotropic sources: what the exact field of
-/// paper §5.2 is where no source is anisotropic. Branch and bound in a bounding-volume hierarchy
+/// Lower envelope of the cones h_i + (g_i-1) |p - Q_i| of isotropic sources: what the exact field
+/// of paper §5.2 is where no source is anisotropic. Branch and bound in a bounding-volume hierarchy
 /// with eight children a node.
 class IsotropicCones {
 public:
-    /// All metrics must be isotropic, g >= 1. Lengths of `cap` or more do not matter.
+    /// All metrics must be isotropic; g >= 1 is the ratio of sources that have none. Lengths of
+    /// `cap` or more do not matter.
     IsotropicCones(std::span<const PointSource> sources, double g, double cap);
 
     /// Where a search starts from: best at the place where the last one nearby ended.
@@ -61,8 +62,7 @@ public:
     /// many as it takes.
     bool cover(const Box& box, double tolerance, ConeCover& cover, Hint& hint) const;
 
-    /// Indices of the sources that were not left out, those near to each other together. Each has
-    /// the smallest length at its own place.
+    /// Indices of the sources that were not left out, those near to each other together.
     std::span<const std::uint32_t> kept() const { return tree_.indices(); }
     /// Sources that are the smallest nowhere, and were left out.
     std::size_t dropped() const { return dropped_; }
@@ -74,13 +74,14 @@ public:
 private:
     static constexpr int leaf_size = 16;
 
-    /// Bounds of the sources of each child: a flat cylinder around their positions, and their
-    /// smallest length. Sources mostly lie on surfaces, whose tangential pieces a cylinder fits
+    /// Bounds of the sources of each child: a flat cylinder around their positions, their smallest
+    /// length and slope. Sources mostly lie on surfaces, whose tangential pieces a cylinder fits
     /// closely where an axis-aligned box does not. Lengths are infinite where there is no child.
     struct Node {
         VectorLanes centre, normal;  ///< of unit length, along the cylinder's axis
         Lanes half_thickness = Lanes::Zero(), radius = Lanes::Zero();
         Lanes length = Lanes::Constant(std::numeric_limits<double>::infinity());
+        Lanes slope = Lanes::Zero();
 
         /// From p to the cylinders, and so to all sources in them: lower bounds.
         Lanes distances(const Point& p) const;
@@ -88,8 +89,10 @@ private:
     using Leaf = ConeLanes<leaf_size>;
     using Tree = ConeTree<Node, Leaf>;
 
-    void build(std::span<ConeTreeItem> items, std::span<const PointSource> sources);
-    Lanes lower_bounds(const Node& node, const Point& p) const;
+    void build(std::span<ConeTreeItem> items, std::span<const IsotropicCone> cones);
+    bool is_dominated(const IsotropicCone& cone) const;
+    /// Of all cones below, everywhere at most `radius` away from `p`.
+    Lanes lower_bounds(const Node& node, const Point& p, double radius = 0) const;
     double length_at(const Leaf& leaf, Eigen::Index lane, const Point& p) const;
     Eigen::Index lane_of(const Point& p, double smallest, Hint leaf) const;
     std::uint32_t source_in(Hint leaf, Eigen::Index lane) const {
@@ -104,8 +107,7 @@ private:
     double search(double cap, double tolerance, Hint& hint, const LowerBounds& lower_bounds,
                   const VisitLeaf& visit_leaf) const;
 
-    double g_;
-    double slope_;
+    double steepest_;  ///< the largest slope
     double cap_;
     double safely_;  ///< just below 1: makes bounds safe against rounding
     std::size_t dropped_ = 0;

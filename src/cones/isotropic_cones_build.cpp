@@ -8,19 +8,23 @@
 #include <tuple>
 
 #include "cones/isotropic_cones.h"
+#include "controlspace/sources/cone.h"
 
 namespace controlspace {
 
 // Which sources cannot matter
 // ---------------------------
-// Let source j meet the length of source i at i's place: h_j + (g-1) |Q_i - Q_j| <= h_i. Then for
+// Let source j meet the length of source i at i's place: k = h_j + s_j |Q_i - Q_j| <= h_i. Then for
 // every p, by the triangle inequality,
-//     h_j + (g-1) |p - Q_j| <= h_j + (g-1) |Q_i - Q_j| + (g-1) |p - Q_i| <= h_i + (g-1) |p - Q_i|:
-// i is nowhere smaller than j, and may be left out. Where "<=" holds by more than some margin this
-// goes from i to j to j's own dominator and on, lengths getting strictly smaller, and ends at a
-// source that is kept: so all may be left out at once. Computed lengths below the cap are off by
-// less than 32 epsilon of the cap; by a margin of more than twice that, leaving out does not change
-// a bit of any answer. Of sources at one place the smallest is kept, without any margin.
+//     h_j + s_j |p - Q_j| <= k + s_j |p - Q_i|.
+// If j is no steeper than i, s_j <= s_i, this is not above h_i + s_i |p - Q_i|. If it is, it is not
+// as long as that is not above the cap, provided that k + s_j T <= cap where h_i + s_i T = cap. In
+// both cases i is nowhere smaller than j where it matters, and may be left out. Where "<=" holds by
+// more than some margin this goes from i to j to j's own dominator and on, lengths getting strictly
+// smaller, and ends at a source that is kept: so all may be left out at once. Computed lengths
+// below the cap are off by less than 32 epsilon of the cap; by a margin of more than twice that,
+// leaving out does not change a bit of any answer. Of sources at one place the smallest is kept,
+// without any margin, and others that are less steep.
 
 namespace {
 
@@ -44,14 +48,19 @@ Vector normal_of(std::span<const ConeTreeItem> items, const Point& centre, doubl
     return std::abs(normal.squaredNorm() - 1) < 4 * epsilon ? normal : Vector::UnitX();
 }
 
-// One item for each place, of the smallest length there, in an order that depends on nothing else.
-void keep_smallest_at_each_place(std::vector<ConeTreeItem>& items) {
-    tbb::parallel_sort(items.begin(), items.end(), [](const auto& a, const auto& b) {
-        return std::tie(a.coordinates, a.index) < std::tie(b.coordinates, b.index);
+// For each place the item of the smallest length there, and longer ones that are less steep, in an
+// order that depends on nothing else.
+void keep_smallest_at_each_place(std::vector<ConeTreeItem>& items,
+                                 std::span<const IsotropicCone> cones) {
+    const auto slope = [&](const ConeTreeItem& item) { return cones[item.index].slope; };
+    tbb::parallel_sort(items.begin(), items.end(), [&](const auto& a, const auto& b) {
+        return std::tuple(a.coordinates, slope(a), a.index) <
+               std::tuple(b.coordinates, slope(b), b.index);
     });
-    const auto end = std::unique(
-        items.begin(), items.end(),
-        [](const ConeTreeItem& a, const ConeTreeItem& b) { return a.position() == b.position(); });
+    const auto end =
+        std::unique(items.begin(), items.end(), [&](const ConeTreeItem& a, const ConeTreeItem& b) {
+            return a.position() == b.position() && slope(a) <= slope(b);
+        });
     items.erase(end, items.end());
 }
 
@@ -95,40 +104,54 @@ struct Cylinder {
 }  // namespace
 
 IsotropicCones::IsotropicCones(std::span<const PointSource> sources, double g, double cap)
-    : g_(g),
-      slope_(g - 1),
+    : steepest_(largest_growth(sources, g) - 1),
       cap_(cap),
       // A cone's length is computed as h (1 + (g-1) |v / h|), its bounds as h + (g-1) |v|; the two
       // differ by a few roundings, and the bounds give way by more. Without growth, by none.
-      safely_(g > 1 ? 1 - 64 * epsilon : 1) {
+      safely_(steepest_ > 0 ? 1 - 64 * epsilon : 1) {
     // Without growth cones differ in their lengths only.
-    const double weight = slope_ > 0 ? 1 / slope_ : 1;
+    const double weight = g > 1 ? 1 / (g - 1) : 1;
     std::vector<ConeTreeItem> items(sources.size());
+    std::vector<IsotropicCone> cones(sources.size());
     for (std::size_t i = 0; i < sources.size(); ++i) {
         const Point& q = sources[i].position;
-        items[i] = {{q.x(), q.y(), q.z(), weight * sources[i].metric.xx},
-                    static_cast<std::uint32_t>(i)};
+        const double h = sources[i].metric.xx;
+        items[i] = {{q.x(), q.y(), q.z(), weight * h}, static_cast<std::uint32_t>(i)};
+        cones[i] = {q, h, cone_growth(sources[i], g) - 1};
     }
-    keep_smallest_at_each_place(items);
-    const double margin = 128 * epsilon * cap_;
+    keep_smallest_at_each_place(items, cones);
     const std::size_t kept = build_without_dominated(
-        items, [&](std::span<ConeTreeItem> some) { build(some, sources); },
-        [&](const ConeTreeItem& item) {
-            const PointSource& source = sources[item.index];
-            const double length = source.metric.xx - margin;
-            Hint hint = 0;
-            return search(source.position, length, 0, hint) < length;
-        });
+        items, [&](std::span<ConeTreeItem> some) { build(some, cones); },
+        [&](const ConeTreeItem& item) { return is_dominated(cones[item.index]); });
     dropped_ = sources.size() - kept;
 }
 
-void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const PointSource> sources) {
+bool IsotropicCones::is_dominated(const IsotropicCone& cone) const {
+    const double margin = 128 * epsilon * cap_;
+    const double below = cone.length - margin;
+    const auto is_below = [&](double at_cone, double slope) {
+        if (!(at_cone < below)) return false;
+        if (slope <= cone.slope) return true;
+        return at_cone + slope * (cap_ - cone.length) / cone.slope <= cap_ - margin;
+    };
+    return !tree_.search([&] { return below; },
+                         [&](const Node& node) { return lower_bounds(node, cone.position); },
+                         [&](std::uint32_t number) {
+                             const Leaf& leaf = tree_.leaf(number);
+                             const LanesOf<leaf_size> roughly = leaf.lengths_at(cone.position);
+                             for (Eigen::Index i = 0; i < leaf_size; ++i) {
+                                 if (!(safely_ * roughly[i] < below)) continue;
+                                 const double length = length_at(leaf, i, cone.position);
+                                 if (is_below(length, leaf.slope[i])) return false;
+                             }
+                             return true;
+                         });
+}
+
+void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const IsotropicCone> cones) {
     const auto make_leaf = [&](std::span<const ConeTreeItem> of_leaf, Leaf& leaf) {
         Eigen::Index lane = 0;
-        for (const ConeTreeItem& item : of_leaf) {
-            leaf.position.set(lane, item.position());
-            leaf.length[lane++] = sources[item.index].metric.xx;
-        }
+        for (const ConeTreeItem& item : of_leaf) leaf.set(lane++, cones[item.index]);
     };
     const auto make_node = [&](std::span<const Tree::Child> children, Node& node, std::uint32_t) {
         for (std::size_t i = 0; i < children.size(); ++i) {
@@ -142,6 +165,10 @@ void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const PointS
             node.radius[lane] = cylinder.radius;
             node.length[lane] = tree_.is_leaf(number) ? tree_.leaf(number).length.minCoeff()
                                                       : tree_.node(number).length.minCoeff();
+            node.slope[lane] = infinity;
+            for (const ConeTreeItem& item : of_child) {
+                node.slope[lane] = std::min(node.slope[lane], cones[item.index].slope);
+            }
         }
     };
     tree_.build(items, leaf_size, make_leaf, make_node);

@@ -29,7 +29,7 @@ std::optional<Doubt> IsotropicCones::doubt_of(const TrilinearLengths& lengths, d
     const Box& box = lengths.box;
     const double reach = std::max(box.low.cwiseAbs().maxCoeff(), box.high.cwiseAbs().maxCoeff()) +
                          box.half_diagonal();
-    const double steepest = std::max(slope_, lengths.slope());
+    const double steepest = std::max(steepest_, lengths.slope());
     const double rounding =
         64 * epsilon * (1 + steepest * reach / *std::ranges::min_element(lengths.at));
     const double shown = 1 + (1 - 1e-9) * (factor - 1) - rounding;
@@ -65,22 +65,20 @@ std::optional<Doubt> IsotropicCones::doubt_of_long(const TrilinearLengths& lengt
     if (longest > factor * cap_) {
         return Doubt{corner(box, static_cast<int>(at_longest - lengths.at.begin())), true};
     }
-    const bool is_flat = lengths.slope() <= factor * slope_;
+    const double slope = lengths.slope();
     std::optional<Doubt> doubt;
     tree_.search(
         [&] { return longest / factor; },
-        [&](const Node& node) -> Lanes {
-            return safely_ * (node.length + slope_ * (node.distances(centre) - radius).max(0));
-        },
+        [&](const Node& node) { return lower_bounds(node, centre, radius); },
         [&](std::uint32_t number) {
             const Leaf& leaf = tree_.leaf(number);
             // Tangents at the centre.
             const Numbers distances = leaf.distances(centre);
-            const Numbers steepness = slope_ / distances.max(1e-150 * std::max(1.0, slope_));
+            const Numbers steepness = leaf.slope / distances.max(1e-150 * std::max(1.0, steepest_));
             const Numbers x = steepness * (centre.x() - leaf.position.x);
             const Numbers y = steepness * (centre.y() - leaf.position.y);
             const Numbers z = steepness * (centre.z() - leaf.position.z);
-            const Numbers at_centre = leaf.length + slope_ * distances;
+            const Numbers at_centre = leaf.length + leaf.slope * distances;
             Numbers least = Numbers::Constant(std::numeric_limits<double>::infinity());
             for (int c = 0; c < 8; ++c) {
                 const Vector v = corner(box, c) - centre;
@@ -93,11 +91,12 @@ std::optional<Doubt> IsotropicCones::doubt_of_long(const TrilinearLengths& lengt
                 const Point q = leaf.position[i];
                 const Point nearest = q.cwiseMax(box.low).cwiseMin(box.high);
                 const double own = lengths.at_place(nearest);
-                if (own > factor * (leaf.length[i] + slope_ * (nearest - q).norm())) {
+                if (own > factor * leaf[i].length_at(nearest)) {
                     doubt = {nearest, true};
                     return false;
                 }
                 // From there, lengths grow no faster than the multiple of the cone does.
+                const bool is_flat = slope <= factor * leaf.slope[i];
                 if (is_flat && own <= factor * leaf.length[i]) continue;
                 doubt = {nearest, false};
             }
@@ -119,11 +118,9 @@ std::optional<Doubt> IsotropicCones::doubt_of_short(const TrilinearLengths& leng
         const double smallest = smallest_length(x, hint);
         at_corners.fill(cap_);
         if (!(smallest < cap_)) return;
-        const Leaf& leaf = tree_.leaves()[hint];
-        const Eigen::Index lane = lane_of(x, smallest, hint);
+        const IsotropicCone cone = tree_.leaves()[hint][lane_of(x, smallest, hint)];
         for (int c = 0; c < 8; ++c) {
-            at_corners[static_cast<std::size_t>(c)] =
-                leaf.length[lane] + slope_ * (corner(box, c) - leaf.position[lane]).norm();
+            at_corners[static_cast<std::size_t>(c)] = cone.length_at(corner(box, c));
         }
     };
     Values first;

@@ -8,13 +8,13 @@
 
 namespace controlspace {
 
-/// Those cones h_i + (g-1) |p - Q_i| of isotropic sources that can be the smallest somewhere in a
+/// Those cones of isotropic sources that can be the smallest somewhere in a
 /// box: for many queries in it, where they are few.
 class NearbyCones {
 public:
-    /// No cones. `slope` is g - 1; lengths of `cap` or more do not matter.
-    void reset(double slope, double cap);
-    void add(const Point& position, double length) { cones_.add(position, length); }
+    /// No cones. Lengths of `cap` or more do not matter.
+    void reset(double cap);
+    void add(const IsotropicCone& cone) { cones_.add(cone); }
     /// Sets these to those of `others`, which should be all that matter in `box`, that can be the
     /// smallest somewhere in it.
     void narrow(const NearbyCones& others, const Box& box);
@@ -24,7 +24,6 @@ public:
     double smallest_length(const Point& p) const;
 
 private:
-    double slope_ = 0;
     double cap_ = 0;
     ConeList cones_;
 };

@@ -7,10 +7,10 @@
 #include <limits>
 #include <utility>
 
-#include "cones/cone.h"
 #include "cones/exceeded_cones.h"
 #include "cones/undominated.h"
 #include "controlspace/error.h"
+#include "controlspace/sources/cone.h"
 #include "metric/decompose.h"
 #include "metric/interior_point.h"
 
@@ -134,7 +134,7 @@ private:
 
 OrderFreeCones::OrderFreeCones(std::span<const PointSource> sources, double g,
                                const Metric& largest, double tolerance)
-    : g_(g), largest_(largest), tolerance_(tolerance) {
+    : steepest_(largest_growth(sources, g) - 1), largest_(largest), tolerance_(tolerance) {
     require_valid(largest, [] { return "the largest metric"; });
     for (std::size_t i = 0; i < sources.size(); ++i) {
         require_valid(sources[i].metric, [&] { return fmt::format("source {}", i); });
@@ -151,7 +151,7 @@ OrderFreeCones::OrderFreeCones(std::span<const PointSource> sources, double g,
     }
     kept.tree = {};
     rounding_ = std::max(0.1 * kept.uncertainty, 1e-13);
-    tree_ = QuadricTree(kept.items, sources, kept.lengths, kept.uncertainty);
+    tree_ = QuadricTree(kept.items, sources, kept.lengths, kept.uncertainty, g);
     origin_ = low;
     edge_ = std::max((high - low).maxCoeff(), lengths_of_largest[0]);
     answer(0.5 * (low + high), nullptr, {}, tolerance_of_start, &start_);
@@ -163,14 +163,12 @@ double OrderFreeCones::gap_of(double tolerance) {
 }
 
 PointSource OrderFreeCones::member(std::uint32_t number) const {
-    const TensorLeaf& vector = tree_.vectors()[number / lane_count];
-    const auto lane = static_cast<Eigen::Index>(number % lane_count);
-    return {vector.position[lane], vector.metric[lane]};
+    return tree_.vectors()[number / lane_count][static_cast<Eigen::Index>(number % lane_count)];
 }
 
 double OrderFreeCones::growth(const Point& p, const Eigen::Matrix3d& h,
                               const PointSource& source) const {
-    const Eigen::Matrix3d k = Cholesky(source.metric).solve(h) / cone_factor(source, g_, p);
+    const Eigen::Matrix3d k = Cholesky(source.metric).solve(h) / cone_factor(source, 1, p);
     return eigen_frame(Metric::from_matrix(k.transpose() * k)).lengths[2];
 }
 
@@ -186,7 +184,7 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
     const std::size_t fixed = core.size();
     const auto add = [&](std::uint32_t number) {
         const PointSource source = member(number);
-        core.add(number, cone_factor(source, g_, p) * source.metric);
+        core.add(number, cone_factor(source, 1, p) * source.metric);
     };
     for (std::uint32_t k = 0; k < start.count; ++k) add(start.members[k]);
     Eigen::Matrix3d last = start.factor;
@@ -199,7 +197,7 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
         double limit = is_exact ? 1 + rounding_ : allowed;
         if (!tree_.empty()) {
             Exceeded exceeded(limit);
-            const Exceeding exceeding(p, answer.factor, g_ - 1);
+            const Exceeding exceeding(p, answer.factor);
             const Core::Nearby nearby(core, tree_);
             for (const std::uint32_t node : nearby.nodes()) {
                 find_exceeded(tree_, node, {}, exceeding, exceeded);
@@ -287,7 +285,8 @@ OrderFreeCones::Cell OrderFreeCones::made_cell(const std::array<std::int64_t, 4>
     const double shortest =
         std::sqrt(eigen_frame(Metric::from_matrix(h * h.transpose())).lengths[0]);
     const double half_diagonal = 0.5 * std::sqrt(3.0) * edge;
-    cell.is_small = !((g_ - 1) * half_diagonal > most_variation * shortest) || key[0] >= most_level;
+    cell.is_small =
+        !(steepest_ * half_diagonal > most_variation * shortest) || key[0] >= most_level;
     if (cell.is_small) answer(centre, nullptr, Start(cell.start), tolerance_, &cell.start);
     return cell;
 }

@@ -26,8 +26,9 @@ public:
     static constexpr std::uint32_t index_of_largest = 0xffffffff;
     static constexpr std::uint32_t index_of_further = 0xfffffffe;
 
-    /// g >= 1. With a `tolerance` t, log det M is within 3 ln(1 + t) of the best. Throws InputError
-    /// for metrics that `order_free_intersection` does not accept.
+    /// g >= 1, the ratio of sources that have none. With a `tolerance` t, log det M is within 3
+    /// ln(1 + t) of the best. Throws InputError for metrics that `order_free_intersection` does not
+    /// accept.
     OrderFreeCones(std::span<const PointSource> sources, double g, const Metric& largest,
                    double tolerance);
 
@@ -72,7 +73,7 @@ private:
     std::array<std::int64_t, 4> cell_at(const Point& p, int level) const;
     Cell made_cell(const std::array<std::int64_t, 4>& key, const Start& from) const;
 
-    double g_;
+    double steepest_;  ///< the largest slope g - 1 of the cones
     Metric largest_;
     double tolerance_;
     double rounding_ = 0;  ///< of squared lengths, relative

@@ -106,7 +106,6 @@ template <int points>
 [[gnu::always_inline]] inline void measure_rooms(const QuadricNode& __restrict node,
                                                  const Exceeding& __restrict h, double limit,
                                                  Row& __restrict rooms) {
-    const double squared_slope = h.slope * h.slope;
     for (std::size_t l = 0; l < lane_count; ++l) {
         const double x = h.p.x() - node.centre[0][l];
         const double y = h.p.y() - node.centre[1][l];
@@ -121,7 +120,7 @@ template <int points>
         double least = q[0];
         unrolled<points>([&](auto i) __attribute__((always_inline)) { least = less(least, q[i]); });
         // If q may be negative, it counts as 0.
-        const double counts = least > 0 ? squared_slope : 0;
+        const double counts = least > 0 ? node.squared_slope[l] : 0;
         std::array<std::array<double, points>, 6> a;
         unrolled<6>([&](auto e) __attribute__((always_inline)) {
             a[e] = Patch<points>::of([&](std::size_t k) __attribute__((always_inline)) {
@@ -162,8 +161,7 @@ ExceededChildren of_patches(const QuadricNode& node, const Exceeding& h, double 
 
 }  // namespace
 
-Exceeding::Exceeding(const Point& place, const Eigen::Matrix3d& h, double slope_of_cones)
-    : p(place), factor(h), slope(slope_of_cones) {
+Exceeding::Exceeding(const Point& place, const Eigen::Matrix3d& h) : p(place), factor(h) {
     const Eigen::Matrix3d inverse_factor = h.partialPivLu().inverse();
     inverse = Metric::from_matrix(inverse_factor.transpose() * inverse_factor);
     // Less than it is, by what rounding of minors leaves in doubt.

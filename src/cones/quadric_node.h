@@ -33,6 +33,7 @@ struct QuadricNode {
     /// xx yy zz xy xz yz of a tensor G, r, c: what is left of A is within -G and
     /// G, and that of q at most y G y + 2 r |y| + c.
     std::array<Row, 8> rest{};
+    Row squared_slope{};    ///< of the least steep cone; slopes are g - 1
     bool is_linear = true;  ///< terms of second order are 0
     std::uint32_t first_child = 0;
     std::uint32_t child_count = 0;
@@ -43,14 +44,13 @@ struct QuadricNode {
 void set_child(QuadricNode& node, std::size_t child, std::span<const ConeTreeItem> items,
                std::span<const Metric> inverse_squares, double uncertainty);
 
-/// A factor H at a place, among cones of slope g - 1.
+/// A factor H at a place.
 struct Exceeding {
     Point p;
     Eigen::Matrix3d factor;  ///< H
-    double slope;
-    Metric inverse;  ///< of H H^T, or a little less
+    Metric inverse;          ///< of H H^T, or a little less
 
-    Exceeding(const Point& place, const Eigen::Matrix3d& h, double slope_of_cones);
+    Exceeding(const Point& place, const Eigen::Matrix3d& h);
 };
 
 struct ExceededChildren {

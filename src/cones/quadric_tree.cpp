@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "controlspace/sources/cone.h"
+
 namespace controlspace {
 
 namespace {
@@ -45,7 +47,7 @@ void cut(std::span<ConeTreeItem> items, Range leaves, std::size_t parts, const V
 }  // namespace
 
 QuadricTree::QuadricTree(std::span<ConeTreeItem> items, std::span<const PointSource> sources,
-                         std::span<const double> lengths, double uncertainty)
+                         std::span<const double> lengths, double uncertainty, double g)
     : vectors_(items.size() > 0 ? vectors_of_leaf * ((items.size() - 1) / leaf_size + 1) : 0) {
     std::vector<Metric> inverse_squares(sources.size());
     tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t i) {
@@ -71,8 +73,14 @@ QuadricTree::QuadricTree(std::span<ConeTreeItem> items, std::span<const PointSou
         tbb::parallel_for(std::size_t{0}, arity * level.size(), [&](std::size_t i) {
             const Range leaves = children[i / arity][i % arity];
             if (leaves.size() == 0) return;
-            set_child(nodes_[first + i / arity], i % arity,
-                      items_of<const ConeTreeItem>(leaves, items), inverse_squares, uncertainty);
+            const auto members = items_of<const ConeTreeItem>(leaves, items);
+            QuadricNode& node = nodes_[first + i / arity];
+            set_child(node, i % arity, members, inverse_squares, uncertainty);
+            double least = std::numeric_limits<double>::infinity();
+            for (const ConeTreeItem& item : members) {
+                least = std::min(least, cone_growth(sources[item.index], g) - 1);
+            }
+            node.squared_slope[i % arity] = least * least;
         });
         std::vector<Range> below;
         for (std::size_t n = 0; n < level.size(); ++n) {
@@ -95,7 +103,7 @@ QuadricTree::QuadricTree(std::span<ConeTreeItem> items, std::span<const PointSou
         const std::size_t begin = std::min(lane_count * v, items.size());
         const std::size_t end = std::min(begin + lane_count, items.size());
         if (begin < end) {
-            vectors_[v] = tensor_leaf(items.subspan(begin, end - begin), sources, lengths);
+            vectors_[v] = tensor_leaf(items.subspan(begin, end - begin), sources, lengths, g);
         } else {
             vectors_[v].length.setConstant(std::numeric_limits<double>::infinity());
         }

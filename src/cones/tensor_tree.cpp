@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "controlspace/sources/cone.h"
 #include "metric/running_intersection.h"
 
 namespace controlspace {
@@ -15,6 +16,7 @@ struct Bounds {
     Metric within;   // all metrics
     Metric inverse;  // within all inverses
     double length;   // smallest
+    double growth;   // smallest ratio
 };
 
 // Of all that one of `parts` holds for; there is one at least.
@@ -22,12 +24,14 @@ Bounds bounds_of(std::span<const Bounds> parts) {
     RunningIntersection within(parts.front().within);
     RunningIntersection inverse(parts.front().inverse);
     double length = parts.front().length;
+    double growth = parts.front().growth;
     for (const Bounds& part : parts.subspan(1)) {
         within.shorten_to(part.within);
         inverse.shorten_to(part.inverse);
         length = std::min(length, part.length);
+        growth = std::min(growth, part.growth);
     }
-    return {within.metric(), inverse.metric(), length};
+    return {within.metric(), inverse.metric(), length, growth};
 }
 
 Point centre_of(std::span<const ConeTreeItem> items) {
@@ -59,7 +63,7 @@ Metric inverse(const Metric& m) {
 }
 
 TensorLeaf tensor_leaf(std::span<const ConeTreeItem> items, std::span<const PointSource> sources,
-                       std::span<const double> lengths) {
+                       std::span<const double> lengths, double g) {
     TensorLeaf leaf;
     for (int lane = 0; lane < lane_count; ++lane) {
         const auto i = static_cast<std::size_t>(lane);
@@ -68,21 +72,23 @@ TensorLeaf tensor_leaf(std::span<const ConeTreeItem> items, std::span<const Poin
         leaf.position.set(lane, sources[source].position);
         leaf.metric.set(lane, sources[source].metric);
         leaf.length[lane] = exists ? lengths[source] : std::numeric_limits<double>::infinity();
+        leaf.growth[lane] = cone_growth(sources[source], g);
     }
     return leaf;
 }
 
 TensorTree build_tensor_tree(std::span<ConeTreeItem> items, std::span<const PointSource> sources,
-                             std::span<const double> lengths) {
+                             std::span<const double> lengths, double g) {
     using Items = std::span<const ConeTreeItem>;
     const auto make_leaf = [&](Items of_leaf, TensorLeaf& leaf) {
-        leaf = tensor_leaf(of_leaf, sources, lengths);
+        leaf = tensor_leaf(of_leaf, sources, lengths, g);
     };
     const auto bounds_of_leaf = [&](Items of_leaf) {
         std::array<Bounds, lane_count> parts;
         for (std::size_t i = 0; i < of_leaf.size(); ++i) {
-            const Metric& metric = sources[of_leaf[i].index].metric;
-            parts[i] = {metric, inverse(metric), lengths[of_leaf[i].index]};
+            const PointSource& source = sources[of_leaf[i].index];
+            parts[i] = {source.metric, inverse(source.metric), lengths[of_leaf[i].index],
+                        cone_growth(source, g)};
         }
         return bounds_of(std::span(parts).first(of_leaf.size()));
     };
@@ -105,6 +111,7 @@ TensorTree build_tensor_tree(std::span<ConeTreeItem> items, std::span<const Poin
             node.inverse.set(lane, bounds.inverse);
             node.square.set(lane, square(bounds.within));
             node.length[lane] = bounds.length;
+            node.growth[lane] = bounds.growth;
             parts[count++] = bounds;
         }
         bounds_of_node[number] = bounds_of(std::span(parts).first(count));

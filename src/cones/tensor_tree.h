@@ -20,6 +20,7 @@ struct TensorNode {
     TensorLanes square;            ///< L^2, where L is within all M_i
     /// Smallest of all M_i; infinite where there is no child.
     Lanes length = Lanes::Constant(std::numeric_limits<double>::infinity());
+    Lanes growth = Lanes::Ones();  ///< smallest ratio of the sources' cones
 };
 
 /// Eight sources side by side.
@@ -27,6 +28,11 @@ struct TensorLeaf {
     VectorLanes position;
     TensorLanes metric;
     Lanes length;  ///< smallest of the metric; infinite where there is no source
+    Lanes growth;  ///< ratio of the cone
+
+    PointSource operator[](Eigen::Index lane) const {
+        return {position[lane], metric[lane], growth[lane]};
+    }
 };
 
 using TensorTree = ConeTree<TensorNode, TensorLeaf>;
@@ -34,12 +40,13 @@ using TensorTree = ConeTree<TensorNode, TensorLeaf>;
 /// M^-1.
 Metric inverse(const Metric& m);
 
-/// Up to eight sources. `lengths` are the smallest of each source.
+/// Up to eight sources. `lengths` are the smallest of each source; g is the ratio of those that
+/// have none.
 TensorLeaf tensor_leaf(std::span<const ConeTreeItem> items, std::span<const PointSource> sources,
-                       std::span<const double> lengths);
+                       std::span<const double> lengths, double g);
 
 /// Builds a tree over `items`, which are put in order. `lengths` are the smallest of each source.
 TensorTree build_tensor_tree(std::span<ConeTreeItem> items, std::span<const PointSource> sources,
-                             std::span<const double> lengths);
+                             std::span<const double> lengths, double g);
 
 }  // namespace controlspace

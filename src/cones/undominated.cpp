@@ -4,21 +4,22 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
-#include "cones/cone.h"
 #include "controlspace/metric/intersection.h"
+#include "controlspace/sources/cone.h"
 #include "metric/decompose.h"
 
 namespace controlspace {
 
-// Source i may be left out if a source j has C_j < C_i, for the cones C = M (1 + (g-1) |M^-1 (p -
-// Q)|), wherever C_i is shorter than the cap in any direction: what is within C_j and the cap is
-// within C_i too. Where cones are intersected in turn, the smallest length of C_j is less there, so
-// C_j comes first. Lengths get strictly smaller from i to j to j's own dominator and on, so all
-// such sources may be left out at once. Let v = p - Q_i, t = (g-1) |M_i^-1 v|, k = f_j(Q_i), and r
-// = max |M_j^-1 u| / |M_i^-1 u| over all u, the growth from M_j to M_i. Then
-//     C_i = (1 + t) M_i,    C_j <= (k + (g-1) |M_j^-1 v|) M_j <= (k + r t) M_j,
+// Source i may be left out if a source j has C_j < C_i, for the cones C = M (1 + s |M^-1 (p - Q)|),
+// s = g - 1, wherever C_i is shorter than the cap in any direction: what is within C_j and the cap
+// is within C_i too. Where cones are intersected in turn, the smallest length of C_j is less there,
+// so C_j comes first. Lengths get strictly smaller from i to j to j's own dominator and on, so all
+// such sources may be left out at once. Let v = p - Q_i, t = s_i |M_i^-1 v|, k = f_j(Q_i), and r
+// = s_j / s_i max |M_j^-1 u| / |M_i^-1 u| over all u, the growth from M_j to M_i. Then
+//     C_i = (1 + t) M_i,    C_j <= (k + s_j |M_j^-1 v|) M_j <= (k + r t) M_j,
 // by the triangle inequality. C_i matters for t < T = cap / (smallest length of M_i) - 1 only, and
 // (k + r t) / (1 + t) is monotonous in t, so it is at most s = max(k, (k + r T) / (1 + T)):
 //     s M_j < M_i    is enough.
@@ -39,22 +40,24 @@ bool is_dominated(const PointSource& source, double length, const UndominatedSou
             return is_below(safe * safe * square(other.metric), 1, squared);
         };
         if (!is_within(k)) return false;
-        const double r = growth(source.metric, other.metric);
+        const double steeper = (cone_growth(other, g) - 1) / (cone_growth(source, g) - 1);
+        // Without growth of both, of the field, s_j / s_i is any number.
+        const double r = (std::isnan(steeper) ? 1 : steeper) * growth(source.metric, other.metric);
+        if (std::isinf(r)) return false;
         return is_within(std::max(k, (k + r * reach) / (1 + reach)));
     };
     const auto does_not_dominate = [&](std::uint32_t number) {
         const TensorLeaf& leaf = all.tree.leaf(number);
-        const Lanes lengths = cone_factors(leaf, g, q) * leaf.length;
+        const Lanes lengths = cone_factors(leaf, q) * leaf.length;
         for (int lane = 0; lane < lane_count; ++lane) {
             if (!(lengths[lane] < certain * length)) continue;
-            if (by({leaf.position[lane], leaf.metric[lane]})) return false;
+            if (by(leaf[lane])) return false;
         }
         return true;
     };
     return !all.tree.search([&] { return certain * length; },
                             [&](const TensorNode& node) -> Lanes {
-                                return least_cone_factors(node, g, all.uncertainty, q) *
-                                       node.length;
+                                return least_cone_factors(node, all.uncertainty, q) * node.length;
                             },
                             does_not_dominate);
 }
@@ -87,8 +90,9 @@ UndominatedSources undominated_sources(std::span<const PointSource> sources, dou
         return sources[item.index];
     };
     const auto key = [&](const ConeTreeItem& item) {
-        const auto& [q, m] = source_of(item);
-        return std::tie(q.x(), q.y(), q.z(), m.xx, m.yy, m.zz, m.xy, m.xz, m.yz, item.index);
+        const auto& [q, m, growth] = source_of(item);
+        return std::tie(q.x(), q.y(), q.z(), m.xx, m.yy, m.zz, m.xy, m.xz, m.yz, growth,
+                        item.index);
     };
     tbb::parallel_sort(
         items.begin(), items.end(),
@@ -99,7 +103,9 @@ UndominatedSources undominated_sources(std::span<const PointSource> sources, dou
     items.erase(end, items.end());
     const std::size_t kept = build_without_dominated(
         items,
-        [&](std::span<ConeTreeItem> some) { all.tree = build_tensor_tree(some, sources, lengths); },
+        [&](std::span<ConeTreeItem> some) {
+            all.tree = build_tensor_tree(some, sources, lengths, g);
+        },
         [&](const ConeTreeItem& item) {
             return is_dominated(source_of(item), lengths[item.index], all, g, cap);
         });
@@ -107,13 +113,14 @@ UndominatedSources undominated_sources(std::span<const PointSource> sources, dou
     return all;
 }
 
-Lanes least_cone_factors(const TensorNode& node, double g, double uncertainty, const Point& p) {
+Lanes least_cone_factors(const TensorNode& node, double uncertainty, const Point& p) {
     const Lanes away = lengths_of_products(node.inverse, displacements(node.centre, p));
-    return 1 + (g - 1) * ((1 - uncertainty) * away - (1 + uncertainty) * node.radius).max(0.0);
+    return 1 + (node.growth - 1) *
+                   ((1 - uncertainty) * away - (1 + uncertainty) * node.radius).max(0.0);
 }
 
-Lanes cone_factors(const TensorLeaf& leaf, double g, const Point& p) {
-    return 1 + (g - 1) * metric_lengths(leaf.metric, displacements(leaf.position, p));
+Lanes cone_factors(const TensorLeaf& leaf, const Point& p) {
+    return 1 + (leaf.growth - 1) * metric_lengths(leaf.metric, displacements(leaf.position, p));
 }
 
 }  // namespace controlspace

@@ -20,14 +20,14 @@ struct UndominatedSources {
     std::size_t dropped = 0;  ///< sources left out
 };
 
-/// g >= 1. Lengths of `cap` or more do not matter. Runs on all of TBB's threads. The tree does not
-/// depend on the order of the sources.
+/// g >= 1, the ratio of sources that have none. Lengths of `cap` or more do not matter. Runs on all
+/// of TBB's threads. The tree does not depend on the order of the sources.
 UndominatedSources undominated_sources(std::span<const PointSource> sources, double g, double cap);
 
 /// Factors of the cones of a leaf's sources at `p`.
-Lanes cone_factors(const TensorLeaf& leaf, double g, const Point& p);
+Lanes cone_factors(const TensorLeaf& leaf, const Point& p);
 
 /// Lower bounds of the factors of all cones below each child of a node.
-Lanes least_cone_factors(const TensorNode& node, double g, double uncertainty, const Point& p);
+Lanes least_cone_factors(const TensorNode& node, double uncertainty, const Point& p);
 
 }  // namespace controlspace

@@ -8,11 +8,11 @@
 #include <numeric>
 #include <utility>
 
-#include "cones/cone.h"
 #include "cones/cone_field.h"
 #include "controlspace/error.h"
 #include "controlspace/gradation/grade.h"
 #include "controlspace/metric/intersection.h"
+#include "controlspace/sources/cone.h"
 
 namespace controlspace {
 
@@ -31,7 +31,7 @@ void require_usable(std::span<const PointSource> sources, double g, const Metric
             fmt::format("{} sources for the reference: give fewer than 2^31", sources.size()));
     }
     for (std::size_t i = 0; i < sources.size(); ++i) {
-        const auto& [position, metric] = sources[i];
+        const auto& [position, metric, growth] = sources[i];
         if (!position.allFinite()) {
             throw InputError(fmt::format("source {}: its position is not finite: correct it", i));
         }

@@ -30,7 +30,7 @@ DistinctPlaces distinct_places(std::span<const PointSource> sources) {
     });
     DistinctPlaces places;
     for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
-        const auto& [position, metric] = sources[order[first]];
+        const auto& [position, metric, growth] = sources[order[first]];
         places.positions.push_back(position);
         places.metrics.push_back(metric);
         bool all_alike = true;
@@ -75,8 +75,13 @@ SourceSummary summarise(std::span<const PointSource> sources) {
     summary.contradictory = places.contradictory;
     summary.extent = {sources.front().position, sources.front().position};
     std::vector<Metric> metrics;
-    for (const auto& [position, metric] : sources) {
+    for (const auto& [position, metric, growth] : sources) {
         metrics.push_back(metric);
+        if (growth > 0) {
+            summary.least_growth =
+                summary.own_growths++ > 0 ? std::min(summary.least_growth, growth) : growth;
+            summary.most_growth = std::max(summary.most_growth, growth);
+        }
         summary.extent.low = summary.extent.low.cwiseMin(position);
         summary.extent.high = summary.extent.high.cwiseMax(position);
     }

@@ -28,6 +28,9 @@ struct SourceSummary : LengthSummary {
     /// other positions: gradation with a smaller ratio shortens lengths of the sources. Of those
     /// that share a position, the one with the smallest mean length counts.
     double gradation = 1;
+    std::size_t own_growths = 0;  ///< number of sources with gradation ratios of their own
+    double least_growth = 0;      ///< of those
+    double most_growth = 0;       ///< of those
 };
 
 /// Throws InputError for no sources.

@@ -26,6 +26,8 @@ bool is_source_metric(const Metric& m) {
     return is_positive_definite(m) && is_length(mean_length(m));
 }
 
+bool is_source_growth(double g) { return g == 0 || (g >= 1 && g <= 1e6); }
+
 void require_length(std::string_view name, double value) {
     if (is_length(value)) return;
     throw InputError(fmt::format("{} = {}: give a positive number", name, value));

@@ -48,13 +48,19 @@ void require_valid(const PointSource& source, std::size_t index, const Box& doma
             "source {} has the metric {} (xx yy zz xy xz yz), which is not positive definite",
             index, to_string(source.metric)));
     }
+    if (!is_source_growth(source.growth)) {
+        throw InputError(fmt::format(
+            "source {} has the gradation ratio {}: give one from 1 to 1e6, or 0 for that of the "
+            "field",
+            index, source.growth));
+    }
 }
 
 bool is_valid(const PointSource& source, const Box& domain) {
     const Metric& m = source.metric;
     const bool is_metric =
         is_isotropic(m) ? m.xx > 0 && std::isfinite(m.xx) : is_positive_definite(m);
-    return is_metric && domain.contains(source.position);
+    return is_metric && is_source_growth(source.growth) && domain.contains(source.position);
 }
 
 void require_one_each(std::size_t metrics, std::size_t control_nodes) {

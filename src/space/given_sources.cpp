@@ -1,5 +1,6 @@
 #include "controlspace/space/detail/given_sources.h"
 
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
@@ -7,6 +8,7 @@
 #include <functional>
 
 #include "cones/cone_field.h"
+#include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
 #include "geometry/threads.h"
 
@@ -40,6 +42,7 @@ void GivenSources::add(std::span<const PointSource> sources) {
         for (const double h : lengths_) metrics_.push_back(Metric::isotropic(h));
         lengths_ = {};
     }
+    for (std::size_t i = 0; i < sources.size(); ++i) growths_.add(size() + i, sources[i].growth);
     const auto append = [&](auto& values, auto member) {
         const auto first = static_cast<std::ptrdiff_t>(values.size());
         values.resize(values.size() + sources.size());
@@ -57,21 +60,23 @@ std::vector<PointSource> GivenSources::all() const {
     std::vector<PointSource> sources;
     sources.reserve(size());
     for (std::size_t i = 0; i < size(); ++i) {
-        sources.push_back(
-            {positions_[i], metrics_.empty() ? Metric::isotropic(lengths_[i]) : metrics_[i]});
+        sources.push_back({positions_[i],
+                           metrics_.empty() ? Metric::isotropic(lengths_[i]) : metrics_[i],
+                           growths_[i]});
     }
     return sources;
 }
 
 std::size_t GivenSources::bytes() const {
     return positions_.capacity() * sizeof(Point) + lengths_.capacity() * sizeof(double) +
-           metrics_.capacity() * sizeof(Metric);
+           metrics_.capacity() * sizeof(Metric) + growths_.bytes();
 }
 
 void GivenSources::save(StateWriter& state) const {
     state("given.positions", positions_);
     state("given.lengths", lengths_);
     state("given.metrics", metrics_);
+    growths_.save(state, "given.growths");
 }
 
 bool GivenSources::are_in(const StateReader& state) { return state.has("given.positions"); }
@@ -83,6 +88,7 @@ void GivenSources::load(const StateReader& state) {
     state.require(
         lengths_.size() + metrics_.size() == size() && (lengths_.empty() || metrics_.empty()),
         "given.positions", "has another length than the metrics");
+    growths_.load(state, "given.growths", size());
     const auto is_place = [](const Point& x) { return x.allFinite(); };
     const auto is_length = [](double h) { return h > 0 && std::isfinite(h); };
     state.require(all_are(positions_, is_place), "given.positions", "holds what is no place");
@@ -90,16 +96,30 @@ void GivenSources::load(const StateReader& state) {
     require_metrics(state, "given.metrics", metrics_);
 }
 
+void require_alike_growth(std::span<const PointSource> sources) {
+    const auto own = std::ranges::find_if(sources, [](const auto& s) { return s.growth != 0; });
+    if (own == sources.end()) return;
+    throw InputError(fmt::format(
+        "source {} has a gradation ratio of its own, {}: insert such sources before the "
+        "structure is adapted or its metrics are assigned, or adapt it anew",
+        own - sources.begin(), own->growth));
+}
+
 NodeGradation::NodeGradation(const GradationOptions& wanted, const GivenSources* given,
                              const SpaceOptions& space)
     : options(wanted) {
     require_valid(options);
-    if (options.schedule != GradationSchedule::sources) return;
-    if (given != nullptr && options.law == GradationLaw::cone) {
+    if (options.schedule == GradationSchedule::sources && given != nullptr &&
+        options.law == GradationLaw::cone) {
         field = std::make_unique<SourceField>(*given, options.ratio, space);
-    } else {
-        options.schedule = GradationSchedule::queue;
+        return;
     }
+    if (given != nullptr && !given->all_grow_alike()) {
+        throw InputError(
+            "sources have gradation ratios of their own: grade by the cone law, with the schedule "
+            "`sources`");
+    }
+    if (options.schedule == GradationSchedule::sources) options.schedule = GradationSchedule::queue;
 }
 
 GradationReport grade_to(const ControlSpace& field, std::span<const Point> x,

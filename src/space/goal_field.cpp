@@ -12,6 +12,7 @@
 #include "controlspace/error.h"
 #include "controlspace/geometry/detail/place_sequence.h"
 #include "controlspace/metric/nonconformity.h"
+#include "controlspace/sources/cone.h"
 #include "controlspace/space/control_space_builder.h"
 #include "controlspace/space/sample_parallel.h"
 #include "controlspace/space/space_options.h"
@@ -61,6 +62,7 @@ struct GoalField::Remembered {
 GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
     : target_(require_valid(goal, domain).target),
       ratio_(goal.ratio),
+      largest_ratio_(largest_growth(goal.sources, goal.ratio)),
       sources_(goal.sources),
       continuous_(goal.continuous),
       largest_(largest_metric(domain)),

@@ -30,7 +30,9 @@ public:
         for (const PointSource& source : sources) {
             require_valid(source, report.sources++, Base::domain());
             const Metric held = value_at(topology_, storage_, source.position);
-            if (!calls_for_change(source.metric, held, options_.tolerance)) continue;
+            // A cone that is less steep than others may be the smallest away from its source.
+            const bool are_alike = source.growth == 0 && storage_.sources().all_grow_alike();
+            if (are_alike && !calls_for_change(source.metric, held, options_.tolerance)) continue;
             storage_.add(Base::cut_for(source).leaf, source);
             is_graded_ = false;
             ++report.inserted;

@@ -125,6 +125,37 @@ TEST_CASE("C: what cannot be used is refused with a reason") {
     cspace_free(space);
 }
 
+TEST_CASE("C: sources with gradation ratios of their own, in a struct that may grow") {
+    const double positions[6] = {0.3, 0.2, 0.1, -0.4, 0.5, 0.2}, lengths[2] = {0.1, 0.2},
+                 growths[2] = {1.1, 2};
+    cspace_sources sources{sizeof sources, 2, positions, nullptr, lengths, growths};
+    for (const bool adapted : {false, true}) {
+        cspace* space = made("K_oLA");
+        if (adapted) {
+            CHECK(cspace_adapt_sources(space, &sources, 1.5, 0.01, nullptr) == CSPACE_OK);
+        } else {
+            CHECK(cspace_insert_sources(space, &sources) == CSPACE_OK);
+            CHECK(cspace_grade(space, 1.5) == CSPACE_OK);
+        }
+        const double near = cspace_size(space, 0.3, 0.2, 0.3);
+        CHECK(near == Approx(0.1 + 0.1 * 0.2).epsilon(0.02));
+        cspace_free(space);
+    }
+    cspace* space = made("K_oLA");
+    const auto refused = [&](const cspace_sources* some) {
+        CHECK(cspace_insert_sources(space, some) == CSPACE_BAD_INPUT);
+        return std::string(cspace_last_error());
+    };
+    CHECK_THAT(refused(nullptr), Contains("sources is NULL"));
+    sources.metrics = tensor.data();
+    CHECK_THAT(refused(&sources), Contains("give one of them"));
+    sources.metrics = sources.lengths = nullptr;
+    CHECK_THAT(refused(&sources), Contains("metrics is NULL"));
+    sources.size = 8;
+    CHECK_THAT(refused(&sources), Contains("give sizeof(cspace_sources)"));
+    cspace_free(space);
+}
+
 TEST_CASE("C: a tree that is given a target is that of C++") {
     cspace* space = made("K_oLA");
     double reached = -1;

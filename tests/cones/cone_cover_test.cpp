@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "cones/cone_field.h"
+#include "cones/own_growths.h"
+#include "controlspace/sources/cone.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "metric/draw.h"
 
@@ -33,7 +35,8 @@ double smallest_at(const Point& p, const std::vector<PointSource>& sources, cons
     double smallest = cap;
     for (const auto i : of) {
         const PointSource& s = sources[i];
-        smallest = std::min(smallest, s.metric.xx + (g - 1) * (p - s.position).norm());
+        smallest =
+            std::min(smallest, s.metric.xx + (cone_growth(s, g) - 1) * (p - s.position).norm());
     }
     return smallest;
 }
@@ -49,7 +52,9 @@ Point place_in(Draw& draw, const Box& box) {
 TEST_CASE("sources that cover a box make the exact field there, up to the tolerance") {
     Draw draw(1);
     for (const auto& sources :
-         {scattered(draw, 0.02), scattered(draw, 1e-6), sample_sphere({.h = 0.1})}) {
+         {scattered(draw, 0.02), scattered(draw, 1e-6), sample_sphere({.h = 0.1}),
+          with_own_growths(scattered(draw, 0.02), draw),
+          with_own_growths(sample_sphere({.h = 0.1}), draw)}) {
         const ConeField field(sources, g, wide);
         std::vector<std::uint32_t> all(sources.size());
         std::iota(all.begin(), all.end(), 0u);

@@ -4,10 +4,11 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "cones/cone.h"
+#include "cones/own_growths.h"
 #include "cones/spatial_order.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/metric/intersection.h"
+#include "controlspace/sources/cone.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "metric/draw.h"
 
@@ -66,6 +67,51 @@ TEST_CASE("Isotropic sources that another's cone reaches are dropped, and no oth
     CHECK(field.dropped() == static_cast<std::size_t>(count));
     const auto points = places(draw, 300);
     CHECK(evaluated(field, points) == by_definition(sources, points));
+}
+
+TEST_CASE("Isotropic sources with ratios of their own: the smallest cone, to the bit") {
+    Draw draw(11);
+    const auto sources = with_own_growths(scattered(draw, 1000, 1), draw);
+    const ConeField field(sources, g, wide);
+    CHECK(field.dropped() > 100);
+    const auto points = places(draw, 2000);
+    CHECK(evaluated(field, points) == by_definition(sources, points));
+}
+
+TEST_CASE("A source in a steeper cone is dropped only where that stays below it up to the cap") {
+    const PointSource steep{Point::Zero(), Metric::isotropic(0.1), 2};
+    const auto dropped = [&](const PointSource& other) {
+        const std::vector<PointSource> sources{steep, other};
+        const ConeField field(sources, g, wide);
+        Draw draw(12);
+        const auto points = places(draw, 200);
+        CHECK(evaluated(field, points) == by_definition(sources, points));
+        return field.dropped() == 1;
+    };
+    const Point near(0.1, 0, 0);  // where the steep cone is 0.2
+    CHECK_FALSE(dropped({near, Metric::isotropic(0.3)}));
+    CHECK_FALSE(dropped({near, Metric::isotropic(0.3), 1}));
+    CHECK(dropped({near, Metric::isotropic(0.3), 2}));
+    CHECK(dropped({near, Metric::isotropic(0.3), 3}));
+    CHECK(dropped({near, Metric::isotropic(1.95), 1.9}));
+    CHECK_FALSE(dropped({near, Metric::isotropic(0.19), 2}));
+    CHECK_FALSE(dropped({steep.position, Metric::isotropic(0.3), 1.5}));
+    CHECK(dropped({steep.position, Metric::isotropic(0.3), 2}));
+}
+
+TEST_CASE("Tensors with ratios of their own: the cones in turn") {
+    Draw draw(13);
+    const auto sources = with_own_growths(scattered(draw, 300, 1.3), draw);
+    const ConeField field(sources, g, wide, 0, in_turn);
+    CHECK(field.dropped() > 20);
+    const auto points = places(draw, 300);
+    const auto now = evaluated(field, points);
+    const auto wanted = by_definition(sources, points);
+    double worst = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        worst = std::max(worst, difference(now[i], wanted[i]));
+    }
+    CHECK(worst < 1e-12);
 }
 
 TEST_CASE("Sources that are there twice are dropped once") {

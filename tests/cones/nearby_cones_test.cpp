@@ -4,8 +4,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "cones/cone.h"
 #include "cones/cone_field.h"
+#include "cones/own_growths.h"
+#include "controlspace/sources/cone.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "metric/draw.h"
 
@@ -42,7 +43,9 @@ std::vector<PointSource> scattered(Draw& draw, double least) {
     return sources;
 }
 
-double length(const PointSource& s, double distance) { return s.metric.xx + (g - 1) * distance; }
+double length(const PointSource& s, double distance) {
+    return s.metric.xx + (cone_growth(s, g) - 1) * distance;
+}
 
 double nearest(const Box& box, const Point& q) {
     return (q - q.cwiseMax(box.low).cwiseMin(box.high)).norm();
@@ -65,7 +68,9 @@ double smallest_of(const std::vector<PointSource>& sources, Distance&& distance)
 TEST_CASE("cones gathered for a box, and narrowed to parts of it, make the exact field there") {
     Draw draw(1);
     for (const auto& sources :
-         {scattered(draw, 0.02), scattered(draw, 1e-9), sample_sphere({.h = 0.1})}) {
+         {scattered(draw, 0.02), scattered(draw, 1e-9), sample_sphere({.h = 0.1}),
+          with_own_growths(scattered(draw, 0.02), draw),
+          with_own_growths(sample_sphere({.h = 0.1}), draw)}) {
         const ConeField field(sources, g, wide);
         ConeField::Memory memory;
         NearbyCones gathered, cones, parts;
@@ -106,7 +111,8 @@ TEST_CASE("what cannot be gathered is refused") {
 
 TEST_CASE("bounds in a box: the least is met, and one cone stays below the most") {
     Draw draw(3);
-    for (const auto& sources : {scattered(draw, 0.02), sample_sphere({.h = 0.1})}) {
+    for (const auto& sources : {scattered(draw, 0.02), sample_sphere({.h = 0.1}),
+                                with_own_growths(scattered(draw, 0.02), draw)}) {
         const ConeField field(sources, g, wide);
         ConeField::Memory memory;
         for (int k = 0; k < 200; ++k) {
@@ -148,7 +154,7 @@ TEST_CASE("a rough answer is never below the exact one, nor above it by more tha
 
 TEST_CASE("a source is found where it is below a length, and nowhere else") {
     Draw draw(5);
-    const auto sources = scattered(draw, 0.02);
+    const auto sources = with_own_growths(scattered(draw, 0.02), draw);
     const ConeField field(sources, g, wide);
     ConeField::Memory memory;
     for (int k = 0; k < 300; ++k) {

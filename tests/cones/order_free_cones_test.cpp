@@ -5,10 +5,11 @@
 #include <future>
 #include <random>
 
-#include "cones/cone.h"
 #include "cones/cone_field.h"
+#include "cones/own_growths.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
+#include "controlspace/sources/cone.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "counting_allocator.h"
 #include "metric/draw.h"
@@ -60,9 +61,9 @@ Sources joined(Sources a, const Sources& b) {
 }
 
 Work scaled(Work work, double k) {
-    for (auto& [position, metric] : work.sources) {
-        position *= k;
-        metric = k * metric;
+    for (PointSource& source : work.sources) {
+        source.position *= k;
+        source.metric = k * source.metric;
     }
     work.largest = k * work.largest;
     work.scale = k;
@@ -82,6 +83,10 @@ std::vector<Work> works() {
                    100});
     for (const double anisotropy : {1.5, 30.0, 1e6}) {
         all.push_back({"scattered", scattered(draw, 300, anisotropy), anisotropy});
+    }
+    for (const std::size_t i : {0, 2, 4, 5}) {
+        all.push_back({all[i].name + ", ratios of their own",
+                       with_own_growths(all[i].sources, draw), all[i].anisotropy});
     }
     all.push_back(scaled(all[0], 1e-9));
     all.push_back(scaled(all[4], 1e9));
@@ -109,7 +114,7 @@ std::vector<Point> places(const Work& work, Draw& draw, int n) {
     std::vector<Point> points;
     for (int i = 0; i < n; ++i) {
         const auto source = static_cast<std::size_t>(i) * 7919 % work.sources.size();
-        const auto& [position, metric] = work.sources[source];
+        const auto& [position, metric, growth] = work.sources[source];
         if (i % 2 == 0) points.emplace_back(work.scale * draw.vector());
         if (i % 4 == 1) points.emplace_back(position + metric.matrix() * draw.vector());
         if (i % 4 == 3) points.push_back(position);
@@ -247,7 +252,8 @@ TEST_CASE("order-free cones: the symmetry of the sources") {
     constexpr double tolerance = 1e-6;
     Draw draw(66);
     Sources sources;
-    for (const auto& [position, metric] : layered_sphere(draw, Point::Zero(), 0.8, 100, 0.02, 10)) {
+    for (const auto& [position, metric, growth] :
+         layered_sphere(draw, Point::Zero(), 0.8, 100, 0.02, 10)) {
         for (int octant = 0; octant < 8; ++octant) {
             const Vector sign((octant & 1) != 0 ? -1 : 1, (octant & 2) != 0 ? -1 : 1,
                               (octant & 4) != 0 ? -1 : 1);

@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
-#include "cones/cone.h"
 #include "controlspace/metric/intersection.h"
+#include "controlspace/sources/cone.h"
 #include "metric/draw.h"
 #include "metric/largest_within.h"
 
@@ -51,6 +51,10 @@ const std::vector<Scene>& scenes() {
              return PointSource{{0.1, 0.2, 0.7},
                                 draw.metric(std::pow(10, draw.uniform(-2, 0)), anisotropy)};
          }},
+        {"ratios of their own",
+         [](Draw& draw, double anisotropy) {
+             return PointSource{draw.vector(), draw.metric(0.1, anisotropy), draw.uniform(1, 2)};
+         }},
         {"far from the origin",
          [](Draw& draw, double anisotropy) {
              return PointSource{Vector::Constant(1e5) + draw.vector(),
@@ -64,7 +68,8 @@ const std::vector<Scene>& scenes() {
 double growth(const PointSource& source, double g, const Point& p, const Eigen::Matrix3d& h) {
     const LongMatrix inverse = long_matrix(source.metric).inverse();
     const auto v = p.cast<long double>() - source.position.cast<long double>();
-    const long double factor = 1 + (static_cast<long double>(g) - 1) * (inverse * v).norm();
+    const long double factor =
+        1 + (static_cast<long double>(cone_growth(source, g)) - 1) * (inverse * v).norm();
     const LongMatrix k = inverse * h.cast<long double>() / factor;
     return static_cast<double>(LongSolver(k.transpose() * k).eigenvalues()[2]);
 }
@@ -98,7 +103,7 @@ Built tree_over(const Sources& sources, double g) {
         items.push_back({{q.x(), q.y(), q.z(), of_source[0] / (g - 1)}, i});
     }
     const double uncertainty = 4096 * std::numeric_limits<double>::epsilon() * anisotropy;
-    return {QuadricTree(items, sources, lengths, uncertainty), uncertainty};
+    return {QuadricTree(items, sources, lengths, uncertainty, g), uncertainty};
 }
 
 }  // namespace
@@ -155,7 +160,7 @@ TEST_CASE("quadric tree: no child is passed over that has an exceeded cone") {
             std::vector<double> growths;
             for (const PointSource& s : sources) growths.push_back(growth(s, g, p, h));
             const double worst = *std::max_element(growths.begin(), growths.end());
-            const Exceeding exceeding(p, h, g - 1);
+            const Exceeding exceeding(p, h);
             for (const double limit : {0.3 * worst, 0.99 * worst, (1 - 1e-6) * worst}) {
                 for (std::uint32_t n = 0; !tree.is_leaf(n); ++n) {
                     const unsigned bits = children_exceeded(tree.node(n), exceeding, limit).bits;

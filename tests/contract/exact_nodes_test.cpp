@@ -7,6 +7,7 @@
 #include "controlspace/measure/access_time.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/metric/intersection.h"
+#include "controlspace/sources/cone.h"
 #include "editable_space.h"
 
 using namespace controlspace;
@@ -17,7 +18,9 @@ constexpr double g = 1.25;
 constexpr double tolerance = 1e-2;  // of nodes graded by the sources
 
 Work any_work() {
-    return GENERATE(isotropic_sphere(), anisotropic_sphere(), anisotropic_oblong_box());
+    return GENERATE(isotropic_sphere(), anisotropic_sphere(), anisotropic_oblong_box(),
+                    with_own_growths(isotropic_sphere()),
+                    with_own_growths(anisotropic_oblong_box()));
 }
 
 bool holds_metrics(const Structure& structure) { return structure.entry->has<MetricNodes>(); }
@@ -33,7 +36,9 @@ std::vector<Metric> exact_at(const Work& work, const std::vector<Point>& x) {
 // Cones are Lipschitz: where the field is M at x, no cone at x + v is longer than 1 + e times that
 // at x, e = (g - 1) |M^-1 v|. So what holds the field at x + v is within 1 + e times all cones at
 // x; blends of such are, too. Quadratic functions stay within the cone of their leaf's metric.
-double explained_by_leaf(const ControlSpace& space, int order, const Point& x, const Metric& m) {
+double explained_by_leaf(const ControlSpace& space, int order, const Point& x, const Metric& m,
+                         double steepest) {
+    const double g = steepest;
     const Box cell = space.cell_at(x).value();
     const auto from = [&](const Point& node) { return 1 + (g - 1) * metric_length(m, node - x); };
     if (order == 0) return from(cell.centre());
@@ -83,11 +88,11 @@ STRUCTURE_CASE(does_not_round,
     double longest = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
         const Metric m = sample_at(*space, x[i]);
-        const double explained = explained_by_leaf(*space, structure.entry->order, x[i], exact[i]);
+        const double explained = explained_by_leaf(*space, structure.entry->order, x[i], exact[i],
+                                                   largest_growth(work.sources, g));
         longest = std::max(longest, growth(m, exact[i]));
         for (std::size_t s = i % 7; s < work.sources.size(); s += 7) {
-            const auto& [position, metric] = work.sources[s];
-            const Metric cone = (1 + (g - 1) * metric_length(metric, x[i] - position)) * metric;
+            const Metric cone = cone_factor(work.sources[s], g, x[i]) * work.sources[s].metric;
             beyond_leaf = std::max(beyond_leaf, growth(m, cone) / explained);
         }
     }

@@ -26,8 +26,9 @@ template <class Change, class ChangeMetric>
 double largest_difference(const Structure& structure, const Work& work, const Change& change,
                           const ChangeMetric& change_metric) {
     Work changed{work.name, {}, {change(work.domain.low), change(work.domain.high)}};
-    for (const auto& [position, metric] : work.sources) {
-        changed.sources.push_back({change(position), change_metric(metric)});
+    for (const PointSource& source : work.sources) {
+        changed.sources.push_back(
+            {change(source.position), change_metric(source.metric), source.growth});
     }
     const auto original = work.graded(structure);
     const auto other = changed.graded(structure);

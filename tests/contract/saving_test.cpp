@@ -51,7 +51,8 @@ void check_saving(EditableSpace& space, const ScratchDirectory& scratch) {
 STRUCTURE_CASE(every_structure,
                "saved and loaded: the same answers, and the same after more sources") {
     const ScratchDirectory scratch("saving");
-    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+    const Work work =
+        GENERATE(isotropic_sphere(), anisotropic_sphere(), with_own_growths(isotropic_sphere()));
     CAPTURE(work.name);
     const auto space = work.graded(structure);
     check_saving(*space, scratch);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -128,6 +129,15 @@ inline Work anisotropic_oblong_box() {
                                        Eigen::AngleAxisd(0.7 - angle, Vector::UnitZ()))
                                           .toRotationMatrix();
         work.sources[i].metric = metric_from_frame({h, 2 * h, 4 * h}, frame);
+    }
+    return work;
+}
+/// The same work, two of three sources with gradation ratios of their own.
+inline Work with_own_growths(Work work) {
+    work.name += ", ratios of their own";
+    for (std::size_t i = 0; i < work.sources.size(); ++i) {
+        constexpr std::array growths{0.0, 1.05, 1.8};
+        work.sources[i].growth = growths[i % 3];
     }
     return work;
 }

@@ -4,6 +4,7 @@
 
 #include <controlspace/error.h>
 #include <controlspace/metric/intersection.h>
+#include <controlspace/sources/cone.h>
 #include <controlspace/space/catalogue.h>
 
 #include <memory>
@@ -21,9 +22,8 @@ public:
         for (std::size_t i = 0; i < x.size(); ++i) {
             const Point p = x[i].cwiseMax(domain_.low).cwiseMin(domain_.high);
             out[i] = largest_metric(domain_);
-            for (const auto& [position, metric] : sources_) {
-                const double distance = metric_length(metric, p - position);
-                out[i] = intersection(out[i], (1 + (ratio_ - 1) * distance) * metric);
+            for (const PointSource& source : sources_) {
+                out[i] = intersection(out[i], cone_factor(source, ratio_, p) * source.metric);
             }
         }
     }

@@ -63,11 +63,12 @@ TEST_CASE("the field of a sphere turns with it") {
 TEST_CASE("fields on their surfaces are what sampled sources ask for") {
     const SurfaceLengths lengths{.across = 0.015, .along = 0.06};
     const auto sphere = sphere_field({.lengths = lengths});
-    for (const auto& [p, m] : sample_sphere({.s_a = 4, .s_n = 0.25, .rho = 8})) {
+    for (const auto& [p, m, growth] : sample_sphere({.s_a = 4, .s_n = 0.25, .rho = 8})) {
         CHECK(difference(value_at(*sphere.field, p), m) < 1e-13);
     }
     const auto planes = planes_field({.slope = 0.75, .lengths = lengths});
-    for (const auto& [p, m] : sample_planes({.s_a = 4, .s_n = 0.25, .rho = 8, .slope = 0.75})) {
+    for (const auto& [p, m, growth] :
+         sample_planes({.s_a = 4, .s_n = 0.25, .rho = 8, .slope = 0.75})) {
         // Near where they cross, the other plane asks for less.
         const Metric value = value_at(*planes.field, p);
         CHECK(is_within(value, 1 + 1e-12, m));

@@ -74,6 +74,8 @@ class BadInput(unittest.TestCase):
         for growth in (0.9, NAN, INF, -INF):
             self.refused("growth is", build, P, H, growth=growth)
         self.refused("growth has the dtype", build, P, H, growth="a lot")
+        self.refused("growth has the shape (2,)", build, P, H, growth=(1.1, 1.2))
+        self.refused("growth[1] is nan", build, P, H, growth=changed(np.full(len(P), 1.1), 1, NAN))
         for delta in (0, -1, NAN, INF):
             self.refused("delta is", build, P, H, delta=delta)
         self.refused("h_min is 0.0", build, P, H, h_min=0)

@@ -27,6 +27,24 @@ TEST_CASE("CSV with sizes") {
     CHECK(sources[1] == PointSource{{-1e-3, 2.5, 0}, Metric::isotropic(100)});
 }
 
+TEST_CASE("CSV with gradation ratios of sources") {
+    const auto sources = parse("x,y,z,h,g\n1,2,3,0.5,1.1\n1,2,3,0.5,0\n");
+    REQUIRE(sources.size() == 2);
+    CHECK(sources[0] == PointSource{{1, 2, 3}, Metric::isotropic(0.5), 1.1});
+    CHECK(sources[1] == PointSource{{1, 2, 3}, Metric::isotropic(0.5)});
+    const Metric m{0.3, 0.25, 0.2, 0.05, -0.02, 0.01};
+    const auto tensors =
+        parse("g,x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n2,1,2,3,.3,.25,.2,.05,-.02,.01\n");
+    CHECK(tensors[0] == PointSource{{1, 2, 3}, m, 2});
+    CHECK_THAT(error_in("x,y,z,h,g\n1,2,3,0.5,1\n1,2,3,0.5,0.9\n"), Contains("s.csv:3: g = 0.9"));
+    CHECK_THAT(error_in("x,y,z,h,g\n1,2,3,0.5,nan\n"), Contains("s.csv:2: g = "));
+    const ScratchDirectory scratch("growths");
+    for (const auto& some : {sources, tensors}) {
+        write_csv_sources(scratch / "again.csv", some);
+        CHECK(read_csv_sources(scratch / "again.csv") == some);
+    }
+}
+
 TEST_CASE("CSV with tensors, columns in any order") {
     const Metric m{0.3, 0.25, 0.2, 0.05, -0.02, 0.01};
     const auto sources =

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
+#include "controlspace/io/read_sources.h"
 #include "sources/files.h"
 
 using namespace controlspace;
@@ -64,6 +65,31 @@ TEST_CASE("tensors in another order are found out") {
                         "definite, 1 of 3 are not: is the order"));
     CHECK_THAT(error_in_solution(mesh_head + "SolAtVertices 2 1 3 0 0 0 0 0 0  -1 0 -1 0 0 -1"),
                Contains("m.sol:3: tensor 1 (0 0 0 0 0 0) is not positive definite, 2 of 2"));
+}
+
+TEST_CASE("a mesh without a solution has the lengths of its required edges") {
+    const ScratchDirectory scratch("required");
+    const auto mesh = [&](const std::string& rest) {
+        return scratch.file(
+            "a.mesh",
+            "MeshVersionFormatted 2 Dimension 3 Vertices 4 0 0 0 0  3 0 0 0  3 4 0 0  9 9 9 0 "
+            "Edges 3 1 2 0  2 3 0  3 4 0 " +
+                rest + " End");
+    };
+    const auto sources = read_sources(mesh("RequiredEdges 2 1 2"));
+    REQUIRE(sources.size() == 3);
+    CHECK(sources[0] == PointSource{{0, 0, 0}, Metric::isotropic(3)});
+    CHECK(sources[1] == PointSource{{3, 0, 0}, Metric::isotropic(3.5)});
+    CHECK(sources[2] == PointSource{{3, 4, 0}, Metric::isotropic(4)});
+    CHECK_THAT(error_of([&] { read_sources(mesh("")); }),
+               Contains("no RequiredEdges") && Contains(".sol"));
+    CHECK_THAT(error_of([&] { read_sources(mesh("RequiredEdges 1 4")); }),
+               Contains("required edge 1"));
+    const auto flat =
+        scratch.file("b.mesh",
+                     "MeshVersionFormatted 2 Dimension 3 Vertices 2 0 0 0 0  0 0 0 0 Edges 1 1 2 0 "
+                     "RequiredEdges 1 1 End");
+    CHECK_THAT(error_of([&] { read_sources(flat); }), Contains("edge 1 has the length 0"));
 }
 
 TEST_CASE("errors of a mesh name the place") {

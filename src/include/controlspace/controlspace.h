@@ -81,6 +81,22 @@ CSPACE_API cspace_status cspace_insert(cspace* space, size_t n, const double* po
 CSPACE_API cspace_status cspace_insert_lengths(cspace* space, size_t n, const double* positions,
                                                const double* lengths);
 
+/** Sources in arrays that need not all be there. Set `size` to sizeof(cspace_sources), what is not
+ * there to NULL. */
+typedef struct cspace_sources {
+    size_t size;             /**< bytes of this struct, so that it may grow */
+    size_t n;                /**< number of sources */
+    const double* positions; /**< n points */
+    const double* metrics;   /**< n metrics M, unless there are lengths */
+    const double* lengths;   /**< n lengths, of isotropic sources */
+    const double* growths;   /**< NULL, or n gradation ratios of the sources' own, 1 or more; 0: that
+                                of the field. They grade by the exact field alone: they are refused
+                                once the space was adapted. */
+} cspace_sources;
+
+/** Inserts sources, as cspace_insert() does. */
+CSPACE_API cspace_status cspace_insert_sources(cspace* space, const cspace_sources* sources);
+
 /** Limits the growth of lengths from point to point to the gradation ratio `ratio` (g_r >= 1): the
  * control nodes get the exact field of the sources inserted. To be called after all sources are
  * inserted, unless the control space takes later sources. */
@@ -94,6 +110,10 @@ CSPACE_API cspace_status cspace_grade(cspace* space, double ratio);
 CSPACE_API cspace_status cspace_adapt(cspace* space, size_t n, const double* positions,
                                       const double* metrics, double ratio, double target,
                                       double* reached);
+
+/** The same for sources with ratios of their own. */
+CSPACE_API cspace_status cspace_adapt_sources(cspace* space, const cspace_sources* sources,
+                                              double ratio, double target, double* reached);
 
 /** Metrics M at `n` points; a point outside the domain gets the metric of the nearest point of the
  * domain. A coordinate that is NaN is refused, and nothing is written. Many points in one call are

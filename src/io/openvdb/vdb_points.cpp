@@ -16,7 +16,7 @@ openvdb::GridBase::Ptr make_points_grid(std::span<const PointSource> sources,
     std::vector<float> smallest;
     std::vector<openvdb::Vec3s> diagonals;
     std::vector<openvdb::Vec3s> off_diagonals;
-    for (const auto& [p, m] : sources) {
+    for (const auto& [p, m, growth] : sources) {
         positions.emplace_back(p.x(), p.y(), p.z());
         smallest.push_back(static_cast<float>(eigen_frame(m).lengths[0]));
         diagonals.emplace_back(m.xx, m.yy, m.zz);

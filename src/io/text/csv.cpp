@@ -20,11 +20,12 @@
 namespace controlspace {
 namespace {
 
-constexpr std::array<std::string_view, 19> names{
-    "x",    "y",    "z",                                                 // position
-    "h",                                                                 // size
-    "m_xx", "m_yy", "m_zz", "m_xy", "m_xz", "m_yz",                      // tensor
-    "h1",   "h2",   "h3",   "e1x",  "e1y",  "e1z",  "e2x", "e2y", "e2z"  // frame
+constexpr std::array<std::string_view, 20> names{
+    "x",    "y",    "z",                                                  // position
+    "h",                                                                  // size
+    "m_xx", "m_yy", "m_zz", "m_xy", "m_xz", "m_yz",                       // tensor
+    "h1",   "h2",   "h3",   "e1x",  "e1y",  "e1z",  "e2x", "e2y", "e2z",  // frame
+    "g"                                                                   // growth
 };
 constexpr std::size_t absent = names.size();
 
@@ -34,6 +35,7 @@ struct Columns {
     bool operator==(const Columns&) const = default;
 };
 constexpr Columns position{0, 3}, size{3, 1}, tensor{4, 6}, frame{10, 9};
+constexpr std::size_t growth = 19;
 
 std::string_view trimmed(std::string_view text) {
     const std::size_t first = text.find_first_not_of(Scanner::blanks);
@@ -169,9 +171,17 @@ std::vector<PointSource> parse_csv_sources(std::string_view text,
                                            const std::filesystem::path& path) {
     Table table(text, path, /*positions_alone=*/false);
     std::vector<Point> positions;
+    std::vector<double> growths;
     MetricRows metrics([&] { return table.where(); }, length_tensor);
     while (const Table::Values* row = table.next()) {
         positions.emplace_back(row->data());
+        growths.push_back((*row)[growth]);
+        if (!is_source_growth(growths.back())) {
+            table.fail(fmt::format(
+                "g = {}: give the gradation ratio of the source, from 1 to 1e6, or 0 for the "
+                "field's",
+                growths.back()));
+        }
         std::span<const double> v = std::span(*row).subspan(table.form().first);
         const std::size_t lengths = table.form() == size ? 1 : table.form() == frame ? 3 : 0;
         for (std::size_t i = 0; i < lengths; ++i) {
@@ -187,7 +197,9 @@ std::vector<PointSource> parse_csv_sources(std::string_view text,
         }
     }
     if (positions.empty()) fail_empty(path, "sources");
-    return sources_from(positions, metrics.take());
+    std::vector<PointSource> sources = sources_from(positions, metrics.take());
+    for (std::size_t i = 0; i < sources.size(); ++i) sources[i].growth = growths[i];
+    return sources;
 }
 
 std::vector<PointSource> read_csv_sources(const std::filesystem::path& path) {
@@ -205,12 +217,16 @@ std::vector<Point> read_csv_points(const std::filesystem::path& path) {
 
 void write_csv_sources(const std::filesystem::path& path, std::span<const PointSource> sources) {
     const bool isotropic = all_isotropic(sources);
+    const bool alike = std::ranges::all_of(sources, [](const auto& s) { return s.growth == 0; });
     OutputFile file(path);
-    file.write(isotropic ? "x,y,z,h\n" : "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n");
-    for (const auto& [p, m] : sources) {
+    file.write(isotropic ? "x,y,z,h" : "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz");
+    file.write(alike ? "\n" : ",g\n");
+    for (const auto& [p, m, own_growth] : sources) {
         const auto numbers = numbers_of(m, length_tensor);
-        file.print("{},{},{},{}\n", p.x(), p.y(), p.z(),
+        file.print("{},{},{},{}", p.x(), p.y(), p.z(),
                    fmt::join(std::span(numbers).first(isotropic ? 1 : tensor.count), ","));
+        if (!alike) file.print(",{}", own_growth);
+        file.write("\n");
     }
     file.commit();
 }

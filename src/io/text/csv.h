@@ -16,6 +16,7 @@ namespace controlspace {
 ///   h1, h2, h3, e1x, e1y, e1z, e2x, e2y, e2z
 ///                                       lengths along e1, e2 and e1 x e2; the directions need not
 ///                                       be unit vectors but must be orthogonal to 1e-3.
+/// A column g, if there is one, gives each source a gradation ratio of its own (0: the field's).
 /// Separated by commas; blank lines and lines that start with # are skipped; lines end in LF or
 /// CRLF. Throws InputError "name:line: what is wrong".
 std::vector<PointSource> read_csv_sources(const std::filesystem::path& path);

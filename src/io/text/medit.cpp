@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include "controlspace/error.h"
 #include "files/text_file.h"
@@ -74,6 +76,47 @@ std::vector<PointSource> read_medit_sources(const std::filesystem::path& mesh,
                         mesh.string(), vertices.size(), solution.string(), metrics.size()));
     }
     return sources_from(vertices, metrics);
+}
+
+std::vector<PointSource> read_medit_required_edges(const std::filesystem::path& mesh) {
+    const std::string bytes = read_binary_file(mesh);
+    const std::vector<Point> vertices = parse_medit_vertices(bytes, mesh);
+    MeditReader file(bytes, mesh);
+    std::vector<std::array<std::size_t, 2>> edges(file.find(medit_edges, 0, 3));
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        for (std::size_t& end : edges[i]) {
+            const auto most = static_cast<std::int64_t>(vertices.size());
+            end = static_cast<std::size_t>(file.integer({"edge", i}, most)) - 1;
+        }
+        file.skip_reference({"edge", i});
+    }
+    struct Lengths {
+        double sum = 0;
+        std::size_t count = 0;
+    };
+    std::vector<Lengths> at(vertices.size());
+    MeditReader required(bytes, mesh);
+    for (std::size_t i = 0, count = required.find(medit_required_edges, 0, 1); i < count; ++i) {
+        const auto most = static_cast<std::int64_t>(edges.size());
+        const auto edge =
+            static_cast<std::size_t>(required.integer({"required edge", i}, most)) - 1;
+        const auto [from, to] = edges[edge];
+        const double length = (vertices[to] - vertices[from]).norm();
+        if (!is_length(length)) {
+            required.fail(fmt::format("edge {} has the length {}", edge + 1, length));
+        }
+        for (const std::size_t end : {from, to}) {
+            at[end].sum += length;
+            ++at[end].count;
+        }
+    }
+    std::vector<PointSource> sources;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        if (at[i].count == 0) continue;
+        const double mean = at[i].sum / static_cast<double>(at[i].count);
+        sources.push_back({vertices[i], Metric::isotropic(mean)});
+    }
+    return sources;
 }
 
 void write_medit_solution(const std::filesystem::path& path, std::span<const Metric> metrics) {

@@ -17,6 +17,10 @@ namespace controlspace {
 std::vector<PointSource> read_medit_sources(const std::filesystem::path& mesh,
                                             const std::filesystem::path& solution);
 
+/// Sources at the ends of a mesh's required edges, each with the mean length of those that end
+/// there: sizes that fit a boundary which remeshing keeps. Throws InputError.
+std::vector<PointSource> read_medit_required_edges(const std::filesystem::path& mesh);
+
 /// The vertices alone.
 std::vector<Point> read_medit_vertices(const std::filesystem::path& mesh);
 

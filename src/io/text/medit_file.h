@@ -19,7 +19,8 @@ struct MeditKeyword {
     std::string_view word;
     std::int32_t code;
 };
-inline constexpr MeditKeyword medit_vertices{"Vertices", 4}, medit_triangles{"Triangles", 6},
+inline constexpr MeditKeyword medit_vertices{"Vertices", 4}, medit_edges{"Edges", 5},
+    medit_triangles{"Triangles", 6}, medit_required_edges{"RequiredEdges", 14},
     medit_tetrahedra{"Tetrahedra", 8}, medit_solution{"SolAtVertices", 62};
 
 inline constexpr std::size_t medit_vertex_bytes = 3 * sizeof(double) + sizeof(std::int32_t);

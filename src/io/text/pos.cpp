@@ -114,7 +114,7 @@ private:
 std::vector<PointSource> without_repeated(const std::vector<PointSource>& sources) {
     std::set<std::array<double, 9>> seen;
     std::vector<PointSource> kept;
-    for (const auto& [p, m] : sources) {
+    for (const auto& [p, m, growth] : sources) {
         if (seen.insert({p.x(), p.y(), p.z(), m.xx, m.yy, m.zz, m.xy, m.xz, m.yz}).second) {
             kept.push_back({p, m});
         }
@@ -138,7 +138,7 @@ void write_pos_sources(const std::filesystem::path& path, std::span<const PointS
     const bool isotropic = all_isotropic(sources);
     OutputFile file(path);
     file.write("View \"controlspace\" {\n");
-    for (const auto& [p, m] : sources) {
+    for (const auto& [p, m, growth] : sources) {
         const auto numbers = isotropic ? std::array<double, 9>{m.xx} : numbers_of(m, matrix_rows);
         file.print("{}({},{},{}){{{}}};\n", isotropic ? "SP" : "TP", p.x(), p.y(), p.z(),
                    fmt::join(std::span(numbers).first(isotropic ? 1 : 9), ","));

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 
 #include "controlspace/error.h"
@@ -15,15 +16,36 @@ namespace controlspace {
 namespace {
 
 // The file beside `path` with the first of two other extensions that is there.
-std::filesystem::path partner(const std::filesystem::path& path, const char* likely,
-                              const char* possible) {
+std::optional<std::filesystem::path> file_beside(const std::filesystem::path& path,
+                                                 const char* likely, const char* possible) {
     std::filesystem::path other = path;
     std::error_code ignored;
     for (const char* extension : {likely, possible}) {
         if (std::filesystem::exists(other.replace_extension(extension), ignored)) return other;
     }
+    return std::nullopt;
+}
+
+// The mesh of a solution.
+std::filesystem::path mesh_of(const std::filesystem::path& path, const char* likely,
+                              const char* possible) {
+    if (const auto mesh = file_beside(path, likely, possible)) return *mesh;
     throw InputError(fmt::format("{} is missing: {} needs it beside it",
-                                 other.replace_extension(likely).string(), path.string()));
+                                 std::filesystem::path(path).replace_extension(likely).string(),
+                                 path.string()));
+}
+
+// Sources at all vertices of a mesh that has a solution, or those of its required edges.
+std::vector<PointSource> read_medit_mesh(const std::filesystem::path& mesh, const char* likely,
+                                         const char* possible) {
+    if (const auto solution = file_beside(mesh, likely, possible)) {
+        return read_medit_sources(mesh, *solution);
+    }
+    try {
+        return read_medit_required_edges(mesh);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}; or put a solution ({}) beside it", error.what(), likely));
+    }
 }
 
 }  // namespace
@@ -47,10 +69,10 @@ std::vector<PointSource> read_sources(const std::filesystem::path& path, const s
     }
     const std::string extension = lower_case_extension(path);
     if (extension == ".csv") return read_csv_sources(path);
-    if (extension == ".mesh") return read_medit_sources(path, partner(path, ".sol", ".solb"));
-    if (extension == ".sol") return read_medit_sources(partner(path, ".mesh", ".meshb"), path);
-    if (extension == ".meshb") return read_medit_sources(path, partner(path, ".solb", ".sol"));
-    if (extension == ".solb") return read_medit_sources(partner(path, ".meshb", ".mesh"), path);
+    if (extension == ".mesh") return read_medit_mesh(path, ".sol", ".solb");
+    if (extension == ".sol") return read_medit_sources(mesh_of(path, ".mesh", ".meshb"), path);
+    if (extension == ".meshb") return read_medit_mesh(path, ".solb", ".sol");
+    if (extension == ".solb") return read_medit_sources(mesh_of(path, ".meshb", ".mesh"), path);
     if (extension == ".pos") return read_pos_sources(path, array);
     if (extension == ".msh") return read_msh_sources(path, array);
     // A pipe, as of <(command), has a name that says nothing.

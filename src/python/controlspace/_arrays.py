@@ -91,6 +91,20 @@ def metrics(
     return array, float(lengths.min())
 
 
+def growths(growth: ArrayLike, n: int) -> tuple[float, Array | None]:
+    """The ratio of the field, and those of the sources if they have their own."""
+    array = numbers("growth", growth)
+    if array.shape not in ((), (n,)):
+        raise ValueError(f"growth has the shape {array.shape}: give one number, or ({n},)")
+    good = (array >= 1) & (array <= 1e6)
+    if array.ndim == 0:
+        if not good:
+            raise ValueError(f"growth is {array}: give 1 or more, up to 1e6")
+        return float(array), None
+    require_all(good, "growth", "give 1 or more, up to 1e6", array)
+    return float(array.max()), array
+
+
 def matrices(m: Array) -> Array:
     """(n, 6) as (n, 3, 3)."""
     return np.take(m, (0, 3, 4, 3, 1, 5, 4, 5, 2), axis=1).reshape(-1, 3, 3)
@@ -99,15 +113,6 @@ def matrices(m: Array) -> Array:
 def six(m: Array) -> Array:
     """(n, 3, 3), symmetric, as (n, 6)."""
     return np.take(m.reshape(-1, 9), (0, 4, 8, 3, 6, 7), axis=1)
-
-
-def as_metrics(h: Array) -> Array:
-    """Lengths (n,) as metrics (n, 6); metrics as they are."""
-    if h.ndim == 2:
-        return h
-    m = np.zeros((len(h), 6))
-    m[:, :3] = h[:, None]
-    return m
 
 
 def box_around(points: Array, box: ArrayLike | None) -> Array:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import math
 import os
 import tempfile
 import warnings
@@ -15,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from . import _arrays, _program
 from ._arrays import Array
-from ._library import call, library, size_at
+from ._library import Sources, call, library, size_at
 
 # Where xx yy zz xy xz yz go.
 _ORDERS = {
@@ -179,7 +178,7 @@ def build(
     h: ArrayLike,
     structure: str | None = None,
     box: ArrayLike | None = None,
-    growth: float = 1.25,
+    growth: ArrayLike = 1.25,
     delta: float | None = None,
     h_min: float | None = None,
     h_max: float | None = None,
@@ -192,7 +191,8 @@ def build(
     structure: one of `structures()`. None: the octree K_oV; of lengths it is adapted to delta = 0.1,
     of metrics, where that takes long, only if delta is given.
     box: lowest and highest corner, (2, 3). None: the box of the points and 5 % of its longest edge.
-    growth: gradation ratio g_r >= 1, growth of lengths per metric length of distance.
+    growth: gradation ratio g_r >= 1, growth of lengths per metric length of distance: one number,
+    or one for each source, (n,).
     delta: largest non-conformity to the exact field, above 0, that a tree is refined to; guaranteed
     for lengths (not in K_Li and K_oLi), sampled for metrics; a UserWarning says that it was missed.
     None with a structure: sources are inserted and graded, which is faster and less accurate.
@@ -205,14 +205,12 @@ def build(
     points = _arrays.source_places(points)
     h, finest = _arrays.metrics(h, len(points), h_min, h_max)
     corners = _arrays.box_around(points, box)
-    growth = _arrays.number("growth", growth)
-    if not 1 <= growth < math.inf:
-        raise ValueError(f"growth is {growth}: give 1 or more")
+    ratio, growths = _arrays.growths(growth, len(points))
     if structure is None:
         structure = "K_oV"
         if delta is None and h.ndim == 1:
             delta = 0.1
-    given = {"g_r": growth, "finest_length": finest, **options}
+    given = {"g_r": ratio, "finest_length": finest, **options}
     handle = ctypes.c_void_p()
     call(
         "create",
@@ -222,15 +220,20 @@ def build(
         ctypes.byref(handle),
     )
     field = _field(handle, None)
-    addresses = len(points), points.ctypes.data
+    sources = Sources(
+        size=ctypes.sizeof(Sources),
+        n=len(points),
+        positions=points.ctypes.data,
+        metrics=None if h.ndim == 1 else h.ctypes.data,
+        lengths=h.ctypes.data if h.ndim == 1 else None,
+        growths=None if growths is None else growths.ctypes.data,
+    )
     if delta is None:
-        insert = "insert_lengths" if h.ndim == 1 else "insert"
-        call(insert, field._handle, *addresses, h.ctypes.data)
-        call("grade", field._handle, growth)
+        call("insert_sources", field._handle, sources)
+        call("grade", field._handle, ratio)
         return field
     target, reached = _arrays.length("delta", delta), ctypes.c_double()
-    h = _arrays.as_metrics(h)
-    call("adapt", field._handle, *addresses, h.ctypes.data, growth, target, ctypes.byref(reached))
+    call("adapt_sources", field._handle, sources, ratio, target, ctypes.byref(reached))
     field._delta = reached.value
     if reached.value > target:
         warnings.warn(f"delta {reached.value:.3g} reached, {target:.3g} requested", stacklevel=2)

@@ -11,17 +11,30 @@ from pathlib import Path
 _FILE = os.environ.get("CONTROLSPACE_LIBRARY") or Path(__file__).parent / "libcontrolspace.so"
 _OK, _BAD_INPUT = 0, 2
 
+
 # Arrays go as addresses: see _arrays.py.
+class Sources(ctypes.Structure):
+    """cspace_sources."""
+
+    _fields_ = (
+        ("size", c_size_t),
+        ("n", c_size_t),
+        ("positions", c_void_p),
+        ("metrics", c_void_p),
+        ("lengths", c_void_p),
+        ("growths", c_void_p),
+    )
+
+
 _FUNCTIONS = {
     "version": (c_char_p,),
     "last_error": (c_char_p,),
     "structure": (c_char_p, c_size_t),
     "create": (c_int, c_char_p, c_void_p, c_char_p, POINTER(c_void_p)),
     "free": (None, c_void_p),
-    "insert": (c_int, c_void_p, c_size_t, c_void_p, c_void_p),
-    "insert_lengths": (c_int, c_void_p, c_size_t, c_void_p, c_void_p),
+    "insert_sources": (c_int, c_void_p, POINTER(Sources)),
     "grade": (c_int, c_void_p, c_double),
-    "adapt": (c_int, c_void_p, c_size_t, c_void_p, c_void_p, c_double, c_double, POINTER(c_double)),
+    "adapt_sources": (c_int, c_void_p, POINTER(Sources), c_double, c_double, POINTER(c_double)),
     "sample": (c_int, c_void_p, c_size_t, c_void_p, c_void_p),
     "sample_lengths": (c_int, c_void_p, c_size_t, c_void_p, c_void_p),
     "edge_lengths": (c_int, c_void_p, c_size_t, c_void_p, c_void_p, c_void_p),

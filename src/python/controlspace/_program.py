@@ -51,7 +51,7 @@ def compare(
     h: ArrayLike,
     structures: Sequence[str] | None = None,
     box: ArrayLike | None = None,
-    growth: float = 1.25,
+    growth: ArrayLike = 1.25,
     delta: float | None = None,
     **settings: Any,
 ) -> list[dict[str, Any]]:
@@ -67,7 +67,8 @@ def compare(
     """
     points = _arrays.source_places(points)
     m, _ = _arrays.metrics(h, len(points))
-    settings |= {"g_r": _arrays.number("growth", growth)}
+    ratio, growths = _arrays.growths(growth, len(points))
+    settings |= {"g_r": ratio}
     if structures is not None:
         settings["structures"] = list(structures)
     if box is not None:
@@ -77,7 +78,8 @@ def compare(
     header = "x,y,z,h" if m.ndim == 1 else "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz"
     with tempfile.TemporaryDirectory() as folder:
         sources, results = Path(folder, "sources.csv"), Path(folder, "results")
-        rows = np.column_stack([points, m])
+        rows = np.column_stack([points, m] if growths is None else [points, m, growths])
+        header += "" if growths is None else ",g"
         np.savetxt(sources, rows, "%.17g", ",", header=header, comments="")
         run("compare", sources=sources, output=results, **settings)
         measured: list[dict[str, Any]] = json.loads((results / "results.json").read_text())["rows"]

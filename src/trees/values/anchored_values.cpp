@@ -33,8 +33,8 @@ Metric AnchoredValues::cones_at(const Point& x, std::span<const SourceIndex> anc
     if (sources_.all_isotropic()) {
         double h = largest_.xx;
         for (const SourceIndex s : anchors) {
-            h = std::min(h,
-                         sources_.metric(s).xx + (ratio_ - 1) * (x - sources_.position(s)).norm());
+            h = std::min(h, sources_.metric(s).xx + (sources_.growth(s, ratio_) - 1) *
+                                                        (x - sources_.position(s)).norm());
         }
         return Metric::isotropic(h);
     }
@@ -141,7 +141,7 @@ bool AnchoredValues::is_covered(SourceIndex source, std::span<const SourceIndex>
             reach = std::max(reach, metric_length(own, corner(box, i) - box.centre()));
         }
         const double away = metric_length(own, box.centre() - q) - reach;
-        least = 1 + (ratio_ - 1) * std::max(0.0, away);
+        least = 1 + (sources_.growth(source, ratio_) - 1) * std::max(0.0, away);
     }
     const Metric shortest = least * own;
     if (is_within(largest_, 1, shortest)) return true;

@@ -8,6 +8,7 @@ SourceIndex SourceTable::add(const PointSource& source) {
         smallest_.push_back(eigen_frame(source.metric).lengths[0]);
     }
     all_isotropic_ = all_isotropic_ && is_isotropic(source.metric);
+    growths_.add(positions_.size(), source.growth);
     positions_.push_back(source.position);
     metric_of_.push_back(static_cast<std::uint32_t>(metrics_.size() - 1));
     return static_cast<SourceIndex>(positions_.size() - 1);
@@ -35,6 +36,7 @@ void SourceTable::save(StateWriter& state) const {
     state("sources.positions", positions_);
     state("sources.metric_of", metric_of_);
     state("sources.metrics", metrics_);
+    growths_.save(state, "sources.growths");
 }
 
 void SourceTable::load(const StateReader& state) {
@@ -47,8 +49,12 @@ void SourceTable::load(const StateReader& state) {
     state.require(metric_of.size() == positions.size(), "sources.metric_of", "has another length");
     require_below(state, "sources.metric_of", metric_of, metrics.size());
     require_metrics(state, "sources.metrics", metrics);
+    OwnGrowths growths;
+    growths.load(state, "sources.growths", positions.size());
     *this = {};
-    for (std::size_t i = 0; i < positions.size(); ++i) add({positions[i], metrics[metric_of[i]]});
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        add({positions[i], metrics[metric_of[i]], growths[i]});
+    }
     shrink_to_fit();
 }
 
@@ -57,6 +63,7 @@ void SourceTable::shrink_to_fit() {
     metric_of_.shrink_to_fit();
     metrics_.shrink_to_fit();
     smallest_.shrink_to_fit();
+    growths_.shrink_to_fit();
 }
 
 }  // namespace controlspace

@@ -12,9 +12,11 @@ namespace controlspace {
 /// Sources from a file, by its extension:
 ///   - `.csv`: a line of names, x, y, z and either h, or m_xx, m_yy, m_zz, m_xy, m_xz, m_yz (the
 ///     tensor M, whose eigenvalues are lengths), or h1, h2, h3, e1x, e1y, e1z, e2x, e2y, e2z
-///     (lengths along two orthogonal directions and normal to both);
+///     (lengths along two orthogonal directions and normal to both); and g, if there is such a
+///     column, the gradation ratio of the source's own;
 ///   - `.mesh`, `.meshb`, `.sol` or `.solb`: a Medit mesh or solution that has the other beside it
-///     under the same name, with lengths, or Riemannian metrics M^-2 as xx xy yy xz yz zz;
+///     under the same name, with lengths, or Riemannian metrics M^-2 as xx xy yy xz yz zz; a mesh
+///     without a solution gives the lengths of its required edges, at their ends;
 ///   - `.pos` and `.msh`: a list view of Gmsh, or a mesh (format 4.1) with $NodeData, with lengths,
 ///     or Riemannian metrics M^-2 by rows; `array` names the view, if there is more than one.
 /// Lengths are in the units of the positions. A pipe without an extension is read as CSV. Throws

@@ -12,6 +12,8 @@ namespace controlspace {
 struct PointSource {
     Point position = Point::Zero();
     Metric metric;
+    /// Gradation ratio of this source's cone, 1 or more; 0 stands for the ratio of the field, g_r.
+    double growth = 0;
 
     bool operator==(const PointSource&) const = default;
 };
@@ -26,6 +28,8 @@ double finest_length(std::span<const PointSource> sources);
 bool is_coordinate(double x);
 bool is_length(double h);
 bool is_source_metric(const Metric& m);
+/// Whether a number can be the gradation ratio of a source: 0, or from 1 to 1e6.
+bool is_source_growth(double g);
 
 /// Throw InputError, with the name, unless `value` is a length, all of `p` are coordinates.
 void require_length(std::string_view name, double value);

@@ -50,11 +50,15 @@ public:
     double negligible() const;
     const Metric& largest() const { return largest_; }
     double target() const { return target_; }
+    /// Of sources that have none of their own.
     double ratio() const { return ratio_; }
+    /// Of all sources.
+    double largest_ratio() const { return largest_ratio_; }
 
 private:
     double target_;
     double ratio_;
+    double largest_ratio_;
     std::span<const PointSource> sources_;
     std::shared_ptr<const ControlSpace> continuous_;
     Metric largest_;

@@ -121,6 +121,7 @@ public:
 private:
     // What they request counts in gradation, whether they change nodes or not.
     InsertionReport insert_and_keep(std::span<const PointSource> sources) {
+        if (!this->given()) require_alike_growth(sources);
         graded_by_sources_.reset();
         const auto keep = [&](std::span<const PointSource> valid) {
             if (!this->given()) return;

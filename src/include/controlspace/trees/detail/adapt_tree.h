@@ -36,13 +36,12 @@ public:
         if (field.has_ranges()) {
             for (const std::uint32_t i : field.kept()) {
                 sources_.push_back(goal.sources[i].position);
-                at_sources_.push_back(intersection(goal.sources[i].metric, field.largest()));
             }
         } else {
             for (const PointSource& source : goal.sources) sources_.push_back(source.position);
-            at_sources_.resize(sources_.size());
-            sample_parallel(field, sources_, at_sources_);
         }
+        at_sources_.resize(sources_.size());
+        sample_parallel(field, sources_, at_sources_);
         leaf_of_source_.resize(sources_.size(), 0);
     }
 
@@ -133,8 +132,8 @@ private:
             if (HasConstantLeaves<Storage> && field_.has_ranges()) return;
             fit_nodes(storage_, leaves, field_);
         }
-        if constexpr (requires { storage_.graded(field_.ratio()); }) {
-            storage_.graded(field_.ratio());
+        if constexpr (requires { storage_.graded(field_.largest_ratio()); }) {
+            storage_.graded(field_.largest_ratio());
         }
     }
 

@@ -65,7 +65,7 @@ protected:
         bool too_short = false;
         TreeAdaptation adaptation(topology_, storage_, field, goal);
         report.reached = adaptation.run(true, [&](const Box& box, const auto& along, auto& cut) {
-            if (is_negligible(box, goal.ratio)) {
+            if (is_negligible(box, field.largest_ratio())) {
                 too_short = true;
                 return false;
             }

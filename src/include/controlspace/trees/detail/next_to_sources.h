@@ -15,6 +15,7 @@
 
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
+#include "controlspace/sources/cone.h"
 #include "controlspace/sources/point_source.h"
 #include "controlspace/space/detail/goal_field.h"
 #include "controlspace/trees/detail/in_parallel.h"
@@ -94,8 +95,8 @@ private:
         constexpr double of_interest = 0.25;
         const Point x = nearest_place(source, of.box);
         const Metric own = value_in(tree_, field_of(storage_), of.leaf, x);
-        const auto& [position, metric] = sources_[source];
-        const double factor = 1 + (field_.ratio() - 1) * metric_length(metric, x - position);
+        const Metric& metric = sources_[source].metric;
+        const double factor = cone_factor(sources_[source], field_.ratio(), x);
         Departure departure;
         if (!is_within(own, 1, factor * metric)) {
             const double delta = strict_nonconformity(own, intersection(own, factor * metric));
@@ -116,9 +117,9 @@ private:
     // T, and T a mean of the corners'.
     void find_exceeded(std::size_t source, const LeafBox& of, Departure& departure) const {
         constexpr std::size_t most_parts = 256;
-        const auto& [q, metric] = sources_[source];
+        const auto& [q, metric, growth] = sources_[source];
         const Eigen::Matrix3d inverse_square = inverse_squares_[source].matrix();
-        const double slope = field_.ratio() - 1;
+        const double slope = cone_growth(sources_[source], field_.ratio()) - 1;
         const double most = largest_factor_within(field_.target());
         const auto metrics = storage_.metrics().field();
         Part leaf{of.box, {}};

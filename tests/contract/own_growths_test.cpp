@@ -1,0 +1,88 @@
+// Sources with gradation ratios of their own, in all structures.
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "contract/structure_case.h"
+#include "controlspace/error.h"
+#include "controlspace/measure/access_time.h"
+#include "controlspace/measure/reference.h"
+#include "controlspace/metric/nonconformity.h"
+#include "editable_space.h"
+
+using namespace controlspace;
+
+namespace {
+
+constexpr double g = 1.25;
+
+bool adapts(const Structure& structure) {
+    return does_not_round(structure) && !structure.entry->has<VoxelSize>() &&
+           !structure.entry->has<VoxelLevels>();
+}
+
+double largest_nonconformity(const ControlSpace& space, const Work& work) {
+    const std::vector<Point> x = random_points(work.domain, 3000, 41);
+    std::vector<Metric> exact(x.size());
+    brute_force_reference(work.sources, g, largest_metric(work.domain))->sample(x, exact);
+    const std::vector<Metric> own = answers(space, x);
+    double largest = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        largest = std::max(largest, nonconformity(own[i], exact[i]));
+    }
+    return largest;
+}
+
+}  // namespace
+
+STRUCTURE_CASE(adapts,
+               "adapted to sources with ratios of their own: within the target of brute force") {
+    constexpr double target = 0.2;
+    const Work work = with_own_growths(GENERATE(isotropic_sphere(), oblong_box()));
+    CAPTURE(work.name);
+    const auto space = editable(structure.entry->make(work.options(structure.split)));
+    const AdaptationReport report = space->adapt(
+        {.sources = work.sources, .continuous = nullptr, .ratio = g, .target = target});
+    CHECK(report.met);
+    // Quadratic leaves are sampled, the others proved.
+    const double slack = structure.entry->has<QuadraticLeaves>() ? 1.3 : 1;
+    CHECK(largest_nonconformity(*space, work) <= slack * target);
+    // Another ratio would be seen.
+    Work alike = work;
+    for (PointSource& source : alike.sources) source.growth = 0;
+    CHECK(largest_nonconformity(*space, alike) > 2 * target);
+}
+
+STRUCTURE_CASE(every_structure,
+               "a source that is coarser, but less steep, counts away from its place") {
+    Work work{"two", {}};
+    work.sources.push_back({Point(0.1, 0.1, 0.1), Metric::isotropic(0.1), 2});
+    work.sources.push_back({Point(0.12, 0.1, 0.1), Metric::isotropic(0.15), 1});
+    const auto space = work.graded(structure);
+    const Metric far = sample_at(*space, Point(-0.9, -0.9, -0.9));
+    CHECK(far.xx == Approx(0.15).epsilon(1e-3));
+}
+
+STRUCTURE_CASE(every_structure, "a ratio that is none is refused, with the index of its source") {
+    const Work work = isotropic_sphere();
+    const auto space = editable(structure.entry->make(work.options(structure.split)));
+    for (const double bad : {0.9, -1.0, 1e7, std::numeric_limits<double>::quiet_NaN()}) {
+        std::vector<PointSource> sources(work.sources.begin(), work.sources.begin() + 3);
+        sources[2].growth = bad;
+        CHECK_THROWS_WITH(space->insert(sources),
+                          Catch::Contains("source 2 has the gradation ratio"));
+    }
+}
+
+TEST_CASE("gradation from node to node is refused for ratios of their own") {
+    const Work work = with_own_growths(isotropic_sphere());
+    const Structure structure = structures_that(splits_in_the_middle).front();
+    const auto space = work.inserted(structure);
+    CHECK_THROWS_WITH(space->grade({.law = GradationLaw::mean_length}),
+                      Catch::Contains("ratios of their own"));
+    CHECK_THROWS_WITH(space->grade({.schedule = GradationSchedule::queue}),
+                      Catch::Contains("ratios of their own"));
+    space->adapt({.sources = work.sources, .continuous = nullptr, .ratio = g, .target = 1});
+    CHECK_THROWS_WITH(space->insert(work.sources),
+                      Catch::Contains("source 1 has a gradation ratio"));
+    space->insert(work.sources.front());
+}
