@@ -39,10 +39,10 @@ public:
             const Anchor& a = anchors_[i];
             const Numbers gaps = a.at_centre - most_at_centre;
             const double slope = a.cone.slope;
+            const Numbers in_parallel = gaps + (slope - slopes).abs() * radius_;
+            const Numbers turned = 2 * slopes * radius_ * apart(a.cone.position);
             is_covered = is_covered || gaps + (slope + slopes) * radius_ <= 0 ||
-                         (gaps + (slope - slopes).abs() * radius_) * (a.away + away) +
-                                 2 * slopes * radius_ * apart(a.cone.position) <=
-                             0;
+                         (in_parallel <= 0 && in_parallel * (a.away + away) + turned <= 0);
         }
         return is_covered;
     }
