@@ -40,7 +40,7 @@ void check_between_nodes(const ControlSpace& space, int order, const Work& work)
     for (const Point& x : random_points(work.domain, 200, 5)) {
         const Metric m = sample_at(space, x);
         for (std::size_t i = 0; i < work.sources.size(); i += 1 + work.sources.size() / 30) {
-            const auto& [position, metric, growth] = work.sources[i];
+            const auto& [position, metric, own_growth] = work.sources[i];
             const Metric cone = (1 + (g - 1) * metric_length(metric, x - position)) * metric;
             worst = std::max(worst, growth(m, cone) / growth_at_nodes(space, order, x, cone));
         }

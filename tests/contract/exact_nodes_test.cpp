@@ -38,13 +38,14 @@ std::vector<Metric> exact_at(const Work& work, const std::vector<Point>& x) {
 // x; blends of such are, too. Quadratic functions stay within the cone of their leaf's metric.
 double explained_by_leaf(const ControlSpace& space, int order, const Point& x, const Metric& m,
                          double steepest) {
-    const double g = steepest;
     const Box cell = space.cell_at(x).value();
-    const auto from = [&](const Point& node) { return 1 + (g - 1) * metric_length(m, node - x); };
+    const auto from = [&](const Point& node) {
+        return 1 + (steepest - 1) * metric_length(m, node - x);
+    };
     if (order == 0) return from(cell.centre());
     if (order == 2) {
         const Metric own = sample_at(space, cell.centre());
-        return from(cell.centre()) * (1 + (g - 1) * metric_length(own, x - cell.centre()));
+        return from(cell.centre()) * (1 + (steepest - 1) * metric_length(own, x - cell.centre()));
     }
     double most = 1;
     for (int i = 0; i < 8; ++i) most = std::max(most, from(corner(cell, i)));

@@ -44,7 +44,9 @@ std::vector<PointSource> read_medit_mesh(const std::filesystem::path& mesh, cons
     try {
         return read_medit_required_edges(mesh);
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}; or put a solution ({}) beside it", error.what(), likely));
+        throw InputError(fmt::format("{} is missing, and the mesh has no lengths of its own: {}",
+                                     std::filesystem::path(mesh).replace_extension(likely).string(),
+                                     error.what()));
     }
 }
 
