@@ -53,7 +53,8 @@ public:
                 const Point& x = part[i].position;
                 const double enough = let_pass * part[i].metric.xx;
                 const bool met = ceiling(tree, requested, leaf, x) <= enough &&
-                                 std::isfinite(enough) && tree.domain().contains(x);
+                                 std::isfinite(enough) && tree.domain().contains(x) &&
+                                 is_source_growth(part[i].growth);
                 met_[i] = met ? 1 : 0;
             });
     }
