@@ -125,11 +125,11 @@ def log_axis(axis, label, low=None, high=None):
 
 
 def colour_bar(image, axes, label):
-    """With three to six numbers."""
+    """With three numbers or a few more, which do not cover each other."""
     low, high = image.get_clim()
     ticks = log_ticks(low, high).tick_values(None, None)
-    if len(ticks) > 6:
-        ticks = [low, *(low * (high / low) ** (i / 3) for i in (1, 2)), high]
+    if len(ticks) > 4:
+        ticks = ticks[::2] if high > 1000 * low else [low, math.sqrt(low * high), high]
     bar = image.axes.figure.colorbar(image, ax=axes, location="bottom", aspect=30, label=label,
                                      ticks=ticks, format=StrMethodFormatter("{x:.2g}"))
     bar.ax.minorticks_off()
@@ -228,7 +228,9 @@ def label_apart(ax, points):
         px, py = ax.transData.transform((x, y)) / ax.figure.bbox.size
         if all(abs(px - qx) > 0.25 or abs(py - qy) > 0.04 for qx, qy in taken):
             taken.append((px, py))
-            ax.annotate(text, (x, y), (-5, -11), textcoords="offset points", ha="right", fontsize=9)
+            is_left = ax.transAxes.inverted().transform(ax.transData.transform((x, y)))[0] < 0.5
+            ax.annotate(text, (x, y), (5 if is_left else -5, -11), textcoords="offset points",
+                        ha="left" if is_left else "right", fontsize=9)
 
 
 def paper_figures(evidence, styles):

@@ -110,6 +110,12 @@ void require_sensible(const Case& c) {
     }
 }
 
+/// Fewer of the defaults too: who wants one split needs no remark on octrees.
+bool is_default(const Values& values, const Values& defaults) {
+    return std::ranges::all_of(
+        values, [&](const Value& value) { return std::ranges::count(defaults, value) > 0; });
+}
+
 }  // namespace
 
 const Values* Run::find(const std::string& key) const {
@@ -154,7 +160,7 @@ std::vector<std::string> settings_without_effect(const Study& study, const Case&
     for (const CaseParameter& p : rows.parameters) {
         if (!p.fits || p.fits(entry, c)) continue;
         const bool is_given = std::ranges::any_of(study.runs, [&](const Run& run) {
-            return run.values(p) != p.defaults &&
+            return !is_default(run.values(p), p.defaults) &&
                    std::ranges::count(chosen(run.structures(), rows.structures), &entry) > 0;
         });
         if (!is_given) continue;

@@ -65,7 +65,7 @@ void remark_on_gradation(Creation& creation, double g_r) {
     constexpr double rounding = 1e-6;
     const double left = creation.gradation.largest_ratio_left;
     if (left > g_r * (1 + rounding)) {
-        add_remark(creation, fmt::format("G left {:.4g}: neighbouring nodes differ by more than "
+        add_remark(creation, fmt::format("G left {:.4g}: lengths grow faster between nodes than "
                                          "g_r {:.4g}",
                                          left, g_r));
     }

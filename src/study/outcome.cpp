@@ -79,7 +79,9 @@ public:
         }
         const Rows smallest =
             least(within, [](const Row& row) { return row.number("bytes_total"); });
-        const Rows fastest = fastest_of(within, access_key);
+        Rows fastest = fastest_of(within, access_key);
+        std::ranges::stable_sort(fastest, {},
+                                 [](const Row* row) { return row->number(access_key); });
         const Rows accurate = least(within, factor_of, rounding);
         o.smallest = indices(smallest);
         o.fastest = indices(fastest);

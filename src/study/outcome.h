@@ -21,8 +21,8 @@ struct Outcome {
     std::size_t measured = 0;  ///< rows of this work
     std::vector<std::size_t> within = {};  ///< those of them within `factor`
     std::vector<std::size_t> smallest = {};
-    /// At random places: all whose quartiles overlap with those of the smallest median. Empty where
-    /// the rows within were not timed in turns.
+    /// At random places: all whose quartiles overlap with those of the smallest median, by rising
+    /// medians. Empty where the rows within were not timed in turns.
     std::vector<std::size_t> fastest = {};
     std::vector<std::size_t> most_accurate = {};
     /// The same in words, each a sentence: how many are within, and one for each wish; or that none

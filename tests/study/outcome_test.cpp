@@ -74,6 +74,8 @@ TEST_CASE("times whose quartiles overlap are indistinguishable, in one batch") {
     CHECK(only(rows).fastest == Indices{1, 4});
     CHECK_THAT(only(rows).sentences[2],
                Contains("indistinguishable between fast (0.9 MB, ") && Contains(" and near (1 MB"));
+    rows.back() = row_of("near", 1.1, 1'000'000, {8, 9, 10});
+    CHECK(only(rows).fastest == Indices{4, 1});
     rows.back() = row_of("far", 1.1, 1'000'000, {12, 13, 14});
     CHECK(only(rows).fastest == Indices{1});
     rows.back() = row_of("later", 1.1, 1'000'000, {1, 1, 1}, 1);
