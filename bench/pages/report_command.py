@@ -87,8 +87,7 @@ def front_page(results):
     for outcome in results.outcomes:
         title = f"Lengths within {outcome.factor:.4g}x"
         parts += titled(title + (f": {outcome.work}" if several else ""), outcome_parts(outcome))
-    return parts + [("fold", Fold("Where it is from", tables([origin_table(results)]),
-                                              False))]
+    return parts + [("fold", Fold("Where it is from", tables([origin_table(results)]), False))]
 
 
 def front_tables(rows):

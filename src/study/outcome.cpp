@@ -71,7 +71,7 @@ public:
             within, [&](const Row* row) { return !(factor_of(*row) <= factor * (1 + rounding)); });
         o.within = indices(within);
         const std::string error = fmt::format("within {:.4g}x of the reference's at all probes{}",
-                                              factor, is_asked ? "" : " (none was asked for)");
+                                              factor, is_asked ? "" : " (by default)");
         if (within.empty()) {
             o.sentences = {fmt::format("No structure has lengths {}.", error),
                            nearest(measured, factor, is_asked)};
@@ -105,8 +105,10 @@ private:
             finite.empty()
                 ? "All errors are infinite"
                 : fmt::format("Closest: {}", named(least(finite, factor_of, rounding), columns_));
-        return is_asked ? found + "; the remarks of the rows say what would help."
-                        : fmt::format("{}; --within {:.4g} adapts trees to it.", found, factor);
+        if (is_asked) return found + "; the remarks of the rows say what would help.";
+        // Trees are adapted to the exact field, not to another reference.
+        if (measured.front()->setting.reference != &exact_reference_kind()) return found + ".";
+        return fmt::format("{}; --within {:.4g} adapts trees to it.", found, factor);
     }
 
     std::vector<std::size_t> indices(const Rows& rows) const {

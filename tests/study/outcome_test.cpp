@@ -51,8 +51,7 @@ TEST_CASE("the smallest, the fastest and the most accurate are those within the 
     CHECK(outcome.most_accurate == Indices{3});
     CHECK(outcome.sentences ==
           std::vector<std::string>{
-              "Lengths within 1.25x of the reference's at all probes (none was asked for): 3 of 4 "
-              "rows.",
+              "Lengths within 1.25x of the reference's at all probes (by default): 3 of 4 rows.",
               "Smallest: small (0.41 MB, 19.0 ns per query, lengths within 1.240x).",
               "Fastest: fast (0.9 MB, 10.0 ns per query, lengths within 1.200x).",
               "Most accurate: exact (5 MB, 1000.0 ns per query, lengths within 1.000x)."});
@@ -96,7 +95,7 @@ TEST_CASE("a target is the error, with an outcome for each") {
     CHECK(all[0].is_asked);
     CHECK(all[0].within == Indices{3});
     CHECK(all[1].within == Indices{1, 3});  // at the target itself too
-    CHECK_THAT(all[1].sentences[0], Contains("within 1.2x of") && !Contains("none was asked"));
+    CHECK_THAT(all[1].sentences[0], Contains("within 1.2x of") && !Contains("by default"));
 }
 
 TEST_CASE("it is said when nothing is within the error, and what is closest") {
@@ -104,10 +103,12 @@ TEST_CASE("it is said when nothing is within the error, and what is closest") {
     CHECK(only(rows).within.empty());
     CHECK(only(rows).sentences ==
           std::vector<std::string>{
-              "No structure has lengths within 1.25x of the reference's at all probes (none was "
-              "asked for).",
+              "No structure has lengths within 1.25x of the reference's at all probes (by "
+              "default).",
               "Closest: coarse (0.1 MB, 5.0 ns per query, lengths within 1.600x); --within 1.25 "
               "adapts trees to it."});
+    rows[0].setting.reference = &published_sphere();
+    CHECK_THAT(only(rows).sentences[1], !Contains("adapts trees"));
     rows[0].setting.target_delta = 0.1;
     CHECK_THAT(only(rows).sentences[1], Contains("remarks of the rows"));
     rows[0].values["within_fine_max"] = std::numeric_limits<double>::infinity();

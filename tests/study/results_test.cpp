@@ -236,8 +236,8 @@ TEST_CASE("results.json says who made it and what was requested") {
     CHECK(json["rows"].size() == 1);
     CHECK(json["outcomes"].size() == 1);
     CHECK(json["outcomes"][0]["sentences"][0] ==
-          "No structure has lengths within 1.25x of the reference's at all probes (none was asked "
-          "for).");
+          "No structure has lengths within 1.25x of the reference's at all probes (by "
+          "default).");
     CHECK(json["descriptions"]["structures"]["K_L"] == "kd-tree, a constant metric in each leaf");
     CHECK(json["descriptions"]["settings"]["tau"] ==
           "l_min: longest edge of the leaf of a source [metric length at the source]");
