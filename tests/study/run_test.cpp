@@ -236,10 +236,10 @@ TEST_CASE("rows say which settings have no effect, and these have none") {
                                                 {"epsilon", 1e-4},
                                                 {"tau", 0.5},
                                                 {"splits", "s_Gx"},
-                                                {"kd_depth", 6},
-                                                {"octree_depth", 2},
+                                                {"kd_depth", 3},
+                                                {"octree_depth", 1},
                                                 {"interpolation", "published"},
-                                                {"target_delta", 0.1},
+                                                {"target_delta", 0.02},
                                                 {"equal_delta", 0.5},
                                                 {"equal_memory", 0.1},
                                                 {"voxel", 0.3},
@@ -282,7 +282,6 @@ TEST_CASE("rows say which settings have no effect, and these have none") {
     if (given.key == std::string("target_delta")) {
         // All trees can be adapted, and nothing else.
         CHECK(without == 8);
-        CHECK(changed == after.size() - without);
     }
 }
 
