@@ -2,7 +2,7 @@
 import math
 from collections import namedtuple
 
-from .figures import Spec, grouped, height_of, legend_outside, lines_axis, log_axis
+from .figures import Spec, grouped, height_of, legend_below, lines_axis, log_axis
 from .table import table_of
 
 # What is compared: the name, what less and more of it are called, the measure, and how it is drawn.
@@ -115,5 +115,5 @@ def change_figures(pairs):
                                 markerfacecolor=measure.colour if measure.full else "none")
             lines_axis(ax, [before.label for before, _ in members])
             log_axis(ax.xaxis, "after / before")
-            legend_outside(ax)
+            legend_below(ax)
         yield Spec("change", {"group": group}, plot, height=height_of(len(members), 34))

@@ -11,6 +11,9 @@ from .figures import (SMALLEST_ERROR, Spec, colour_bar, drawn, height_of, legend
 from .results import InputError
 from .table import table_of
 
+# The larger an error, the brighter; lengths in colours of their own.
+DELTA_COLOURS, LENGTH_COLOURS = "inferno", "viridis"
+NUMBERED = 8  # as many structures have their numbers in the cells of a matrix
 VISIBLE_ANISOTROPY = 1.01  # below it, lengths in all directions are the same to the eye
 COMPONENTS = [[0, 3, 4], [3, 1, 5], [4, 5, 2]]  # xx yy zz xy xz yz as a matrix
 
@@ -114,8 +117,7 @@ def delta_figure(sampled):
         ax.set_ylim(0.8, n + 1)
         log_axis(ax.xaxis, "δ to the exact field", low, high)
         legend_above(ax)
-    yield Spec("delta", {"group": structures[0].row.group, "classes": classes}, plot,
-               height=height_of(len(structures), 40))
+    yield Spec("delta", {}, plot, height=height_of(len(structures), 40))
 
 
 def delta_table(sampled):
@@ -128,71 +130,89 @@ def delta_table(sampled):
     return table_of("delta", rows)
 
 
-def cross_validation(sampled):
+PAIR_PERCENTILES = [("95th percentile", 95), ("maximum", 100)]
+
+
+def pair_deltas(sampled):
+    """Labels, and a matrix of δ between any two for each of PAIR_PERCENTILES."""
     _, exact, structures = sampled
     samples = [exact, *structures]
     n = len(samples)
-    pairs = np.zeros((2, n, n))
+    pairs = np.zeros((len(PAIR_PERCENTILES), n, n))
     for i in range(n):
         for j in range(i):
-            values = percentiles(nonconformity(samples[i].probes, samples[j].probes), (95, 100))
+            values = percentiles(nonconformity(samples[i].probes, samples[j].probes),
+                                 [p for _, p in PAIR_PERCENTILES])
             pairs[:, i, j] = pairs[:, j, i] = values
-    labels = [sample.label for sample in samples]
+    return [sample.label for sample in samples], pairs
 
-    def plot(figure):
-        for ax, title, values in zip(figure.subplots(1, 2, sharey=True),
-                                     ("95th percentile", "maximum"), pairs):
-            image = ax.imshow(np.maximum(values, SMALLEST_ERROR), cmap="inferno_r",
-                              norm=LogNorm(SMALLEST_ERROR, 10))
-            for (i, j), value in np.ndenumerate(values):
-                ax.text(j, i, f"{value:.0e}" if 0 < value < 0.01 else f"{value:.2g}", ha="center",
-                        va="center", fontsize=6, color="white" if value > 0.05 else "black")
-            ax.set_title(f"δ, {title}", fontsize=9)
-            ax.set_xticks(range(n), labels, rotation=45, ha="right")
+
+def short(value):
+    return f"{value:.0e}" if 0 < value < 0.01 else f"{value:.2g}"
+
+
+def cross_validation(sampled):
+    labels, pairs = pair_deltas(sampled)
+    n = len(labels)
+    for (title, _), values in zip(PAIR_PERCENTILES, pairs):
+        def plot(figure, values=values):
+            ax = figure.subplots()
+            image = ax.imshow(np.maximum(values, SMALLEST_ERROR), cmap=DELTA_COLOURS,
+                              norm=LogNorm(SMALLEST_ERROR, 10), aspect="auto")
+            for (i, j), value in np.ndenumerate(values if n <= NUMBERED else []):
+                ax.text(j, i, short(value), ha="center", va="center", fontsize=9,
+                        color="black" if value > 0.5 else "white")
+            ax.set_xticks(range(n), labels, rotation=60, ha="right", rotation_mode="anchor")
             ax.set_yticks(range(n), labels)
             ax.grid(False)
-        colour_bar(image, figure.axes)
-    side, names = min(max(40 * n, 240), 6000), 7 * max(map(len, labels))
-    yield Spec("cross-validation", {"group": structures[0].row.group}, plot,
-               2 * side + names + 120, side + names + 80)
+            colour_bar(image, ax, "δ between two structures")
+        yield Spec("cross-validation", {"which": title}, plot, height=360 + 20 * n, raster=True)
+
+
+def pairs_table(sampled):
+    labels, pairs = pair_deltas(sampled)
+    rows = [[f"{a}, {b}", *(short(values[i, j]) for values in pairs)]
+            for i, a in enumerate(labels) for j, b in enumerate(labels) if j < i]
+    return table_of("pairs", rows)
 
 
 def slice_figures(sampled):
+    """The exact field, then each structure and its error."""
     about, exact, structures = sampled
     x0, x1, y0, y1 = about["domain"][:4]
     measures = [("h_mean [length]", mean_length)]
     if np.nanmax(anisotropy(exact.slice)) > VISIBLE_ANISOTROPY:
         measures.append(("anisotropy", anisotropy))
-    delta_norm = LogNorm(SMALLEST_ERROR, 10)
+    norms = []
+    for _, measure in measures:
+        values = measure(exact.slice)
+        known = values[np.isfinite(values) & (values > 0)]
+        norms.append(LogNorm(known.min(), max(known.max(), 1.01 * known.min())))
 
-    def panel(ax, values, title, norm, cmap="viridis", outlines=None):
-        image = ax.imshow(values, extent=(x0, x1, y0, y1), origin="lower", cmap=cmap, norm=norm,
+    def panel(ax, values, label, norm, colours, outlines=None):
+        image = ax.imshow(values, extent=(x0, x1, y0, y1), origin="lower", cmap=colours, norm=norm,
                           interpolation="nearest")
         if outlines is not None:
             corners = outlines[:, [[0, 3], [0, 1], [2, 1]]]  # left and lower sides
             ax.add_collection(LineCollection(corners, colors="white", linewidths=0.3, alpha=0.5))
-        ax.set(xlabel="x [length]", ylabel="y [length]", xlim=(x0, x1), ylim=(y0, y1))
-        ax.set_title(title, fontsize=9)
+        ax.set(xlim=(x0, x1), ylim=(y0, y1))
         ax.grid(False)
-        colour_bar(image, ax)
+        colour_bar(image, ax, label)
 
-    for sample in structures:
-        def plot(figure):
-            axes = figure.subplots(len(measures), 3, squeeze=False)
-            for line, (name, measure) in zip(axes, measures):
-                values = measure(exact.slice)
-                known = values[np.isfinite(values) & (values > 0)]
-                norm = LogNorm(known.min(), max(known.max(), 1.01 * known.min()))
-                panel(line[0], values, f"exact: {name}", norm)
-                panel(line[1], measure(sample.slice), f"{sample.label}: {name}", norm,
-                      outlines=sample.outlines)
-                line[2].set_axis_off()
-            axes[0][2].set_axis_on()
-            delta = np.maximum(nonconformity(sample.slice, exact.slice), SMALLEST_ERROR)
-            panel(axes[0][2], delta, "error: δ", delta_norm, "inferno_r")
-        yield Spec("slice", {
-            "z": about["z"], "label": sample.label, "group": sample.row.group,
-            "shown": "Mean length" + (" (anisotropy below it)" if len(measures) > 1 else ""),
-            "cells": "with its cells" if sample.outlines is not None
-            else "whose cells are too many to be drawn"},
-            plot, 1200, 400 * len(measures), raster=True)
+    for sample in [exact, *structures]:
+        def plot(figure, sample=sample):
+            panels = [(measure(sample.slice), name, norm, LENGTH_COLOURS, sample.outlines)
+                      for (name, measure), norm in zip(measures, norms)]
+            if sample.row:
+                delta = np.maximum(nonconformity(sample.slice, exact.slice), SMALLEST_ERROR)
+                panels.append((delta, "error δ", LogNorm(SMALLEST_ERROR, 10), DELTA_COLOURS))
+            axes = figure.subplots(1, max(2, len(panels)), squeeze=False)[0]
+            for ax, content in zip(axes, panels):
+                panel(ax, *content)
+                ax.set_xticks([x0, x1])
+                ax.set_yticks([y0, y1])
+            for ax in axes[len(panels):]:
+                ax.set_axis_off()
+        cells = "" if sample.outlines is not None or not sample.row else " (too many cells)"
+        yield Spec("slice", {"label": (sample.label if sample.row else "exact field") + cells},
+                   plot, width=440 + 220 * (len(measures) - 1), height=300, raster=True)

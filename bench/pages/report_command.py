@@ -7,20 +7,33 @@ import jinja2
 
 from . import compare_runs, fields, figures, paper_page
 from .command import OK
+from .glossary import Glossary
 from .paper import Evidence
 from .paper_command import evidence_in
-from .results import KNOWN, read_results, write_file
+from .results import own_measures, read_results, write_file
 from .table import fixed, table_of
 
-Section = namedtuple("Section", "title parts")  # parts: (kind, item) as report.html.j2 shows them
+# parts: (kind, item) as report.html.j2 shows them; a part "fold" holds parts that may be opened.
+Section = namedtuple("Section", "title parts")
+Fold = namedtuple("Fold", "title parts is_open")
 
 
 def tables(items):
     return [("table", table) for table in items]
 
 
-def titled(title, found):
-    return [("heading", title), ("figures", found)] if found else []
+def titled(title, parts):
+    return [("heading", title), *parts] if parts else []
+
+
+def drawn(specs, prefix):
+    found = figures.draw(specs, prefix)
+    return [("figures", found)] if found else []
+
+
+def folds(items):
+    """The first one open."""
+    return [("fold", Fold(title, parts, i == 0)) for i, (title, parts) in enumerate(items)]
 
 
 def origin_table(results):
@@ -35,7 +48,50 @@ def origin_table(results):
          f"{'' if results.complete else '; not complete: cases are missing'}"]])
 
 
+def counted(number, what):
+    return f"{number} {what}{'' if number == 1 else 's'}"
+
+
+def compared(results):
+    """What was compared, in a paragraph."""
+    rows, settings, head = results.rows, results.settings, results.head
+    numbers = sorted({row.sources for row in rows})
+    sources = "–" if not numbers else counted(numbers[0], "source") if len(numbers) == 1 else \
+        f"{numbers[0]} to {numbers[-1]} sources"
+    structures = len(dict.fromkeys(map(figures.structure_of, rows)))
+    works = len(dict.fromkeys(row.work for row in rows))
+    failed = len(rows) - len(results.measured)
+    return (f"{counted(structures, 'structure')} in {counted(len(rows), 'row')}"
+            f"{f', of which {failed} failed' if failed else ''}, on {sources} "
+            f"({settings.get('sources')}) under {counted(works, 'requested field')}: memory, "
+            f"creation and access times, and the error at {settings.get('probe_grid')}³ and "
+            f"{settings.get('fine_probe_grid')}³ probes. Measured with controlspace "
+            f"{results.version} on {head['cpu']}, {head['date']}."
+            f"{'' if results.complete else ' Not complete: cases are missing.'}")
+
+
+def outcome_parts(outcome):
+    lines = [[wish.replace("_", " "), row.method, fixed(row["memory_MB"]),
+              fixed(row["t_access_ns_random"], 1),
+              f"{fixed(max(row['within_max'], row['within_fine_max']), 3)}x"]
+             for wish, rows in outcome.wishes.items() for row in rows]
+    return [("sentences", outcome.sentences)] + (tables([table_of("outcome", lines)]) if lines else [])
+
+
+def front_page(results):
+    parts = [("paragraph", compared(results))]
+    if not results.outcomes:
+        parts.append(("paragraph", "Which structure to take is not in these results: they are not "
+                      "complete, or of an older program. The fronts below show which are candidates."))
+    several = len({outcome.work for outcome in results.outcomes}) > 1
+    for outcome in results.outcomes:
+        title = f"Lengths within {outcome.factor:.4g}x"
+        parts += titled(title + (f": {outcome.work}" if several else ""), outcome_parts(outcome))
+    return parts + [("fold", Fold("Where it is from", tables([origin_table(results)]), False))]
+
+
 def front_tables(rows):
+    """A table for each work."""
     for work, members in figures.fronts(rows).items():
         fronts = [(name, figures.front_of(members, cost, "delta_R_fine_max"))
                   for name, (_, _, cost) in zip(("memory", "access"), figures.COSTS)]
@@ -44,12 +100,12 @@ def front_tables(rows):
                   ", ".join(name for name, front in fronts if row in front)]
                  for row in sorted(members, key=lambda r: r["delta_R_fine_max"])
                  if any(row in front for _, front in fronts)]
-        yield table_of("front", lines, work=work)
+        yield work, table_of("front", lines)
 
 
 def measure_cells(row):
     if row.measures is None:
-        return ["–"] * 12 + [f"failed: {row.error}"]
+        return ["–"] * 12  # as many as below
     # Older results do not have these.
     share = row.measures.get("coarser_fine_share")
     within = row.measures.get("within_fine_max")
@@ -58,44 +114,87 @@ def measure_cells(row):
                ("delta_R_fine_max", 4)]
     return [str(row["cells"] or "–"), *(fixed(row[key], digits) for key, digits in numbers),
             "–" if share is None else f"{100 * share:.2f} %",
-            "–" if within is None else f"{fixed(within, 3)}x", fixed(row["gradation_max_left"], 4),
-            row["remark"]]
+            "–" if within is None else f"{fixed(within, 3)}x", fixed(row["gradation_max_left"], 4)]
+
+
+def remark_on(row):
+    return f"failed: {row.error}" if row.measures is None else row["remark"]
 
 
 def measure_tables(rows):
-    """All measures; those that texts.toml does not know have columns of their own."""
-    more = list(dict.fromkeys(key for row in rows if row.measures
-                              for key, value in row.measures.items() if key not in KNOWN
-                              and isinstance(value, (int, float))))
+    """For each group a table of all measures; those that texts.toml does not know have columns of
+    their own."""
+    more = own_measures(rows)
 
     def own(row):
         values = (row.measures.get(key) if row.measures else None for key in more)
         return ["–" if value is None else f"{value:.4g}" for value in values]
 
-    return [table_of("measures", [[row.label, *measure_cells(row), *own(row)] for row in members], more,
-                     group=group)
-            for group, members in figures.grouped(rows, figures.group_of).items()]
+    return {group: table_of("measures", [[row.label, *measure_cells(row), *own(row), remark_on(row)]
+                                         for row in members], [*more, "<remark"])
+            for group, members in figures.grouped(rows, figures.group_of).items()}
 
 
-def results_section(results, styles, drawn):
+def front_parts(rows, styles, prefix):
+    """For each work its figures and its table; figures of a kind are numbered through."""
+    found = figures.draw(figures.pareto_figures(rows, styles), prefix)
+    each = len(figures.COSTS)
+    parts = []
+    for i, (work, table) in enumerate(front_tables(rows)):
+        largest, mean = (found[each * k:each * (k + 1)] for k in (2 * i, 2 * i + 1))
+        parts.append((work, [("figures", largest), ("table", table),
+                             ("fold", Fold("By mean errors", [("figures", mean)], False))]))
+    return folds(parts)
+
+
+def paper_parts(evidence, styles, prefix):
+    if not evidence.cells:
+        return []
+    return [("paragraph", paper_page.headline(evidence)
+             + " Cell by cell, with the reasons: bench/paper writes paper.md."),
+            *drawn(figures.paper_figures(evidence, styles), prefix),
+            *folds([("Conclusions, ranks and verdicts",
+                     tables(paper_page.summary_tables(evidence))),
+                    ("Tables 1-4, ours beside the paper's",
+                     tables(paper_page.side_by_side(evidence))),
+                    ("Experiments", tables(paper_page.experiment_tables(evidence)))])]
+
+
+def accuracy_parts(sampled, prefix):
+    if not sampled:
+        return [("paragraph", "Fields are not shown: they were not sampled, or are not kept.")]
+    return [("paragraph", "Of the structures of the first setting, each with its first split: "
+             f"{sampled[2][0].row.group}."),
+            ("beside", [*drawn(fields.delta_figure(sampled), prefix),
+                        ("table", fields.delta_table(sampled))]),
+            *drawn(fields.cross_validation(sampled), prefix),
+            ("fold", Fold("δ between any two structures, in numbers",
+                          tables([fields.pairs_table(sampled)]), False))]
+
+
+def results_sections(results, styles, prefix, with_fields):
     rows = results.measured
     evidence = Evidence(*evidence_in(results.folder))
-    parts = tables([origin_table(results)])
-    parts += titled("Error against memory and access time",
-                    drawn(figures.pareto_figures(rows, styles)))
-    parts += tables(front_tables(rows))
-    if evidence.cells:
-        parts += [("heading", "The paper's tables"), ("paragraph", paper_page.headline(evidence)),
-                  ("figures", drawn(figures.paper_figures(evidence, styles)))]
-        parts += tables(paper_page.summary_tables(evidence) + paper_page.side_by_side(evidence)
-                        + paper_page.detail_tables(evidence))
-    parts += titled("Creation time", drawn(figures.creation_figures(rows, styles)))
-    parts += titled("Access time", drawn(figures.access_figures(rows)))
-    parts += tables(measure_tables(results.rows))
-    return Section(f"{results.settings.get('name')} ({results.folder})", parts)
+    sampled = fields.sampled_fields(results) if with_fields else None
+    times = titled("Creation", drawn(figures.creation_figures(rows, styles), prefix)) \
+        + titled("Access", drawn(figures.access_figures(rows), prefix))
+    sections = [Section("Outcome", front_page(results)),
+                Section("Fronts: error against memory and access time",
+                        front_parts(rows, styles, prefix))]
+    if with_fields:
+        sections.append(Section("Accuracy", accuracy_parts(sampled, prefix)))
+    sections.append(Section("Times", times))
+    if sampled:
+        about = f"z = {sampled[0]['z']:.4g}"
+        sections.append(Section(f"Slices at {about}", drawn(fields.slice_figures(sampled), prefix)))
+    sections.append(Section("The paper's tables", paper_parts(evidence, styles, prefix)))
+    sections.append(Section("All measures", [
+        ("fold", Fold(group, [("table", table)], False))
+        for group, table in measure_tables(results.rows).items()]))
+    return [section for section in sections if section.parts]
 
 
-def comparison_section(before, after, drawn):
+def comparison_section(before, after, prefix):
     pairs = compare_runs.row_pairs(before, after)
     a, b = before.head, after.head
     parts = [("paragraph", f"{len(pairs)} rows of {len(before.rows)} have the same setting as one of "
@@ -108,32 +207,50 @@ def comparison_section(before, after, drawn):
                                    "be compared."))
     if pairs:
         parts += [*tables([compare_runs.counts_table(pairs)]),
-                  ("figures", drawn(compare_runs.change_figures(pairs))),
+                  *drawn(compare_runs.change_figures(pairs), prefix),
                   *tables(compare_runs.change_tables(pairs))]
     return Section(f"{after.folder} after {before.folder}", parts)
 
 
-def fields_section(results, drawn):
-    sampled = fields.sampled_fields(results)
-    parts = [("paragraph", "Fields are not shown: they were not sampled, or are not kept.")]
-    if sampled:
-        parts = [("paragraph", "Structures of the first setting, each with its first split."),
-                 ("figures", drawn(fields.delta_figure(sampled))
-                  + drawn(fields.cross_validation(sampled))),
-                 *tables([fields.delta_table(sampled)]),
-                 ("figures", drawn(fields.slice_figures(sampled)))]
-    return Section(f"Fields of {results.settings.get('name')}", parts)
+def numbered(sections):
+    """Sections with the addresses of theirs and of their headings, as the table of contents has
+    them: {"address", "title", "parts", "entries"}; a heading is (address, title) then."""
+    found = []
+    for i, section in enumerate(sections, 1):
+        address, parts, entries = f"section-{i}", [], []
+        for kind, item in section.parts:
+            if kind in ("heading", "fold"):
+                entries.append((f"{address}-{len(entries) + 1}",
+                                item.title if kind == "fold" else item))
+                item = (entries[-1][0], item)
+            parts.append((kind, item))
+        found.append({"address": address, "title": section.title, "parts": parts,
+                      "entries": entries})
+    return found
 
 
-def page(title, sections):
+def page(title, sections, all_results=()):
     """The page, well-formed XML too; control characters, which it must not hold, become blanks."""
     def clean(value):
-        return "".join(c if c >= " " else " " for c in value) if isinstance(value, str) else value
+        if not isinstance(value, str) or all(c >= " " for c in value):
+            return value
+        return type(value)("".join(c if c >= " " else " " for c in value))
 
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
-                                     autoescape=True, finalize=clean,
-                                     undefined=jinja2.StrictUndefined)
-    return environment.get_template("report.html.j2").render(title=title, sections=sections)
+                                     autoescape=True, finalize=clean, trim_blocks=True,
+                                     lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    return environment.get_template("report.html.j2").render(
+        title=title, sections=numbered(sections), glossary=Glossary(all_results))
+
+
+def figures_in(parts):
+    for kind, item in parts:
+        if kind == "figures":
+            yield from item
+        elif kind == "fold":
+            yield from figures_in(item.parts)
+        elif kind == "beside":
+            yield from figures_in(item)
 
 
 def main(arguments):
@@ -152,23 +269,21 @@ def main(arguments):
     results = [read_results(folder) for folder in options.folders]
     styles = figures.Styles([row for r in results for row in r.rows])
 
-    def drawing(i, *made_from):
-        prefix = f"{i}-" if len(results) > 1 else ""
-        made_by = "; ".join(r.head["command_line"] for r in made_from)
-        return lambda specs: figures.draw(specs, prefix, made_by)
+    def prefix(i):
+        return f"{i}-" if len(results) > 1 else ""
 
-    sections = [comparison_section(results[0], after, drawing(i, results[0], after))
+    sections = [comparison_section(results[0], after, prefix(i))
                 for i, after in enumerate(results[1:], 2)]
     for i, found in enumerate(results, 1):
-        sections.append(results_section(found, styles, drawing(i, found)))
-        if not options.without_fields:
-            sections.append(fields_section(found, drawing(i, found)))
+        of = f"{found.folder}: " if len(results) > 1 else ""
+        sections += [Section(of + section.title, section.parts) for section in results_sections(
+            found, styles, prefix(i), not options.without_fields)]
     names = ", ".join(str(r.settings.get("name")) for r in results)
     path = (options.output or options.folders[0]) / "report.html"
-    text = page(f"Control spaces: {names}", sections)
+    text = page(f"Control spaces: {names}", sections, results)
     if options.figures:
-        for kind, items in (part for section in sections for part in section.parts):
-            for figure in items if kind == "figures" else ():
+        for section in sections:
+            for figure in figures_in(section.parts):
                 write_file(options.figures / f"{figure.name}.{figure.kind}", figure.bytes)
     write_file(path, text)
     print(f"Report: {path}")

@@ -2,7 +2,7 @@
 import json
 import math
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 
@@ -29,6 +29,16 @@ PROVENANCE = "version commit dirty compiler flags cpu cores threads date command
 def plain(x):
     """A number as short as it can be written: 1, 0.2, 1e-09."""
     return str(int(x)) if float(x).is_integer() and abs(x) < 1e15 else repr(x)
+
+
+@dataclass
+class Outcome:
+    """Which rows to take within an error, as the program judged: `sentences` say it."""
+
+    work: str
+    factor: float
+    wishes: dict  # "smallest" -> rows
+    sentences: list
 
 
 class Row:
@@ -70,6 +80,8 @@ class Results:
     settings: dict  # of the study
     rows: list
     complete: bool
+    outcomes: list = field(default_factory=list)     # none: of an older program, or not complete
+    descriptions: dict = field(default_factory=dict)  # "structures", "settings": {name: text}
 
     @property
     def measured(self):
@@ -111,6 +123,33 @@ def checked(m, setting):
                 **{key: m[time] * unit for key, (time, unit) in PAPER_TIMES.items()}}
 
 
+WISHES = ["smallest", "fastest", "most_accurate"]
+
+
+def outcome_of(data, rows):
+    texts = [data["work"], *data["sentences"]]
+    if not data["sentences"] or not all(isinstance(text, str) for text in texts):
+        raise ValueError("no sentences")
+    wishes = {wish: [rows[int(i)] for i in data[wish] if i >= 0] for wish in WISHES}
+    if any(row.measures is None for found in wishes.values() for row in found):
+        raise ValueError("a row that failed")
+    return Outcome(data["work"], float(data["factor"]), wishes, list(data["sentences"]))
+
+
+def descriptions_of(data):
+    found = {kind: dict(data[kind]) for kind in ("structures", "settings")}
+    if not all(isinstance(text, str) for texts in found.values() for text in texts.values()):
+        raise ValueError("descriptions are no texts")
+    return found
+
+
+def own_measures(rows):
+    """Keys of the numbers that a program measured beside those known here."""
+    return list(dict.fromkeys(key for row in rows if row.measures
+                              for key, value in row.measures.items() if key not in KNOWN
+                              and isinstance(value, (int, float))))
+
+
 def read_results(folder):
     """Throws InputError, naming the file, where results.json is missing or damaged."""
     file = Path(folder) / "results.json"
@@ -129,7 +168,14 @@ def read_results(folder):
                 rows.append(Row(row, defaults))
             except (KeyError, TypeError, ValueError, AttributeError) as error:
                 raise ValueError(f"row {number}: {described(error)}") from error
-        return Results(Path(folder), head, dict(data["settings"]), rows, bool(data["complete"]))
+        try:
+            outcomes = [outcome_of(outcome, rows) for outcome in data.get("outcomes", ())]
+        except (IndexError, KeyError, TypeError, ValueError) as error:
+            raise ValueError(f"outcomes: {described(error)}") from error
+        # Older results have neither.
+        descriptions = descriptions_of(data["descriptions"]) if "descriptions" in data else {}
+        return Results(Path(folder), head, dict(data["settings"]), rows, bool(data["complete"]),
+                       outcomes, descriptions)
     except OSError as error:
         raise InputError(f"{file}: {error.strerror.lower()}: give a folder of results") from error
     except (KeyError, TypeError, ValueError, AttributeError) as error:

@@ -13,6 +13,10 @@ class Table:
     columns: list  # headers; those that begin with "<" are aligned left
     rows: list = field(default_factory=list)
 
+    @property
+    def is_wide(self):
+        return len(self.columns) > 4 or any(len(str(text)) > 60 for row in self.rows for text in row)
+
     def heads(self):
         return [(c.removeprefix("<"), c.startswith("<")) for c in self.columns]
 

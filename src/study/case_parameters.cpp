@@ -39,6 +39,16 @@ bool is_octree(const CatalogueEntry& entry, const Case&) {
 bool is_graded(const CatalogueEntry& entry, const Case& c) {
     return entry.has<MetricNodes>() && !c.target_delta;
 }
+bool is_inserted_into(const CatalogueEntry& entry, const Case& c) {
+    return entry.has<SourceLeaves>() && !c.target_delta;
+}
+bool is_sized_by_tau(const CatalogueEntry& entry, const Case& c) {
+    return is_inserted_into(entry, c) || (entry.has<VoxelSize>() && !c.voxel);
+}
+/// Adapted trees are the same with all rules.
+bool is_cut_by_rule(const CatalogueEntry& entry, const Case& c) {
+    return entry.has<SplitRules>() && !c.target_delta;
+}
 
 /// The deepest level of trees of one kind.
 Access<Case> depth_if(bool with_split) {
@@ -135,12 +145,15 @@ CaseParameter of_samples(CaseParameter row) {
 CaseParameter form_of_g_r(const char* key, const char* help, double (*convert)(double)) {
     return {{key, "", help, ratio_from(convert)}, Role::work, {}, {}, {}, {}, "g_r"};
 }
-CaseParameter method(const char* key, const char* unit, const char* help, Access<Case> access,
-                     Values defaults, Label label) {
-    return {
-        {key, unit, help, std::move(access)}, Role::method, std::move(defaults), std::move(label)};
-}
 using Fits = std::function<bool(const CatalogueEntry&, const Case&)>;
+CaseParameter method(const char* key, const char* unit, const char* help, Access<Case> access,
+                     Values defaults, Fits fits, Label label) {
+    return {{key, unit, help, std::move(access)},
+            Role::method,
+            std::move(defaults),
+            std::move(label),
+            std::move(fits)};
+}
 CaseParameter structure(const char* key, const char* unit, const char* help, Access<Case> access,
                         Values defaults, Fits fits, Label label, const char* result_key = "") {
     return {{key, unit, help, std::move(access)},
@@ -187,14 +200,16 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
         work("law", "", "Law of gradation", word<Case>(&Case::law), {"cone"},
              word_label("{} law", &Case::law)),
         method("schedule", "", "Gradation of control nodes: by the sources, or from node to node",
-               word<Case>(&Case::schedule), {"sources"}, word_label("{}", &Case::schedule)),
+               word<Case>(&Case::schedule), {"sources"}, is_graded,
+               word_label("{}", &Case::schedule)),
         method("epsilon", "",
                "Insertion tolerance: non-conformity below which a source is satisfied",
-               number_of(&Case::epsilon), {0.2}, if_given("epsilon {}", &Case::epsilon)),
+               number_of(&Case::epsilon), {0.2}, is_inserted_into,
+               if_given("epsilon {}", &Case::epsilon)),
         method("tau", "metric length at the source", "l_min: longest edge of the leaf of a source",
-               number_of(&Case::tau), {1}, if_given("tau {}", &Case::tau)),
+               number_of(&Case::tau), {1}, is_sized_by_tau, if_given("tau {}", &Case::tau)),
         structure("splits", "", "Where kd-trees cut", word<Case>(&Case::split),
-                  {"s_L", "s_G", "s_M"}, has<SplitRules>, {}, "split"),
+                  {"s_L", "s_G", "s_M"}, is_cut_by_rule, {}, "split"),
         structure("kd_depth", "", "Deepest level of kd-trees, the root being 0", depth_if(true),
                   {42}, has<SplitRules>, {}, "max_depth"),
         structure("octree_depth", "", "Deepest level of octrees, the root being 0", depth_if(false),
@@ -261,6 +276,7 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
                   if_given("pruned at {:.4g}", &Case::prune_delta)),
     };
     std::ranges::find(rows, "reference", &CaseParameter::key)->use = Use::accuracy;
+    std::ranges::find(rows, "law", &CaseParameter::key)->fits = is_graded;
     return rows;
 }
 

@@ -110,6 +110,12 @@ void require_sensible(const Case& c) {
     }
 }
 
+/// Fewer of the defaults too: who wants one split needs no remark on octrees.
+bool is_default(const Values& values, const Values& defaults) {
+    return std::ranges::all_of(
+        values, [&](const Value& value) { return std::ranges::count(defaults, value) > 0; });
+}
+
 }  // namespace
 
 const Values* Run::find(const std::string& key) const {
@@ -145,6 +151,25 @@ void Run::set(const CaseParameter& parameter, const Values& values,
         list.push_back(target == &parameter ? value : target->access.get(c).front());
     }
     lists_[target->key] = std::move(list);
+}
+
+std::vector<std::string> settings_without_effect(const Study& study, const Case& c,
+                                                 const StudyRows& rows) {
+    const CatalogueEntry& entry = *find_entry(rows.structures, c.structure);
+    std::vector<std::string> names;
+    for (const CaseParameter& p : rows.parameters) {
+        if (!p.fits || p.fits(entry, c)) continue;
+        const bool is_given = std::ranges::any_of(study.runs, [&](const Run& run) {
+            return !is_default(run.values(p), p.defaults) &&
+                   std::ranges::count(chosen(run.structures(), rows.structures), &entry) > 0;
+        });
+        if (!is_given) continue;
+        std::string& name = names.emplace_back(p.key);
+        for (const CaseParameter& form : rows.parameters) {
+            if (form.same_as == p.key) name.append(" (").append(form.key).append(")");
+        }
+    }
+    return names;
 }
 
 std::vector<Case> expand(const Study& study, const StudyRows& rows) {

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -29,6 +30,10 @@ std::string outcome_of(const AdaptationReport& report) {
                        report.reached, factor);
 }
 
+void add_remark(Creation& creation, const std::string& remark) {
+    creation.remark.append(creation.remark.empty() ? "" : "; ").append(remark);
+}
+
 void adapt(Filled& filled, const Case& c, const Workload& workload) {
     AdaptationGoal goal{.sources = workload.sources,
                         .continuous = workload.field.field,
@@ -37,7 +42,10 @@ void adapt(Filled& filled, const Case& c, const Workload& workload) {
     if (c.target_delta) goal.target = *c.target_delta;
     const AdaptationReport report = filled.builder->adapt(goal);
     if (c.target_delta) {
-        filled.creation.remark = outcome_of(report);
+        add_remark(filled.creation, outcome_of(report));
+        if (std::isfinite(report.reached)) {
+            filled.creation.within = largest_factor_within(report.reached);
+        }
         if (report.met) return;
         filled.creation.shortfall =
             fmt::format("target {:.4g} (lengths within {:.4g}x) missed{}{}", goal.target,
@@ -50,6 +58,24 @@ void add_largest_ratio(GradationReport& gradation, const ControlSpace& space, Gr
                        Neighbourhood neighbourhood) {
     if (const auto nodes = control_nodes(space, neighbourhood)) {
         gradation.largest_ratio_left = largest_gradation(nodes->graph, nodes->metrics, law);
+    }
+}
+
+void remark_on_gradation(Creation& creation, double g_r) {
+    constexpr double rounding = 1e-6;
+    const double left = creation.gradation.largest_ratio_left;
+    if (left > g_r * (1 + rounding)) {
+        add_remark(creation, fmt::format("G left {:.4g}: lengths grow faster between nodes than "
+                                         "g_r {:.4g}",
+                                         left, g_r));
+    }
+}
+
+void remark_on_settings(Creation& creation, const Study& study, const Case& c,
+                        const StudyRows& rows) {
+    const std::vector<std::string> names = settings_without_effect(study, c, rows);
+    if (!names.empty()) {
+        add_remark(creation, fmt::format("without effect: {}", fmt::join(names, ", ")));
     }
 }
 
@@ -82,6 +108,8 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
         creation.gradation_s = {0};
         add_largest_ratio(creation.gradation, *filled.builder->build(), GradationLaw::cone,
                           Neighbourhood::faces);
+        remark_on_gradation(creation, c.g_r);
+        remark_on_settings(creation, study, c, rows);
         return filled;
     }
     const std::span<const PointSource> sources = workload.sources;
@@ -99,10 +127,12 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     }
     if (c.max_depth && space->footprint().depth >= *c.max_depth &&
         has_long_leaf(*space, sources, c.tau)) {
-        creation.remark = fmt::format(
-            "leaves of sources are longer than tau where level {} is the deepest allowed",
-            *c.max_depth);
+        add_remark(creation, fmt::format("leaves of sources are longer than tau where level {} is "
+                                         "the deepest allowed",
+                                         *c.max_depth));
     }
+    remark_on_gradation(creation, c.g_r);
+    remark_on_settings(creation, study, c, rows);
     return filled;
 }
 

@@ -70,6 +70,16 @@ std::vector<Measure> time_rows() {
     return rows;
 }
 
+/// What the probes found beyond the error that the remark states; empty where it is nothing.
+std::string found_by_probes(const Finished& f) {
+    if (f.creation.within == 0 || f.setting.reference != &exact_reference_kind()) return "";
+    constexpr double rounding = 1e-4;  // of the factor in the remark
+    const double found = std::max(f.accuracy.within(), f.accuracy_fine.within());
+    if (found <= f.creation.within * (1 + rounding + f.study.reference_tolerance)) return "";
+    return fmt::format("; the probes found more: δ {:.4g}, lengths within {:.4g}x",
+                       std::max(f.accuracy.max, f.accuracy_fine.max), found);
+}
+
 std::vector<Measure> accuracy_rows() {
     return {
         real("delta_S_max", [](const Finished& f) { return f.source_accuracy; }),
@@ -111,7 +121,7 @@ std::vector<Measure> accuracy_rows() {
          [](const Finished& f) { return fmt::format("{:016x}", f.access_random.checksum); }},
         {"remark",
          "",
-         [](const Finished& f) { return remark_on(f.creation, f.footprint); },
+         [](const Finished& f) { return remark_on(f.creation, f.footprint) + found_by_probes(f); },
          {"remark", "{}"}},
         {"shortfall", "", [](const Finished& f) { return f.creation.shortfall; }},
     };

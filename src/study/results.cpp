@@ -9,6 +9,7 @@
 
 #include "controlspace/error.h"
 #include "files/output_file.h"
+#include "study/outcome.h"
 #include "study/pareto.h"
 #include "study/results_json.h"
 #include "study/sampled_fields.h"
@@ -54,13 +55,17 @@ std::string json_line(const Row& row, const StudyRows& rows, bool is_first) {
     return (is_first ? "\n  " : ",\n  ") + dump(to_json(row, rows));
 }
 
-std::string json_tail(bool complete) {
-    return fmt::format("\n ],\n \"complete\": {}\n}}\n", complete);
+std::string json_tail(bool complete, std::span<const Outcome> outcomes = {}) {
+    std::string lines;
+    for (const Outcome& outcome : outcomes) {
+        lines.append(lines.empty() ? "\n  " : ",\n  ").append(dump(to_json(outcome)));
+    }
+    return fmt::format("\n ],\n \"outcomes\": [{}],\n \"complete\": {}\n}}\n", lines, complete);
 }
 
 std::string json_text(const Provenance& provenance, const Study& study, const StudyRows& rows,
                       std::span<const Row> written) {
-    std::string text = dump(head_json(provenance, study, rows.parameters), 1);
+    std::string text = dump(head_json(provenance, study, rows), 1);
     text.erase(text.rfind("\n}"));
     text += ",\n \"rows\": [";
     for (const Row& row : written) text += json_line(row, rows, &row == &written.front());
@@ -151,7 +156,7 @@ void ResultsFolder::finish(bool complete) {
                     complete ? "" : "Not complete: cases are missing.\n\n") +
             tables_text(written_, rows_, /*markdown=*/true));
     replace_file(folder_ / "pareto.json", pareto_json(written_, rows_.parameters));
-    json_.append("", json_tail(complete));
+    json_.append("", json_tail(complete, outcomes(written_, rows_)));
 }
 
 std::string tables_text(std::span<const Row> rows, const StudyRows& columns, bool markdown) {
@@ -159,7 +164,8 @@ std::string tables_text(std::span<const Row> rows, const StudyRows& columns, boo
     for (TextTable& table : pareto_tables(rows, columns.parameters)) {
         tables.push_back(std::move(table));
     }
-    return render(tables, markdown ? TableStyle::markdown : TableStyle::terminal);
+    const TableStyle style = markdown ? TableStyle::markdown : TableStyle::terminal;
+    return render(tables, style) + outcome_text(rows, columns, style);
 }
 
 std::string origin_text(const Provenance& p, bool complete) {

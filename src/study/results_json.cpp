@@ -96,6 +96,23 @@ constexpr std::pair<const char*, std::string Provenance::*> provenance_texts[] =
     {"date", &Provenance::date},
     {"command_line", &Provenance::command_line}};
 
+/// Of what stands in labels and remarks: structures, settings, and the words of these.
+Json descriptions(const StudyRows& rows) {
+    Json json = {{"structures", Json::object()}, {"settings", Json::object()}};
+    for (const CatalogueEntry& entry : rows.structures) {
+        json["structures"][entry.id] = entry.description;
+    }
+    for (const CaseParameter& p : rows.parameters) {
+        std::string text = p.help;
+        if (!p.unit.empty()) text.append(" [").append(p.unit).append("]");
+        for (const Choice& choice : p.access.choices) {
+            text.append("; ").append(choice.name).append(": ").append(choice.meaning);
+        }
+        json["settings"][p.key] = text;
+    }
+    return json;
+}
+
 }  // namespace
 
 Json to_json(const MeasuredValue& value) {
@@ -171,8 +188,8 @@ Json to_json(const Study& study) {
     return json;
 }
 
-Json head_json(const Provenance& provenance, const Study& study,
-               std::span<const CaseParameter> parameters) {
+Json head_json(const Provenance& provenance, const Study& study, const StudyRows& rows) {
+    const std::span<const CaseParameter> parameters = rows.parameters;
     Json json;
     json["schema_version"] = results_schema_version;
     json["program"] = "controlspace";
@@ -194,6 +211,7 @@ Json head_json(const Provenance& provenance, const Study& study,
         if (!p.same_as.empty() || p.defaults.empty()) continue;
         json["defaults"].emplace(result_key(p), to_json(p.access.type, p.defaults.front()));
     }
+    json["descriptions"] = descriptions(rows);
     return json;
 }
 

@@ -30,9 +30,9 @@ Json to_json(const Row& row, const StudyRows& rows);
 /// InputError or Json::exception for what is no such row.
 Row row_from_json(const Json& json, const StudyRows& rows, const SourcesChoice& sources);
 
-/// Everything in results.json before its rows: provenance, settings, and defaults of parameters.
-Json head_json(const Provenance& provenance, const Study& study,
-               std::span<const CaseParameter> parameters);
+/// Everything in results.json before its rows: provenance, settings, defaults of parameters, and
+/// descriptions of structures and settings by their names.
+Json head_json(const Provenance& provenance, const Study& study, const StudyRows& rows);
 
 /// The provenance, and the study without its runs. Throws as row_from_json does.
 Provenance provenance_from_json(const Json& head);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "study/grouped.h"
+#include "study/outcome.h"
 
 namespace controlspace {
 namespace {
@@ -22,18 +23,12 @@ std::string verdict(const Measure& measure, const Rows& rows, const StudyRows& c
     if (timed.size() < 2 || measure.column.least.empty()) return "";
     std::string what = measure.column.least;
     what.front() = static_cast<char>(std::toupper(what.front()));
-    const auto in_batch = [&](const Row* row) { return row->number("access_batch"); };
-    if (std::ranges::any_of(
-            timed, [&](const Row* row) { return in_batch(row) != in_batch(timed.front()); })) {
-        return fmt::format(" {}: no statement, since the rows were not timed in turns.", what);
-    }
-    const Row* least = *std::ranges::min_element(
-        timed, {}, [&](const Row* row) { return row->number(measure.key); });
     std::vector<std::string> labels;
-    for (const Row* row : timed) {
-        if (row->number(measure.key + "_q1") <= least->number(measure.key + "_q3")) {
-            labels.push_back(structure_label(row->setting, columns.parameters));
-        }
+    for (const Row* row : fastest_of(timed, measure.key)) {
+        labels.push_back(structure_label(row->setting, columns.parameters));
+    }
+    if (labels.empty()) {
+        return fmt::format(" {}: no statement, since the rows were not timed in turns.", what);
     }
     return fmt::format(" {}: {}{}.", what, labels.size() > 1 ? "indistinguishable between " : "",
                        fmt::join(labels, "; "));

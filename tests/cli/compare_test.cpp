@@ -41,6 +41,14 @@ TEST_CASE("all structures are compared on sources from a file") {
         CHECK(row["rho"].is_null());
         CHECK(row["gradation_max_left"] <= 1.2501);
     }
+    // It ends with which structure to take, in the words of the results.
+    REQUIRE(json["outcomes"].size() == 1);
+    std::string words = "\nWhich structure to take\n";
+    for (const auto& sentence : json["outcomes"][0]["sentences"]) {
+        words.append(sentence.get<std::string>()).append("\n");
+    }
+    CHECK_THAT(outcome.out, Contains(words + "\nResults: out"));
+    CHECK_THAT(file_text(box / "out" / "summary.md"), Contains("\n## Which structure to take\n"));
     // One line of progress for each case, as standard error is no terminal.
     CHECK(lines(outcome.err) == json["rows"].size());
 }

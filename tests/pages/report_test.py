@@ -1,6 +1,8 @@
 # report.html: the numbers of its figures and tables are those of rows; it is well-formed, needs no
 # other file, and is written whole or not at all.
+import base64
 import os
+import re
 import shutil
 import tempfile
 import unittest
@@ -8,7 +10,9 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
-from samples import ROOT, failed_row, json_row, results_of, run, times, with_fields, write_results
+from matplotlib import colormaps
+from samples import (ROOT, failed_row, json_row, outcome, paper_json_rows, results_of, run, times,
+                     with_fields, write_results)
 
 from pages import compare_runs, fields, figures
 from pages import report_command as report
@@ -92,16 +96,17 @@ class Figures(unittest.TestCase):
         rows = results_of(three_rows()).rows
         front = figures.front_of(rows, "memory_MB", "delta_R_fine_max")
         self.assertEqual([r.setting["structure"] for r in front], ["K_oL", "direct"])
-        found = figures.draw(figures.pareto_figures(rows, figures.Styles(rows)), "p-", "a command")
+        found = figures.draw(figures.pareto_figures(rows, figures.Styles(rows)), "p-")
         self.assertEqual([f.name for f in found], [f"p-pareto-0{i}" for i in (1, 2, 3, 4)])
         self.assertIn("K_oV", found[0].bytes.decode())
-        table, = report.front_tables(rows)
+        (work, table), = report.front_tables(rows)
+        self.assertEqual(work, rows[0].work)
         self.assertEqual([(r[0], r[4]) for r in table.rows],
                          [("direct", "memory, access"), ("K_oL", "memory")])
 
-    def test_access_times_of_a_group_are_one_figure(self):
+    def test_access_times_of_a_group_are_a_figure_for_each_order(self):
         found = list(figures.access_figures(results_of(three_rows()).rows))
-        self.assertEqual(len(found), 1)
+        self.assertEqual(len(found), 2)
         self.assertEqual(figures.grouped([1, 2, 3], lambda x: x % 2), {1: [1, 3], 0: [2]})
 
     def test_creation_times_are_drawn_where_the_number_of_sources_varies(self):
@@ -120,8 +125,19 @@ class Figures(unittest.TestCase):
     def test_70_structures_look_different(self):
         rows = results_of([json_row(f"K_{i}") for i in range(70)]).rows
         styles = figures.Styles(rows)
-        looks = {tuple(styles(f"K_{i}").values()) for i in range(70)}
-        self.assertEqual(len(looks), 70)
+        splits = [None, "s_G", "s_Gx", "s_M"]
+        looks = {tuple(styles(f"K_{i}", split).values()) for i in range(70) for split in splits}
+        self.assertEqual(len(looks), 70 * len(splits))
+
+    def test_every_axis_has_three_numbers_or_more(self):
+        for low, high in ((0.15, 0.16), (1e-4, 10), (0.03, 0.22), (1, 4.1), (5e-7, 900), (1, 1.01)):
+            ticks = figures.log_ticks(low, high).tick_values(None, None)
+            self.assertGreaterEqual(sum(low <= x <= high * (1 + 1e-9) for x in ticks), 3, (low, high))
+
+    def test_the_larger_an_error_the_brighter(self):
+        colours = colormaps[fields.DELTA_COLOURS](np.linspace(0, 1, 9))[:, :3]
+        brightness = colours @ [0.2126, 0.7152, 0.0722]
+        self.assertTrue((np.diff(brightness) > 0).all(), brightness)
 
 
 class Fields(WithFolder):
@@ -162,20 +178,26 @@ class Fields(WithFolder):
         self.assertEqual(table.rows[0], ["K_oL", "0.0000 (0.3000)", "0.0000 (0.4000)",
                                          "0.0000 (1.7800)"])
         self.assertEqual(table.rows[1][3], f"{delta:.4f} (1.7800)")
-        pairs, = figures.draw(fields.cross_validation(sampled), "", "")
-        self.assertIn(f"{delta:.2g}", pairs.bytes.decode())
-        shares, = figures.draw(fields.delta_figure(sampled), "", "")
+        self.assertEqual(len(figures.draw(fields.cross_validation(sampled))), 2)
+        pairs = {row[0]: row[1:] for row in fields.pairs_table(sampled).rows}
+        self.assertEqual(pairs["K_V s_L, K_oL"], [fields.short(delta)] * 2)
+        shares, = figures.draw(fields.delta_figure(sampled))
         self.assertIn("95th percentile", shares.bytes.decode())
-        slices = figures.draw(fields.slice_figures(sampled), "", "")
-        self.assertEqual([f.kind for f in slices], ["png", "png"])
+        slices = figures.draw(fields.slice_figures(sampled))
+        self.assertEqual([(f.kind, f.title) for f in slices], [
+            ("png", "exact field"), ("png", "K_oL"), ("png", "K_V s_L (too many cells)")])
         self.assertTrue(slices[0].bytes.startswith(b"\x89PNG"))
-        self.assertIn("with its cells", slices[0].caption)
-        self.assertIn("too many", slices[1].caption)
+        self.assertEqual(len({f.caption for f in slices}), 1)
 
     def test_anisotropy_is_shown_where_there_is_any(self):
         for anisotropy in (1, 2):
-            spec = next(fields.slice_figures(self.sampled(anisotropy=anisotropy)))
-            self.assertEqual("anisotropy" in spec.words["shown"], anisotropy > 1)
+            spec = list(fields.slice_figures(self.sampled(anisotropy=anisotropy)))[1]
+            figure = figures.plt.figure()
+            spec.plot(figure)
+            labels = " ".join(ax.get_xlabel() for ax in figure.axes)
+            figures.plt.close(figure)
+            self.assertEqual("anisotropy" in labels, anisotropy > 1)
+            self.assertIn("error δ", labels)
 
     def test_damaged_fields_are_named(self):
         self.sampled()
@@ -254,11 +276,12 @@ class TwoRuns(unittest.TestCase):
 
 class Page(unittest.TestCase):
     def test_texts_of_results_stand_in_the_page_as_texts(self):
-        figure = figures.Figure(HOSTILE, HOSTILE, HOSTILE, HOSTILE, 10, 10, "svg", b"foobar")
+        figure = figures.Figure(HOSTILE, HOSTILE, HOSTILE, 10, 10, "svg", b"foobar")
         table = Table(HOSTILE, HOSTILE, [f"<{HOSTILE}", "n"], [[HOSTILE, "1"]])
         page = report.page(HOSTILE, [report.Section(HOSTILE, [
             ("heading", HOSTILE), ("paragraph", HOSTILE), ("figures", [figure]),
-            ("table", table)])])
+            ("table", table), ("sentences", [HOSTILE]), ("beside", [("paragraph", HOSTILE)]),
+            ("fold", report.Fold(HOSTILE, [("paragraph", HOSTILE)], True))])])
         parsed(page)
         self.assertNotIn("<script>alert", page)
         self.assertNotIn("\x01", page)
@@ -273,9 +296,9 @@ class Page(unittest.TestCase):
         self.assertIn('onclick="sort_by(this)"', page)
 
     def test_measures_of_every_row(self):
-        tables = report.measure_tables(results_of(
+        tables = list(report.measure_tables(results_of(
             [json_row("K_oL"), json_row("K_oL", **CONE),
-             failed_row("no memory", structure="direct")]).rows)
+             failed_row("no memory", structure="direct")]).rows).values())
         self.assertEqual(len(tables), 2)
         self.assertEqual(tables[0].rows[0], [
             "K_oL", "103", "1.23", "1.750", "51.0", "11.0", "1.7800", "0.1000", "0.4000",
@@ -284,9 +307,88 @@ class Page(unittest.TestCase):
         # A measure of somebody's own.
         row = json_row("K_oL")
         row["node_share"] = 0.25
-        table, = report.measure_tables(results_of([row, json_row("K_V", "s_L")]).rows)
-        self.assertEqual((table.columns[-1], table.rows[0][-1], table.rows[1][-1]),
+        table, = report.measure_tables(results_of([row, json_row("K_V", "s_L")]).rows).values()
+        self.assertEqual((table.columns[-2], table.rows[0][-2], table.rows[1][-2]),
                          ("node_share", "0.25", "–"))
+
+
+class FrontPage(WithFolder):
+    def page_of(self, rows, **options):
+        write_results(self.folder, rows, **options)
+        self.assertEqual(run("report", self.folder).returncode, 0)
+        return (self.folder / "report.html").read_text()
+
+    def test_outcomes_stand_first_in_the_programs_words(self):
+        rows = three_rows()
+        page = self.page_of(rows, outcomes=[outcome(rows, [1], [0, 1], [2])])
+        tree = parsed(page)
+        first = next(tree.iter("section"))
+        self.assertEqual([e.text for e in first.iter("li")], outcome(rows, [], [], [])["sentences"])
+        lines = [["".join(cell.itertext()) for cell in line.iter("td")]
+                 for line in next(first.iter("tbody")).iter("tr")]
+        self.assertEqual(lines, [["smallest", "K_oV", "2.46", "200.5", "1.400x"],
+                                 ["fastest", "K_oL", "1.23", "51.0", "1.400x"],
+                                 ["fastest", "K_oV", "2.46", "200.5", "1.400x"],
+                                 ["most accurate", "direct", "3.69", "51.0", "1.400x"]])
+
+    def test_results_without_outcomes_say_so(self):
+        self.assertIn("Which structure to take is not in these results",
+                      self.page_of(three_rows(), described=False))
+
+    def test_damaged_outcomes_and_descriptions_are_refused(self):
+        rows = [json_row("K_oL"), failed_row("no memory", structure="K_V")]
+        good = outcome(rows, [0], [], [0])
+        for change in ({"smallest": [7]}, {"fastest": [1]}, {"sentences": []}, {"sentences": [1]},
+                       {"factor": None}, {"work": 5}):
+            write_results(self.folder, rows, outcomes=[{**good, **change}])
+            with self.assertRaisesRegex(InputError, "outcomes: "):
+                read_results(self.folder)
+        write_results(self.folder, rows, outcomes=[good])
+        self.assertEqual(len(read_results(self.folder).outcomes), 1)
+
+    def test_the_table_of_contents_leads_to_every_section(self):
+        rows = with_fields(self.folder, three_rows())
+        tree = parsed(self.page_of(rows, outcomes=[outcome(rows, [1], [0], [2])]))
+        ids = {e.get("id") for e in tree.iter()} - {None}
+        links = [a.get("href") for a in tree.iter("a")]
+        self.assertLessEqual({link.removeprefix("#") for link in links}, ids)
+        contents = next(tree.iter("nav"))
+        linked = {a.get("href").removeprefix("#") for a in contents.iter("a")}
+        for heading in tree.iter("h2"):
+            self.assertIn(heading.get("id"), linked)
+        titles = " ".join(h.text for h in tree.iter("h2"))
+        for title in ("Outcome", "Fronts", "Accuracy", "Times", "Slices", "All measures", "Glossary"):
+            self.assertIn(title, titles)
+
+    def test_a_caption_stands_once_for_its_figures(self):
+        page = self.page_of(with_fields(self.folder, three_rows()))
+        text = " ".join(parsed(page).itertext())
+        for kind in ("slice", "access", "cross-validation", "delta"):
+            caption = figures.TEXTS["figures"][kind]["caption"].split("{")[0][:60]
+            self.assertEqual(text.count(caption), 1, kind)
+
+    def test_every_name_on_the_page_has_its_entry_in_the_glossary(self):
+        own = json_row("K_V", "s_L", voxel=0.5, remark="without effect: target_delta (within)")
+        own["node_share"] = 0.25
+        rows = with_fields(self.folder, [*three_rows(), own], anisotropy=2) + paper_json_rows()
+        page = self.page_of(rows, outcomes=[outcome(rows, [1], [0, 1], [2])])
+        tree = parsed(page)
+        explained = {name for term in tree.iter("dt") for name in term.text.split(", ")}
+        heads = {"".join(head.itertext()) for head in tree.iter("th")}
+        used = {row["structure"] for row in rows}
+        # Measures of the tables: their heads, but for words of plain English.
+        for kind in ("measures", "front", "outcome", "delta"):
+            used |= {c for c in figures.TEXTS["tables"][kind]["columns"] if not c.startswith("<")}
+        self.assertIn("node_share", heads)
+        # Symbols anywhere, in figures too: words joined by "_", and Greek letters.
+        svgs = (base64.b64decode(image.get("src").split(",")[1]).decode() for image in
+                tree.iter("img") if image.get("src").startswith("data:image/svg"))
+        for text in [" ".join(tree.find("body").itertext()),
+                     *(" ".join(re.findall(r"<text[^>]*>([^<]*)", svg)) for svg in svgs)]:
+            used |= set(re.findall(r"(?<![\w/.-])[A-Za-zδρτε]+_[A-Za-z]\w*|[δρτε](?!\w)", text))
+        self.assertGreater(len(used), 40)
+        script = {"sort_by"}
+        self.assertEqual(used - explained - script - {"maximum"}, set())
 
 
 class Command(WithFolder):
@@ -305,8 +407,8 @@ class Command(WithFolder):
         self.assertTrue(all(image.startswith("data:image/") for image in images))
         ids = {figure.get("id") for figure in tree.iter("figure")}
         self.assertLessEqual({"pareto-01", "pareto-04", "paper-01", "access-01", "slice-01",
-                              "slice-02", "delta-01", "cross-validation-01"}, ids)
-        for text in ("controlspace …", "Of the conclusions that the paper", "All measures: rho 1"):
+                              "slice-03", "delta-01", "cross-validation-02"}, ids)
+        for text in ("controlspace …", "Of the conclusions that the paper", "All measures"):
             self.assertIn(text, page)
         # Again, elsewhere: the same page, and its figures as files.
         outcome = run("report", out, "--output", self.folder / "new", "--figures",
@@ -319,7 +421,7 @@ class Command(WithFolder):
         self.assertEqual(run("report", out).returncode, 0)
         self.assertIn("Fields are not shown", (out / "report.html").read_text())
         self.assertEqual(run("report", out, "--without-fields").returncode, 0)
-        self.assertNotIn("Fields", (out / "report.html").read_text())
+        self.assertNotIn("Fields are", (out / "report.html").read_text())
         # Fields that are not kept beside results.json.
         rows = with_fields(out, [json_row("K_oL")])
         write_results(out, rows)
@@ -336,7 +438,8 @@ class Command(WithFolder):
         page = (self.folder / "both" / "report.html").read_text()
         ids = {figure.get("id") for figure in parsed(page).iter("figure")}
         self.assertIn("2 rows of 2 have the same setting as one of 2", page)
-        self.assertIn('<td class="left">memory</td><td>0 smaller</td><td>2</td>', page)
+        lines = [["".join(cell.itertext()) for cell in line] for line in parsed(page).iter("tr")]
+        self.assertIn(["memory", "0 smaller", "2", "0 larger", "0"], lines)
         self.assertLessEqual({"2-change-01", "1-access-01", "2-access-01"}, ids)
 
     def test_what_cannot_be_written_is_refused_and_leaves_nothing_behind(self):

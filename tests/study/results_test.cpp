@@ -225,14 +225,22 @@ TEST_CASE("results.json says who made it and what was requested") {
     folder.add(sample_row(published_case()));
     folder.finish(true);
     const Json json = Json::parse(file_text(root / "a" / "results.json"));
-    for (const char* field : {"schema_version", "program", "version", "commit", "dirty", "compiler",
-                              "flags", "cpu", "cores", "threads", "seed", "date", "command_line",
-                              "settings", "defaults", "complete", "rows"}) {
+    for (const char* field :
+         {"schema_version", "program", "version", "commit", "dirty", "compiler", "flags", "cpu",
+          "cores", "threads", "seed", "date", "command_line", "settings", "defaults",
+          "descriptions", "complete", "rows", "outcomes"}) {
         CHECK(json.contains(field));
     }
     CHECK(json["schema_version"] == 2);
     CHECK(json["complete"] == true);
     CHECK(json["rows"].size() == 1);
+    CHECK(json["outcomes"].size() == 1);
+    CHECK(json["outcomes"][0]["sentences"][0] ==
+          "No structure has lengths within 1.25x of the reference's at all probes (by "
+          "default).");
+    CHECK(json["descriptions"]["structures"]["K_L"] == "kd-tree, a constant metric in each leaf");
+    CHECK(json["descriptions"]["settings"]["tau"] ==
+          "l_min: longest edge of the leaf of a source [metric length at the source]");
     CHECK(json["settings"]["sources"] == "sphere");
     CHECK(json["settings"]["domain"] == Json::array());
     CHECK(json["settings"]["runs"][0]["structures"] == Json{"all"});

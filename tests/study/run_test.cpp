@@ -6,10 +6,12 @@
 #include <set>
 
 #include "cli/paper_reference.h"
+#include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
 
 namespace {
 
@@ -220,6 +222,116 @@ TEST_CASE("the ratio left is that of the law and of the neighbours that were gra
         CHECK(rows[1].number("delta_R_mean") == rows[0].number("delta_R_mean"));
         CHECK(rows[1].number("gradation_max_left") == rows[0].number("gradation_max_left"));
     }
+}
+
+TEST_CASE("rows say which settings have no effect, and these have none") {
+    struct Given {
+        const char* key;
+        Value value;
+        const char* schedule = "sources";
+    };
+    // Far from the defaults, so that what has an effect shows it.
+    const Given given = GENERATE(values<Given>({{"law", "mean-length"},
+                                                {"schedule", "queue"},
+                                                {"epsilon", 1e-4},
+                                                {"tau", 0.5},
+                                                {"splits", "s_Gx"},
+                                                {"kd_depth", 3},
+                                                {"octree_depth", 1},
+                                                {"interpolation", "published"},
+                                                {"target_delta", 0.02},
+                                                {"equal_delta", 0.5},
+                                                {"equal_memory", 0.1},
+                                                {"voxel", 0.3},
+                                                {"voxel_factor", 0.5},
+                                                {"neighbourhood", "all", "queue"},
+                                                {"frozen", "floats"},
+                                                {"prune_delta", 0.5}}));
+    CAPTURE(given.key);
+    Study study = small_study({"all"});
+    study.sources.h = 0.3;
+    study.access_points = 300;
+    study.creation_repeats = 1;
+    study.fine_probe_grid = 5;
+    study.runs[0]["schedule"] = {given.schedule};
+    static std::map<std::string, std::vector<Row>> known;
+    std::vector<Row>& before = known[given.schedule];
+    if (before.empty()) before = run(study, structures());
+    study.runs[0][given.key] = {given.value};
+    const auto after = run(study, structures());
+    REQUIRE(after.size() == before.size());
+    std::size_t without = 0, changed = 0;
+    for (std::size_t i = 0; i < after.size(); ++i) {
+        const Row &a = before[i], &b = after[i];
+        CAPTURE(b.setting.structure, b.text("remark"), b.error);
+        REQUIRE(b.setting.structure == a.setting.structure);
+        REQUIRE(b.is_measured());
+        const bool is_same = b.text("checksum") == a.text("checksum") &&
+                             b.number("bytes_total") == a.number("bytes_total") &&
+                             b.number("gradation_max_left") == a.number("gradation_max_left");
+        const std::string remark = b.text("remark");
+        const std::size_t list = remark.find("without effect: ");
+        const bool is_remarked =
+            list != std::string::npos && remark.find(given.key, list) != std::string::npos;
+        if (is_remarked) CHECK(is_same);
+        without += is_remarked;
+        changed += !is_same;
+    }
+    CHECK(changed > 0);
+    CHECK(without + changed >= after.size() / 2);
+    if (given.key == std::string("target_delta")) {
+        // All trees can be adapted, and nothing else.
+        CHECK(without == 8);
+    }
+}
+
+TEST_CASE("a setting that a run gives to other structures is not remarked on") {
+    Study study = small_study({"K_oV"});
+    study.runs[0] = {{"structures", {"K_oV"}}, {"target_delta", {0.1}}, {"tau", {0.5}}};
+    study.runs.push_back({{"structures", {"direct"}}, {"tau", {0.5}}});
+    auto rows = run(study, structures());
+    REQUIRE(rows.size() == 2);
+    CHECK_THAT(rows[0].text("remark"), EndsWith("without effect: tau"));
+    CHECK_THAT(rows[1].text("remark"), EndsWith("without effect: tau"));
+    study.runs[1]["target_delta"] = {0.1, 0.2};
+    rows = run(study, structures());
+    REQUIRE(rows.size() == 2);
+    CHECK_THAT(rows[1].text("remark"), EndsWith("without effect: tau, target_delta (within)"));
+}
+
+TEST_CASE("a row remarks on a gradation that was not reached") {
+    Study study = small_study({"K_V", "K_oL"});
+    study.runs[0]["schedule"] = {"queue", "passes"};
+    study.runs[0]["splits"] = {"s_M"};
+    study.runs[0]["g_r"] = {1.25, 1.02};
+    std::size_t above = 0;
+    for (const Row& row : run(study, tree_catalogue())) {
+        CAPTURE(row.setting.structure, row.setting.g_r, row.number("gradation_max_left"));
+        const bool is_above = row.number("gradation_max_left") > row.setting.g_r + 1e-4;
+        CHECK(Contains("G left").match(row.text("remark")) == is_above);
+        above += is_above;
+    }
+    CHECK(above > 0);
+}
+
+TEST_CASE("a row shows where the probes found more than adaptation states") {
+    // Of quadratic leaves and of tensors nothing is bounded.
+    Study study = small_study({"K_Li", "K_oV", "K_V"});
+    study.sources.s_n = GENERATE(1.0, 0.1);
+    study.fine_probe_grid = 41;
+    study.runs[0]["target_delta"] = {0.3};
+    std::size_t stated = 0;
+    for (const Row& row : run(study, tree_catalogue())) {
+        CAPTURE(row.setting.structure, row.text("remark"));
+        const double found = std::max(row.number("within_max"), row.number("within_fine_max"));
+        const std::string remark = row.text("remark");
+        const std::size_t place = remark.find("lengths within ");
+        REQUIRE(place != std::string::npos);
+        const double states = std::stod(remark.substr(place + 15));
+        CHECK(Contains("the probes found more").match(remark) == (found > states * 1.0005));
+        ++stated;
+    }
+    CHECK(stated == 3);
 }
 
 TEST_CASE("structures that answer otherwise when made again have no times") {

@@ -25,6 +25,8 @@ struct Creation {
     GradationReport gradation;
     std::string remark;     ///< "δ <= 0.1 everywhere: lengths within 1.27x"
     std::string shortfall;  ///< why a requested target was missed; empty where it was met
+    /// The largest factor between lengths that the remark states; 0: none.
+    double within = 0;
 };
 
 /// The remark on a structure: its limitations, the δ reached, and why a target was missed.

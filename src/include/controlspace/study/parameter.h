@@ -56,7 +56,8 @@ struct CaseParameter : Parameter<Case> {
     Values defaults = {};  ///< of a run; the one in a new Case comes first
     /// Part of the label of a setting or structure ("tau 0.5"); may be empty.
     std::function<std::string(const Case&)> label = {};
-    /// Of a role of structures: whether it applies to this one.
+    /// Whether it has an effect on this structure; empty: on all. One that has none does not
+    /// multiply the cases of a role of structures; where it was given, the rows say so.
     std::function<bool(const CatalogueEntry&, const Case&)> fits = {};
     std::string result_key = {};  ///< in rows of results; empty: `key`
     std::string same_as = {};     ///< the key whose value it sets in another form

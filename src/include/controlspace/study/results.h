@@ -86,7 +86,7 @@ private:
     GrowingFile csv_;
 };
 
-/// All tables: measures for each setting, and the Pareto fronts.
+/// All tables: measures for each setting, and the Pareto fronts; then which structures to take.
 std::string tables_text(std::span<const Row> rows, const StudyRows& columns, bool markdown);
 
 /// One line: program, machine, command line and date of results.

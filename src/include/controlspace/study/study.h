@@ -87,6 +87,11 @@ void require_applicable(const Study& study);
 /// that do not apply, for a reference that does not fit the sources, and for a study without cases.
 std::vector<Case> expand(const Study& study, const StudyRows& rows);
 
+/// The parameters that runs with the structure of `c` give another value than the defaults, and that
+/// have no effect on it: "target_delta (within)".
+std::vector<std::string> settings_without_effect(const Study& study, const Case& c,
+                                                 const StudyRows& rows);
+
 /// Reads a study file (TOML). Keys of `study_parameters` are at the top; keys of case parameters in
 /// tables [[runs]], or at the top for all runs that do not set them. A value may stand alone or in
 /// an array; arrays of a run expand to the product of cases. Files of sources are searched beside

@@ -1,0 +1,185 @@
+#include "study/outcome.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/study/parameter.h"
+#include "study/grouped.h"
+
+namespace controlspace {
+namespace {
+
+using Rows = std::vector<const Row*>;
+
+constexpr const char* access_key = "t_access_ns_random";
+constexpr double rounding = 1e-6;  // of factors
+
+/// The largest factor between lengths at any probe, coarse or fine; infinite where it is not known.
+double factor_of(const Row& row) {
+    const double coarse = row.number("within_max"), fine = row.number("within_fine_max");
+    return std::isnan(coarse + fine) ? std::numeric_limits<double>::infinity()
+                                     : std::max(coarse, fine);
+}
+
+/// Those with the smallest number, but for a share of `tolerance`.
+template <class Number>
+Rows least(const Rows& rows, const Number& number, double tolerance = 0) {
+    const double smallest =
+        number(**std::ranges::min_element(rows, {}, [&](const Row* row) { return number(*row); }));
+    Rows found = rows;
+    std::erase_if(found, [&](const Row* row) { return number(*row) > smallest * (1 + tolerance); });
+    return found;
+}
+
+std::string counted_rows(std::size_t within, std::size_t all) {
+    return within == all ? fmt::format("{} of {} rows", all == 1 ? "the one" : "all", all)
+                         : fmt::format("{} of {} rows", within, all);
+}
+
+/// "K_V, tau 0.5 (0.41 MB, 19.0 ns per query, lengths within 1.08x)", several with "and".
+std::string named(const Rows& rows, const StudyRows& columns) {
+    constexpr std::size_t most = 4;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(rows.size(), most); ++i) {
+        const Row& row = *rows[i];
+        if (i > 0) text += i + 1 == rows.size() ? " and " : ", ";
+        text +=
+            fmt::format("{} ({:.3g} MB, {:.1f} ns per query, lengths within {:.3f}x)",
+                        method_label(row.setting, columns.parameters),
+                        row.number("bytes_total") * 1e-6, row.number(access_key), factor_of(row));
+    }
+    if (rows.size() > most) text += fmt::format(" and {} more", rows.size() - most);
+    return text;
+}
+
+class Judge {
+public:
+    Judge(std::span<const Row> rows, const StudyRows& columns) : rows_(rows), columns_(columns) {}
+
+    Outcome outcome(const std::string& work, const Rows& measured, double factor,
+                    bool is_asked) const {
+        Outcome o{
+            .work = work, .factor = factor, .is_asked = is_asked, .measured = measured.size()};
+        Rows within = measured;
+        std::erase_if(
+            within, [&](const Row* row) { return !(factor_of(*row) <= factor * (1 + rounding)); });
+        o.within = indices(within);
+        const std::string error = fmt::format("within {:.4g}x of the reference's at all probes{}",
+                                              factor, is_asked ? "" : " (by default)");
+        if (within.empty()) {
+            o.sentences = {fmt::format("No structure has lengths {}.", error),
+                           nearest(measured, factor, is_asked)};
+            return o;
+        }
+        const Rows smallest =
+            least(within, [](const Row& row) { return row.number("bytes_total"); });
+        Rows fastest = fastest_of(within, access_key);
+        std::ranges::stable_sort(fastest, {},
+                                 [](const Row* row) { return row->number(access_key); });
+        const Rows accurate = least(within, factor_of, rounding);
+        o.smallest = indices(smallest);
+        o.fastest = indices(fastest);
+        o.most_accurate = indices(accurate);
+        o.sentences = {
+            fmt::format("Lengths {}: {}.", error, counted_rows(within.size(), measured.size())),
+            fmt::format("Smallest: {}.", named(smallest, columns_)),
+            fastest.empty() ? "Fastest: no statement, since the rows were not timed in turns."
+                            : fmt::format("Fastest: {}{}.",
+                                          fastest.size() > 1 ? "indistinguishable between " : "",
+                                          named(fastest, columns_)),
+            fmt::format("Most accurate: {}.", named(accurate, columns_))};
+        return o;
+    }
+
+private:
+    std::string nearest(const Rows& measured, double factor, bool is_asked) const {
+        Rows finite = measured;
+        std::erase_if(finite, [](const Row* row) { return !std::isfinite(factor_of(*row)); });
+        const std::string found =
+            finite.empty()
+                ? "All errors are infinite"
+                : fmt::format("Closest: {}", named(least(finite, factor_of, rounding), columns_));
+        if (is_asked) return found + "; the remarks of the rows say what would help.";
+        // Trees are adapted to the exact field, not to another reference.
+        if (measured.front()->setting.reference != &exact_reference_kind()) return found + ".";
+        return fmt::format("{}; --within {:.4g} adapts trees to it.", found, factor);
+    }
+
+    std::vector<std::size_t> indices(const Rows& rows) const {
+        std::vector<std::size_t> found;
+        for (const Row* row : rows) found.push_back(static_cast<std::size_t>(row - rows_.data()));
+        return found;
+    }
+
+    std::span<const Row> rows_;
+    const StudyRows& columns_;
+};
+
+}  // namespace
+
+std::vector<const Row*> fastest_of(std::span<const Row* const> timed, const std::string& key) {
+    if (timed.empty()) return {};
+    const auto in_batch = [](const Row* row) { return row->number("access_batch"); };
+    if (std::ranges::any_of(
+            timed, [&](const Row* row) { return in_batch(row) != in_batch(timed.front()); })) {
+        return {};
+    }
+    const Row* least =
+        *std::ranges::min_element(timed, {}, [&](const Row* row) { return row->number(key); });
+    Rows found{timed.begin(), timed.end()};
+    std::erase_if(found, [&](const Row* row) {
+        return row->number(key + "_q1") > least->number(key + "_q3");
+    });
+    return found;
+}
+
+std::vector<Outcome> outcomes(std::span<const Row> rows, const StudyRows& columns) {
+    std::vector<Outcome> all;
+    const Judge judge(rows, columns);
+    for (auto& [work, members] : grouped(
+             rows, [&](const Row& row) { return work_label(row.setting, columns.parameters); })) {
+        std::set<double> targets;
+        for (const Row* row : members) {
+            if (row->setting.target_delta) targets.insert(*row->setting.target_delta);
+        }
+        Rows measured = members;
+        std::erase_if(measured, [](const Row* row) { return !row->is_measured(); });
+        if (measured.empty()) continue;
+        for (const double target : targets) {
+            all.push_back(judge.outcome(work, measured, largest_factor_within(target), true));
+        }
+        if (targets.empty()) all.push_back(judge.outcome(work, measured, Outcome{}.factor, false));
+    }
+    return all;
+}
+
+std::string outcome_text(std::span<const Row> rows, const StudyRows& columns, TableStyle style) {
+    const bool markdown = style == TableStyle::markdown;
+    const std::vector<Outcome> all = outcomes(rows, columns);
+    std::string text;
+    for (const Outcome& outcome : all) {
+        text += markdown ? "\n## Which structure to take" : "\nWhich structure to take";
+        if (all.front().work != all.back().work) text.append(": ").append(outcome.work);
+        text += markdown ? "\n\n" : "\n";
+        for (const std::string& sentence : outcome.sentences) {
+            text.append(markdown ? "- " : "").append(sentence).append("\n");
+        }
+    }
+    return text;
+}
+
+Json to_json(const Outcome& outcome) {
+    return {{"work", outcome.work},          {"factor", outcome.factor},
+            {"asked", outcome.is_asked},     {"measured", outcome.measured},
+            {"within", outcome.within},      {"smallest", outcome.smallest},
+            {"fastest", outcome.fastest},    {"most_accurate", outcome.most_accurate},
+            {"sentences", outcome.sentences}};
+}
+
+}  // namespace controlspace
