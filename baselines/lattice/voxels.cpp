@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "controlspace/error.h"
 #include "controlspace/gradation/node_graph.h"
+#include "controlspace/input_errors.h"
 
 namespace controlspace {
 
@@ -72,7 +72,8 @@ Voxels choose_voxels(const SpaceOptions& options, Interpolation interpolation,
     std::uint64_t fitting = 1;
     std::uint64_t too_fine = std::uint64_t{1} << 32;
     if (!fits(divided(fitting))) {
-        throw InputError(
+        throw MemoryLimitError(
+            static_cast<std::size_t>(bytes_needed(divided(fitting))),
             fmt::format("a memory cap of {} holds no cell of a grid, which takes {}: "
                         "raise the cap",
                         name_of_bytes(static_cast<double>(options.max_bytes)),

@@ -11,8 +11,8 @@
 #include "baselines/openvdb/level_nodes.h"
 #include "baselines/openvdb/level_stack.h"
 #include "baselines/openvdb/prune.h"
-#include "controlspace/error.h"
 #include "controlspace/gradation/detail/regrade.h"
+#include "controlspace/input_errors.h"
 #include "controlspace/space/detail/past_gradation.h"
 #include "controlspace/space/detail/shared_builder.h"
 
@@ -193,7 +193,8 @@ private:
         const std::size_t bytes = field_.bytes() + (requested_ ? requested_->bytes() : 0) +
                                   field_.voxels * gradation_bytes_per_voxel(neighbourhood);
         if (bytes > options_.max_bytes) {
-            throw InputError(
+            throw MemoryLimitError(
+                bytes,
                 fmt::format("a grid in levels would take more than {:.3g} GiB, gradation included: "
                             "raise voxel, "
                             "voxel_factor or max_memory",

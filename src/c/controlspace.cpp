@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstring>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -12,6 +16,7 @@
 #include "c/option_text.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/space/control_space_file.h"
+#include "controlspace/space/make_control_space.h"
 #include "controlspace/version.h"
 
 namespace {
@@ -20,6 +25,7 @@ using namespace controlspace;
 
 // What the caller of this thread may ask for: the one thing that outlives a call.
 thread_local std::string last_error;
+thread_local std::size_t last_index = no_index, last_bytes = 0;
 
 // Changes what the handle holds by `edit(builder)`, and builds it again.
 template <class Edit>
@@ -38,40 +44,68 @@ void change(cspace* handle, Edit&& edit) {
     handle->space = handle->builder->build();
 }
 
-std::vector<PointSource> sources_in(const cspace_sources* given) {
-    require(given, "sources");
-    if (given->size < sizeof(cspace_sources)) {
-        throw InputError(fmt::format("sources->size is {}: give sizeof(cspace_sources), {}",
-                                     given->size, sizeof(cspace_sources)));
-    }
-    std::vector<PointSource> sources;
-    if (given->n == 0) return sources;
-    require(given->positions, "positions");
-    if (given->lengths == nullptr) require(given->metrics, "metrics");
-    if (given->lengths != nullptr && given->metrics != nullptr) {
-        throw InputError("sources have lengths and metrics: give one of them");
-    }
-    sources.reserve(given->n);
-    for (std::size_t i = 0; i < given->n; ++i) {
-        sources.push_back({point_at(given->positions, i),
-                           given->lengths != nullptr ? Metric::isotropic(given->lengths[i])
-                                                     : metric_at(given->metrics, i),
-                           given->growths != nullptr ? given->growths[i] : 0});
-    }
-    return sources;
+// A ratio of 0 is that of creation.
+double ratio_of(const cspace* handle, double given) {
+    require(handle, "space");
+    return given == 0 ? handle->ratio : given;
 }
 
-const CatalogueEntry& entry_named(std::string_view name) {
-    const CatalogueEntry* entry = find_entry(structures(), name);
-    if (entry != nullptr) return *entry;
-    throw InputError(fmt::format("there is no structure {}: cspace_structure lists them", name));
+// A struct of the caller, who may know fewer members than this version, or more.
+template <class Struct>
+Struct complete(const Struct* given, const char* name) {
+    Struct own{};
+    if (given->struct_size < sizeof given->struct_size) {
+        throw InputError(fmt::format("struct_size of the {0} is {1}: set it to sizeof(cspace_{0})",
+                                     name, given->struct_size));
+    }
+    const char* bytes = reinterpret_cast<const char*>(given);
+    std::memcpy(&own, bytes, std::min(given->struct_size, sizeof own));
+    for (std::size_t i = sizeof own; i < given->struct_size; ++i) {
+        if (bytes[i] == 0) continue;
+        throw InputError(fmt::format(
+            "the {} have a member that version {} does not know: leave it at 0", name, version()));
+    }
+    return own;
+}
+
+std::vector<PointSource> sources_in(const cspace_sources* sources) {
+    require(sources, "sources");
+    const cspace_sources given = complete(sources, "sources");
+    std::vector<PointSource> result;
+    if (given.n == 0) return result;
+    require(given.positions, "positions");
+    if (given.lengths == nullptr) require(given.metrics, "metrics");
+    if (given.lengths != nullptr && given.metrics != nullptr) {
+        throw InputError("sources have lengths and metrics: give one of them");
+    }
+    result.reserve(given.n);
+    for (std::size_t i = 0; i < given.n; ++i) {
+        result.push_back({point_at(given.positions, i),
+                          given.lengths != nullptr ? Metric::isotropic(given.lengths[i])
+                                                   : metric_at(given.metrics, i),
+                          given.growths != nullptr ? given.growths[i] : 0});
+    }
+    return result;
+}
+
+SpaceOptions space_options(const double* domain, const cspace_options& options) {
+    std::string text = options.further == nullptr ? "" : options.further;
+    const auto add = [&](const char* name, double value) {
+        if (value != 0) text.append(fmt::format(" {}={}", name, value));
+    };
+    add("g_r", options.growth);
+    add("max_memory", options.max_memory);
+    return options_from_text({point_at(domain, 0), point_at(domain, 1)}, text);
 }
 
 }  // namespace
 
 namespace controlspace {
 
-cspace_status fail(cspace_status status, const char* what) noexcept {
+cspace_status fail(cspace_status status, const char* what, std::size_t index,
+                   std::size_t bytes) noexcept {
+    last_index = index;
+    last_bytes = bytes;
     try {
         last_error = what;
     } catch (...) {
@@ -96,6 +130,10 @@ const char* cspace_version(void) { return version().data(); }
 
 const char* cspace_last_error(void) { return last_error.c_str(); }
 
+size_t cspace_last_error_index(void) { return last_index; }
+
+size_t cspace_last_error_bytes(void) { return last_bytes; }
+
 cspace_status cspace_create(const char* structure, const double* domain, const char* options,
                             cspace** space) {
     return guarded([&] {
@@ -105,9 +143,34 @@ cspace_status cspace_create(const char* structure, const double* domain, const c
         require(domain, "domain");
         const SpaceOptions given = options_from_text({point_at(domain, 0), point_at(domain, 1)},
                                                      options == nullptr ? "" : options);
-        auto builder = entry_named(structure).make(given);
+        auto builder = entry_named(structures(), structure).make(given);
         auto built = builder->build();
-        *space = new cspace{std::move(builder), std::move(built)};
+        *space = new cspace{std::move(builder), std::move(built), given.ratio};
+    });
+}
+
+cspace_status cspace_build(const char* structure, const double* domain,
+                           const cspace_sources* sources, const cspace_options* options,
+                           double* reached, cspace** space) {
+    return guarded([&] {
+        require(space, "space");
+        *space = nullptr;
+        require(structure, "structure");
+        require(domain, "domain");
+        const std::vector<PointSource> all = sources_in(sources);
+        const cspace_options given =
+            options != nullptr ? complete(options, "options") : cspace_options{};
+        const SpaceOptions making = space_options(domain, given);
+        std::optional<double> target;
+        if (given.delta != 0) target = given.delta;
+        AdaptationReport report;
+        auto builder =
+            make_filled_builder(entry_named(structures(), structure), all, making, target, &report);
+        auto built = builder->build();
+        *space = new cspace{std::move(builder), std::move(built), making.ratio};
+        if (reached != nullptr) {
+            *reached = target ? report.reached : std::numeric_limits<double>::quiet_NaN();
+        }
     });
 }
 
@@ -138,17 +201,19 @@ cspace_status cspace_insert_lengths(cspace* space, size_t n, const double* posit
 }
 
 cspace_status cspace_grade(cspace* space, double ratio) {
-    return guarded([&] { change(space, [&](auto& builder) { builder.grade({.ratio = ratio}); }); });
+    return guarded([&] {
+        const double g_r = ratio_of(space, ratio);
+        change(space, [&](auto& builder) { builder.grade({.ratio = g_r}); });
+    });
 }
 
 cspace_status cspace_adapt_sources(cspace* space, const cspace_sources* sources, double ratio,
                                    double target, double* reached) {
     return guarded([&] {
         const std::vector<PointSource> all = sources_in(sources);
+        const double g_r = ratio_of(space, ratio);
         AdaptationReport report;
-        change(space, [&](auto& builder) {
-            report = builder.adapt({all, nullptr, ratio, target});
-        });
+        change(space, [&](auto& builder) { report = builder.adapt({all, nullptr, g_r, target}); });
         if (reached != nullptr) *reached = report.reached;
     });
 }
@@ -187,6 +252,7 @@ cspace_status cspace_load(const char* file, cspace** space) {
         *space = nullptr;
         require(file, "file");
         SavedControlSpace saved = open_control_space(file, structures());
-        *space = new cspace{std::move(saved.builder), std::move(saved.space)};
+        *space = new cspace{std::move(saved.builder), std::move(saved.space),
+                            saved.recipe.options.ratio};
     });
 }

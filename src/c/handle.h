@@ -5,19 +5,24 @@
 #include <new>
 
 #include "controlspace/controlspace.h"
-#include "controlspace/error.h"
+#include "controlspace/input_errors.h"
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/control_space_builder.h"
 
 struct cspace {
     std::unique_ptr<controlspace::ControlSpaceBuilder> builder;  // none of a compact form
     std::unique_ptr<controlspace::ControlSpace> space;           // what it has built last
+    double ratio = 1.25;                                         // g_r that it was created with
 };
 
 namespace controlspace {
 
-/// Keeps the reason for cspace_last_error(); returns `status`.
-cspace_status fail(cspace_status status, const char* what) noexcept;
+constexpr std::size_t no_index = CSPACE_NO_INDEX;
+
+/// Keeps the reason for cspace_last_error(), and what it is about for cspace_last_error_index() and
+/// ..._bytes(); returns `status`.
+cspace_status fail(cspace_status status, const char* what, std::size_t index = no_index,
+                   std::size_t bytes = 0) noexcept;
 
 /// Runs `action`; what it throws becomes a status.
 template <class Action>
@@ -25,6 +30,10 @@ cspace_status guarded(Action&& action) noexcept {
     try {
         action();
         return CSPACE_OK;
+    } catch (const IndexedError& error) {
+        return fail(CSPACE_BAD_INPUT, error.what(), error.index());
+    } catch (const MemoryLimitError& error) {
+        return fail(CSPACE_BAD_INPUT, error.what(), no_index, error.bytes());
     } catch (const InputError& error) {
         return fail(CSPACE_BAD_INPUT, error.what());
     } catch (const std::bad_alloc&) {

@@ -54,7 +54,7 @@ void require_places(std::size_t n, const double* positions, const void* answers,
     require(answers, name);
     const std::size_t wrong =
         first_where(n, [&](std::size_t i) { return point_at(positions, i).array().isNaN().any(); });
-    if (wrong < n) throw InputError(fmt::format("position {} is NaN", wrong));
+    if (wrong < n) throw IndexedError(wrong, fmt::format("position {} is NaN", wrong));
 }
 
 // Point and Metric are three and six numbers without gaps (space/detail/state.h).
@@ -102,8 +102,9 @@ void convert(std::size_t n, const double* from, double* to, Converted&& converte
         return false;
     });
     if (wrong < n) {
-        throw InputError(fmt::format(
-            "metric {} is not positive definite: check the order of its numbers", wrong));
+        throw IndexedError(
+            wrong, fmt::format("metric {} is not positive definite: check the order of its numbers",
+                               wrong));
     }
 }
 

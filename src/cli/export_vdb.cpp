@@ -92,12 +92,12 @@ std::vector<FieldFormat> add_vdb_formats(Options& options) {
         {"--voxel", "NUMBER",
          "Edge of a voxel [length]; left out: 1/128 of the longest edge of the domain", group},
         vdb->options.voxel);
-    options.add(
-        {"--tolerance", "NUMBER",
-         "Non-conformity up to which voxels share a metric; 0: only equal metrics (default: "
-         "0.02)",
-         group},
-        vdb->options.tolerance);
+    options.add({"--tolerance", "NUMBER",
+                 "Relative difference of lengths, in any direction, up to which voxels share a "
+                 "metric; 0: only "
+                 "equal metrics (default: 0.01)",
+                 group},
+                vdb->options.tolerance);
     std::string names;
     for (const MetricGrid& grid : metric_grids()) names += fmt::format("{}, ", grid.name);
     options.add(

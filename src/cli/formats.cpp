@@ -47,6 +47,12 @@ Sources sources_on(const SurfaceMesh& surface, const SourcesChoice& choice) {
         spdlog::warn("{}: {} vertices are skipped: no triangle there has an area",
                      choice.file.string(), found.skipped);
     }
+    if (found.fitted > 0 && !surface.curvatures.empty()) {
+        spdlog::warn(
+            "{}: at {} of {} vertices the CAD surface gives no curvature (poles, apexes): "
+            "it is fitted to triangles",
+            choice.file.string(), found.fitted, surface.vertices.size());
+    }
     return std::move(found.sources);
 }
 Sources read_surface(const SourcesChoice& choice) {

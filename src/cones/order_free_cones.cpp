@@ -9,7 +9,7 @@
 
 #include "cones/exceeded_cones.h"
 #include "cones/undominated.h"
-#include "controlspace/error.h"
+#include "controlspace/input_errors.h"
 #include "controlspace/sources/cone.h"
 #include "metric/decompose.h"
 #include "metric/interior_point.h"
@@ -45,14 +45,18 @@ bool is_beyond_cells(std::int64_t key) { return std::abs(key) == most_cells_from
 
 constexpr double tolerance_of_start = 0.3;  // of cells that lead to smaller ones
 
-// Throws InputError for what `order_free_intersection` does not accept.
-template <class Name>
-void require_valid(const Metric& metric, const Name& name) {
+// Throws what `failure(text)` is for what `order_free_intersection` does not accept.
+template <class Failure>
+void require_valid(const Metric& metric, const Failure& failure) {
     try {
         order_free_intersection({&metric, 1});
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: {}", name(), error.what()));
+        throw failure(error.what());
     }
+}
+
+auto failure_of(const char* name) {
+    return [name](const char* what) { return InputError(fmt::format("{}: {}", name, what)); };
 }
 
 }  // namespace
@@ -135,9 +139,11 @@ private:
 OrderFreeCones::OrderFreeCones(std::span<const PointSource> sources, double g,
                                const Metric& largest, double tolerance)
     : steepest_(largest_growth(sources, g) - 1), largest_(largest), tolerance_(tolerance) {
-    require_valid(largest, [] { return "the largest metric"; });
+    require_valid(largest, failure_of("the largest metric"));
     for (std::size_t i = 0; i < sources.size(); ++i) {
-        require_valid(sources[i].metric, [&] { return fmt::format("source {}", i); });
+        require_valid(sources[i].metric, [&](const char* what) {
+            return IndexedError(i, fmt::format("source {}: {}", i, what));
+        });
     }
     const auto lengths_of_largest = eigen_frame(largest).lengths;
     UndominatedSources kept = undominated_sources(sources, g, lengths_of_largest[2]);
@@ -335,7 +341,7 @@ const OrderFreeCones::Start& OrderFreeCones::start_near(const Point& p, Search& 
 
 OrderFreeIntersection OrderFreeCones::intersect(const Point& p, const Metric* further,
                                                 Search& search) const {
-    if (further != nullptr) require_valid(*further, [] { return "the further metric"; });
+    if (further != nullptr) require_valid(*further, failure_of("the further metric"));
     if (tree_.empty() || !p.allFinite()) return answer(p, further, {}, tolerance_, nullptr);
     return answer(p, further, start_near(p, search), tolerance_, nullptr);
 }

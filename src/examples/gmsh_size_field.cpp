@@ -1,17 +1,17 @@
 // A control space as the size field of a Gmsh program: sources request edge lengths at some points,
 // and the control space gives them at every point.
-#include <controlspace/space/catalogue.h>
+#include <controlspace/space/make_control_space.h>
 #include <gmsh.h>
+
+#include <vector>
 
 using namespace controlspace;
 
 int main() {
-    const CatalogueEntry& octree = *find_entry(tree_catalogue(), "K_oV");
-    const auto builder = octree.make({.domain = {Point(-1, -1, -1), Point(1, 1, 1)}});
-    builder->insert(PointSource{Point(0.3, 0.2, 0), Metric::isotropic(0.02)});
-    builder->insert(PointSource{Point(-1, -1, -1), Metric::isotropic(0.05)});
-    builder->grade({.ratio = 1.25});
-    const auto space = builder->build();
+    const std::vector<PointSource> sources{{Point(0.3, 0.2, 0), Metric::isotropic(0.02)},
+                                           {Point(-1, -1, -1), Metric::isotropic(0.05)}};
+    const auto space = make_control_space(
+        "K_oV", sources, {.domain = {Point(-1, -1, -1), Point(1, 1, 1)}, .ratio = 1.25});
 
     gmsh::initialize();
     gmsh::model::occ::addBox(-1, -1, -1, 2, 2, 2);

@@ -7,7 +7,8 @@
 namespace controlspace {
 
 /// Triangles of the surface of a CAD file, which turn by 10 degrees from one to the next where it
-/// is curved. Runs in a GmshSession. Throws InputError that names the file for what Gmsh cannot
+/// is curved, and the exact curvatures of its faces at their corners; unknown where a face has no
+/// tangent plane, at poles and apexes. Runs in a GmshSession. Throws InputError that names the file for what Gmsh cannot
 /// read, and for one without surfaces.
 SurfaceMesh read_cad_surface(const std::filesystem::path& path);
 

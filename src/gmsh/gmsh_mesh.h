@@ -26,15 +26,16 @@ public:
     }
 
     const std::vector<Point>& places() const { return places_; }
+    std::uint32_t number(std::size_t tag) const { return number_of_tag_[tag]; }
 
-    /// The elements of one of Gmsh's types, of `n` nodes each.
+    /// The elements of one of Gmsh's types, of `n` nodes each; those of one entity, or of all.
     template <std::size_t n>
-    std::vector<std::array<std::uint32_t, n>> elements(int type) const {
+    std::vector<std::array<std::uint32_t, n>> elements(int type, int entity = -1) const {
         std::vector<std::size_t> tags, nodes;
-        gmsh::model::mesh::getElementsByType(type, tags, nodes);
+        gmsh::model::mesh::getElementsByType(type, tags, nodes, entity);
         std::vector<std::array<std::uint32_t, n>> result(nodes.size() / n);
         for (std::size_t i = 0; i < nodes.size(); ++i) {
-            result[i / n][i % n] = number_of_tag_[nodes[i]];
+            result[i / n][i % n] = number(nodes[i]);
         }
         return result;
     }

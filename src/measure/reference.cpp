@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "cones/cone_field.h"
-#include "controlspace/error.h"
 #include "controlspace/gradation/grade.h"
+#include "controlspace/input_errors.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/sources/cone.h"
 
@@ -33,13 +33,14 @@ void require_usable(std::span<const PointSource> sources, double g, const Metric
     for (std::size_t i = 0; i < sources.size(); ++i) {
         const auto& [position, metric, growth] = sources[i];
         if (!position.allFinite()) {
-            throw InputError(fmt::format("source {}: its position is not finite: correct it", i));
+            throw IndexedError(i,
+                               fmt::format("source {}: its position is not finite: correct it", i));
         }
         if (!is_positive_definite(metric)) {
-            throw InputError(
-                fmt::format("source {}: metric {} is not positive definite: give one "
-                            "with positive lengths",
-                            i, to_string(metric)));
+            throw IndexedError(
+                i, fmt::format("source {}: metric {} is not positive definite: give one "
+                               "with positive lengths",
+                               i, to_string(metric)));
         }
     }
 }

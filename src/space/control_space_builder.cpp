@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "controlspace/error.h"
+#include "controlspace/input_errors.h"
 #include "controlspace/space/detail/goal_field.h"
 #include "controlspace/space/sample_parallel.h"
 
@@ -38,15 +38,17 @@ AdaptationReport NodeBuilder::adapt(const AdaptationGoal& goal) {
 
 void require_valid(const PointSource& source, std::size_t index, const Box& domain) {
     if (!domain.contains(source.position)) {
-        throw InputError(fmt::format(
-            "source {} at ({}, {}, {}) lies outside the domain {}: enlarge the domain or drop it",
-            index, source.position.x(), source.position.y(), source.position.z(),
-            to_string(domain)));
+        throw IndexedError(index, fmt::format("source {} at ({}, {}, {}) lies outside the domain "
+                                              "{}: enlarge the domain or drop it",
+                                              index, source.position.x(), source.position.y(),
+                                              source.position.z(), to_string(domain)));
     }
     if (!is_positive_definite(source.metric)) {
-        throw InputError(fmt::format(
-            "source {} has the metric {} (xx yy zz xy xz yz), which is not positive definite",
-            index, to_string(source.metric)));
+        throw IndexedError(
+            index,
+            fmt::format(
+                "source {} has the metric {} (xx yy zz xy xz yz), which is not positive definite",
+                index, to_string(source.metric)));
     }
     if (!is_source_growth(source.growth)) {
         throw InputError(fmt::format(

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "controlspace/error.h"
+#include "controlspace/input_errors.h"
 
 namespace controlspace {
 
@@ -10,9 +10,10 @@ void fail_too_many_leaves() {
     throw InputError("a tree holds 2^30 leaves at most: raise l_min or lower the depth");
 }
 
-void fail_too_large(std::size_t max_bytes) {
+void fail_too_large(std::size_t bytes, std::size_t max_bytes) {
     constexpr double gib = 1024.0 * 1024 * 1024;
-    throw InputError(
+    throw MemoryLimitError(
+        bytes,
         fmt::format("the tree would take more than {:.3g} GiB, gradation included: raise tau "
                     "(l_min) or target_delta, or max_memory",
                     static_cast<double>(max_bytes) / gib));

@@ -5,8 +5,10 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "controlspace/baselines/catalogue.h"
@@ -91,7 +93,7 @@ TEST_CASE("C: what cannot be used is refused with a reason") {
         CHECK(none == nullptr);
         return std::string(cspace_last_error());
     };
-    CHECK_THAT(refused("K_x", ""), Contains("no structure K_x"));
+    CHECK_THAT(refused("K_x", ""), Contains("no structure 'K_x'") && Contains("K_oLA"));
     CHECK_THAT(refused("K_L", "tau=much"), Contains("option tau is 'much'"));
     CHECK_THAT(refused("K_L", "tau=-1"), Contains("tau"));
     CHECK_THAT(refused("K_L", "colour=1"), Contains("no option 'colour'"));
@@ -151,8 +153,12 @@ TEST_CASE("C: sources with gradation ratios of their own, in a struct that may g
     CHECK_THAT(refused(&sources), Contains("give one of them"));
     sources.metrics = sources.lengths = nullptr;
     CHECK_THAT(refused(&sources), Contains("metrics is NULL"));
-    sources.size = 8;
-    CHECK_THAT(refused(&sources), Contains("give sizeof(cspace_sources)"));
+    sources.struct_size = 0;
+    CHECK_THAT(refused(&sources), Contains("set it to sizeof(cspace_sources)"));
+    sources = {offsetof(cspace_sources, growths), 2, positions, nullptr, lengths, growths};
+    CHECK(cspace_insert_sources(space, &sources) == CSPACE_OK);
+    CHECK(cspace_grade(space, 1.5) == CSPACE_OK);
+    CHECK(cspace_size(space, 0.3, 0.2, 0.3) == Approx(0.1 + 0.5 * 0.2).epsilon(0.02));
     cspace_free(space);
 }
 
@@ -173,6 +179,142 @@ TEST_CASE("C: a tree that is given a target is that of C++") {
     CHECK(cspace_adapt(space, 1, place.data(), tensor.data(), 1.5, 0, nullptr) == CSPACE_BAD_INPUT);
     CHECK(cspace_adapt(space, 1, nullptr, tensor.data(), 1.5, 0.1, nullptr) == CSPACE_BAD_INPUT);
     cspace_free(space);
+}
+
+TEST_CASE("C: a field is built in one step, with one gradation ratio") {
+    const std::vector<double> places{0.3, 0.2, 0.1, -0.5, 0, 0.4}, lengths{0.05, 0.1};
+    const auto built = [&](const cspace_options* given, double* reached = nullptr) {
+        cspace* space = nullptr;
+        const cspace_sources sources{sizeof sources, 2,      places.data(), nullptr,
+                                     lengths.data(), nullptr};
+        REQUIRE(cspace_build("K_oV", corners.data(), &sources, given, reached, &space) ==
+                CSPACE_OK);
+        const std::vector<double> result = sampled(space);
+        cspace_free(space);
+        return result;
+    };
+    const auto by_steps = [&](const char* text, double at_creation) {
+        cspace* space = nullptr;
+        REQUIRE(cspace_create("K_oV", corners.data(), text, &space) == CSPACE_OK);
+        REQUIRE(cspace_insert_lengths(space, 2, places.data(), lengths.data()) == CSPACE_OK);
+        REQUIRE(cspace_grade(space, at_creation) == CSPACE_OK);
+        const std::vector<double> result = sampled(space);
+        cspace_free(space);
+        return result;
+    };
+    cspace_options given{};
+    given.struct_size = sizeof given;
+    const std::vector<double> standard = built(nullptr);
+    CHECK(built(&given) == standard);
+    CHECK(by_steps("", 1.25) == standard);
+    CHECK(by_steps("", 0) == standard);
+    given.growth = 1.5;
+    CHECK(built(&given) != standard);
+    CHECK(built(&given) == by_steps("g_r=1.5", 0));
+    given.further = "tau=0.25";
+    CHECK(built(&given) == by_steps("tau=0.25", 1.5));
+
+    // Tensors give the same; a target is reached, or said not to be.
+    double reached = 0;
+    given.further = nullptr;
+    built(&given, &reached);
+    CHECK(std::isnan(reached));
+    given.delta = 0.05;
+    const std::vector<double> adapted = built(&given, &reached);
+    CHECK((reached > 0 && reached <= 0.05));
+    std::vector<double> tensors;
+    for (const double h : lengths) tensors.insert(tensors.end(), {h, h, h, 0, 0, 0});
+    cspace* space = nullptr;
+    const cspace_sources sources{sizeof sources, 2,       places.data(),
+                                 tensors.data(), nullptr, nullptr};
+    REQUIRE(cspace_build("K_oV", corners.data(), &sources, &given, nullptr, &space) == CSPACE_OK);
+    CHECK(sampled(space) == adapted);
+    cspace_free(space);
+}
+
+TEST_CASE("C: options of other versions are understood, or refused") {
+    // The caller's, with a member that is not known yet.
+    struct Newer {
+        cspace_options known;
+        double later;
+    } newer{};
+    newer.known.struct_size = sizeof newer;
+    newer.known.growth = 1.5;
+    const double length = 0.1;
+    const auto build = [&](const cspace_options& given) {
+        cspace* space = nullptr;
+        const cspace_sources sources{sizeof sources, 1, place.data(), nullptr, &length, nullptr};
+        const cspace_status status =
+            cspace_build("K_oL", corners.data(), &sources, &given, nullptr, &space);
+        CHECK((space == nullptr) == (status != CSPACE_OK));
+        const std::vector<double> metrics = space ? sampled(space) : std::vector<double>();
+        cspace_free(space);
+        return std::pair(status, metrics);
+    };
+    const auto [status, whole] = build(newer.known);
+    CHECK(status == CSPACE_OK);
+    newer.later = 1;
+    CHECK(build(newer.known).first == CSPACE_BAD_INPUT);
+    CHECK_THAT(cspace_last_error(), Contains("does not know"));
+
+    // One from before `delta`: what lies there is no member.
+    cspace_options older{};
+    older.struct_size = offsetof(cspace_options, delta);
+    older.growth = 1.5;
+    older.delta = -1;
+    CHECK(build(older).second == whole);
+    older.struct_size = 0;
+    CHECK(build(older).first == CSPACE_BAD_INPUT);
+    CHECK_THAT(cspace_last_error(), Contains("set it to sizeof(cspace_options)"));
+
+    cspace* space_after_failure = reinterpret_cast<cspace*>(&newer);
+    CHECK(cspace_build("K_oL", corners.data(), nullptr, nullptr, nullptr, &space_after_failure) ==
+          CSPACE_BAD_INPUT);
+    CHECK(space_after_failure == nullptr);
+
+    cspace_options twice{};
+    twice.struct_size = sizeof twice;
+    twice.growth = 1.5;
+    twice.further = "g_r=1.5";
+    CHECK(build(twice).first == CSPACE_BAD_INPUT);
+    CHECK_THAT(cspace_last_error(), Contains("given twice"));
+}
+
+TEST_CASE("C: errors say which item is wrong, and how much memory is wanted") {
+    const double places[] = {0, 0, 0, 0.5, 0, 0, 7, 0, 0};
+    const double lengths[] = {0.1, 0.1, 0.1}, not_a_length[] = {0.1, -1, 0.1};
+    cspace* space = made("K_oL");
+    CHECK(cspace_insert_lengths(space, 3, places, lengths) == CSPACE_BAD_INPUT);
+    CHECK(cspace_last_error_index() == 2);
+    CHECK(cspace_last_error_bytes() == 0);
+    CHECK(cspace_insert_lengths(space, 2, places, not_a_length) == CSPACE_BAD_INPUT);
+    CHECK(cspace_last_error_index() == 1);
+    CHECK(cspace_grade(space, 0.5) == CSPACE_BAD_INPUT);
+    CHECK(cspace_last_error_index() == CSPACE_NO_INDEX);
+    const double with_nan[] = {0, 0, 0, 0, std::nan(""), 0};
+    double metrics[12];
+    CHECK(cspace_sample(space, 2, with_nan, metrics) == CSPACE_BAD_INPUT);
+    CHECK(cspace_last_error_index() == 1);
+    const double indefinite[] = {1, 1, 1, 0, 0, 0, 1, 1, -1, 0, 0, 0};
+    CHECK(cspace_to_riemannian(2, indefinite, metrics) == CSPACE_BAD_INPUT);
+    CHECK(cspace_last_error_index() == 1);
+    cspace_free(space);
+
+    cspace_options given{};
+    given.struct_size = sizeof given;
+    given.max_memory = 1e-4;
+    given.delta = 0.01;
+    const double tiny[] = {1e-3, 1e-3};
+    for (const char* structure : {"K_oL", "K_L", "K_oV"}) {
+        CAPTURE(structure);
+        const cspace_sources sources{sizeof sources, 2, places, nullptr, tiny, nullptr};
+        CHECK(cspace_build(structure, corners.data(), &sources, &given, nullptr, &space) ==
+              CSPACE_BAD_INPUT);
+        CHECK_THAT(cspace_last_error(), Contains("max_memory"));
+        CHECK(cspace_last_error_bytes() > 100000);
+        CHECK(cspace_last_error_bytes() < 1 << 30);
+        CHECK(cspace_last_error_index() == CSPACE_NO_INDEX);
+    }
 }
 
 TEST_CASE("C: lengths, also as Gmsh asks for them, are the smallest of the metrics") {

@@ -69,7 +69,7 @@ class BadInput(unittest.TestCase):
         for box in (BOX[::-1], [BOX[0], BOX[0]], [BOX[0], (1, 1, INF)], [BOX[0], (NAN, 1, 1)]):
             self.refused("", build, P, H, box=box)
         self.refused("box has the shape (3,)", build, P, H, box=(1, 2, 3))
-        self.refused("no structure K_x", build, P, H, "K_x")
+        self.refused("no structure 'K_x'", build, P, H, "K_x")
         self.refused("structure is 7", build, P, H, 7)
         for growth in (0.9, NAN, INF, -INF):
             self.refused("growth is", build, P, H, growth=growth)

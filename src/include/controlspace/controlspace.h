@@ -49,6 +49,55 @@ CSPACE_API const char* cspace_version(void);
  * until the next failure on this thread. */
 CSPACE_API const char* cspace_last_error(void);
 
+/** Which of the sources, positions or metrics given that failure was about, from 0;
+ * CSPACE_NO_INDEX if it was about none of them. */
+CSPACE_API size_t cspace_last_error_index(void);
+#define CSPACE_NO_INDEX ((size_t)-1)
+
+/** The bytes that a structure would have taken, where it was to outgrow max_memory; otherwise 0. */
+CSPACE_API size_t cspace_last_error_bytes(void);
+
+/** Sources in arrays that need not all be there: members that are 0 are not, and later versions may
+ * add some at the end. */
+typedef struct cspace_sources {
+    size_t struct_size;      /**< sizeof(cspace_sources), as the caller knows it */
+    size_t n;                /**< number of sources */
+    const double* positions; /**< n points */
+    const double* metrics;   /**< n metrics M, unless there are lengths */
+    const double* lengths;   /**< n lengths, of isotropic sources */
+    const double* growths;   /**< NULL, or n gradation ratios of the sources' own, 1 or more; 0: that
+                                  of the field. They grade by the exact field alone: they are refused
+                                  once the space was adapted. */
+} cspace_sources;
+
+/** Options of cspace_build(). Members that are 0 have their defaults; later versions may add some
+ * at the end, therefore:
+ *
+ *     cspace_options options = {.struct_size = sizeof(cspace_options)};
+ *     options.growth = 1.2; */
+typedef struct cspace_options {
+    size_t struct_size; /**< sizeof(cspace_options), as the caller knows it */
+    double growth;      /**< gradation ratio g_r of the sources, >= 1 (default: 1.25) */
+    double delta;       /**< largest non-conformity to the exact field that the structure is adapted
+                             to, above 0; 0: sources are inserted and graded, which is faster and
+                             less accurate */
+    double max_memory;  /**< [GiB] (default: 4) */
+    const char* further; /**< others, as of cspace_create(), each option given once; may be NULL */
+} cspace_options;
+
+/** Builds the field of sources in one step: creates a control space, and inserts and grades the
+ * sources, or adapts it to them.
+ *
+ *     cspace_sources sources = {.struct_size = sizeof(cspace_sources)};
+ *     sources.n = n, sources.positions = positions, sources.lengths = lengths;
+ *
+ * @param options  may be NULL
+ * @param reached  unless NULL receives what cspace_adapt() says; NaN where nothing was adapted
+ * @param space    receives the control space; NULL after a failure */
+CSPACE_API cspace_status cspace_build(const char* structure, const double* domain,
+                                      const cspace_sources* sources, const cspace_options* options,
+                                      double* reached, cspace** space);
+
 /** Creates a control space. Before the first source, its metric is isotropic everywhere; the length
  * is half of the domain's diagonal.
  *
@@ -60,7 +109,7 @@ CSPACE_API const char* cspace_last_error(void);
  *                   tolerance), kd_depth, octree_depth (maximum depth; the root has depth 0),
  *                   finest_length (smallest length of the sources [length]: grids choose their
  *                   voxels by it), voxel (longest edge of a grid's voxels [length]), g_r (gradation
- *                   ratio, for structures that keep sources), takes_later_sources (1: sources may
+ *                   ratio), takes_later_sources (1: sources may
  *                   be inserted after gradation), max_memory [GiB]
  * @param space      receives the control space; NULL after a failure */
 CSPACE_API cspace_status cspace_create(const char* structure, const double* domain,
@@ -81,32 +130,19 @@ CSPACE_API cspace_status cspace_insert(cspace* space, size_t n, const double* po
 CSPACE_API cspace_status cspace_insert_lengths(cspace* space, size_t n, const double* positions,
                                                const double* lengths);
 
-/** Sources in arrays that need not all be there. Set `size` to sizeof(cspace_sources), what is not
- * there to NULL. */
-typedef struct cspace_sources {
-    size_t size;             /**< bytes of this struct, so that it may grow */
-    size_t n;                /**< number of sources */
-    const double* positions; /**< n points */
-    const double* metrics;   /**< n metrics M, unless there are lengths */
-    const double* lengths;   /**< n lengths, of isotropic sources */
-    const double* growths;   /**< NULL, or n gradation ratios of the sources' own, 1 or more; 0: that
-                                of the field. They grade by the exact field alone: they are refused
-                                once the space was adapted. */
-} cspace_sources;
-
 /** Inserts sources, as cspace_insert() does. */
 CSPACE_API cspace_status cspace_insert_sources(cspace* space, const cspace_sources* sources);
 
-/** Limits the growth of lengths from point to point to the gradation ratio `ratio` (g_r >= 1): the
- * control nodes get the exact field of the sources inserted. To be called after all sources are
- * inserted, unless the control space takes later sources. */
+/** Limits the growth of lengths from point to point to the gradation ratio `ratio` (g_r >= 1; 0:
+ * the g_r that it was created with): the control nodes get the exact field of the sources inserted.
+ * To be called after all sources are inserted, unless the control space takes later sources. */
 CSPACE_API cspace_status cspace_grade(cspace* space, double ratio);
 
 /** Replaces the whole content, instead of insertion and gradation, by the graded field of `n`
- * sources with metrics M, whose lengths grow with the distance by `ratio` (g_r >= 1); a tree is
- * refined until its non-conformity (delta) to that field is at most `target` (above 0, for example
- * 0.1). `reached`, unless NULL, receives the largest delta found, above `target` if that was
- * missed; infinity where a tree could not show that it was met. */
+ * sources with metrics M, whose lengths grow with the distance by `ratio` (as of cspace_grade()); a
+ * tree is refined until its non-conformity (delta) to that field is at most `target` (above 0, for
+ * example 0.1). `reached`, unless NULL, receives the largest delta found, above `target` if that
+ * was missed; infinity where a tree could not show that it was met. */
 CSPACE_API cspace_status cspace_adapt(cspace* space, size_t n, const double* positions,
                                       const double* metrics, double ratio, double target,
                                       double* reached);

@@ -51,7 +51,8 @@ Metric mean_of(const SampledBlock& block, const Cube& cube) {
     return 1.0 / (cube.edge * cube.edge * cube.edge) * sum;
 }
 
-void settle(SampledBlock& block, const Cube& cube, double tolerance) {
+/// `most`: strict non-conformity, that of a factor of lengths.
+void settle(SampledBlock& block, const Cube& cube, double most) {
     const std::size_t first = SampledBlock::index(cube.i, cube.j, cube.k);
     if (cube.edge == 1) {
         block.same_as[first] = static_cast<std::uint16_t>(first);
@@ -60,10 +61,10 @@ void settle(SampledBlock& block, const Cube& cube, double tolerance) {
     Metric shared = block.metrics[first];
     // A mean of what is the same would differ by rounding.
     bool one = cube.all_of([&](std::size_t v) { return block.metrics[v] == shared; });
-    if (!one && tolerance > 0) {
+    if (!one && most > 0) {
         shared = mean_of(block, cube);
         one = cube.all_of(
-            [&](std::size_t v) { return nonconformity(shared, block.metrics[v]) <= tolerance; });
+            [&](std::size_t v) { return strict_nonconformity(shared, block.metrics[v]) <= most; });
     }
     if (one) {
         cube.for_each([&](std::size_t v, auto...) {
@@ -72,7 +73,7 @@ void settle(SampledBlock& block, const Cube& cube, double tolerance) {
         });
         return;
     }
-    for (int child = 0; child < 8; ++child) settle(block, cube.child(child), tolerance);
+    for (int child = 0; child < 8; ++child) settle(block, cube.child(child), most);
 }
 
 }  // namespace
@@ -118,7 +119,7 @@ void sample_block(const ControlSpace& field, const VoxelLattice& lattice,
                         "another structure",
                         x.x(), x.y(), x.z(), to_string(block.metrics[v])));
     }
-    settle(block, whole, tolerance);
+    settle(block, whole, nonconformity_of_factor(1 + tolerance));
 }
 
 }  // namespace controlspace

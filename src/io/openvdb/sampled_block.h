@@ -47,8 +47,9 @@ struct SampledBlock {
 
 /// Samples `field` at the centres of the block of voxels from `first` on (multiples of 8; voxels
 /// beyond the lattice repeat the last one within). Then cubes of 8^3, 4^3 and 2^3 voxels whose
-/// metrics all are within `tolerance` (δ) of their mean take the mean; cubes that hold one metric
-/// keep it. Throws InputError where the field answers something that is no metric.
+/// lengths all differ by a factor of at most 1 + tolerance, in any direction, from those of their
+/// mean take the mean; cubes that hold one metric keep it. Throws InputError where the field
+/// answers something that is no metric.
 void sample_block(const ControlSpace& field, const VoxelLattice& lattice,
                   const std::array<std::int32_t, 3>& first, double tolerance, SampledBlock& block);
 

@@ -16,7 +16,7 @@
 #include <mutex>
 #include <utility>
 
-#include "controlspace/error.h"
+#include "controlspace/input_errors.h"
 #include "io/openvdb/vdb_builder.h"
 #include "io/openvdb/vdb_file.h"
 
@@ -95,10 +95,12 @@ std::pair<std::size_t, Extremes> fill(const Builders& builders, const ControlSpa
         for (const auto& builder : builders)
             bytes += builder->add(first, inside, s.block, s.frames);
         if (bytes > options.max_bytes) {
-            throw InputError(fmt::format(
-                "grids of {} x {} x {} voxels take more memory than {} bytes: raise the voxel "
-                "(--voxel), the tolerance, or the cap (--max-memory), or write fewer grids",
-                lattice.counts[0], lattice.counts[1], lattice.counts[2], options.max_bytes));
+            throw MemoryLimitError(
+                bytes,
+                fmt::format(
+                    "grids of {} x {} x {} voxels take more memory than {} bytes: raise the voxel "
+                    "(--voxel), the tolerance, or the cap (--max-memory), or write fewer grids",
+                    lattice.counts[0], lattice.counts[1], lattice.counts[2], options.max_bytes));
         }
         const std::lock_guard lock(mutex);
         if (++done % in_layer != 0 || !options.progress) return;

@@ -101,10 +101,12 @@ public:
           isotropic_(sizes.isotropic) {}
 
     SurfaceSources sources() {
+        exact_.resize(mesh_.curvatures.size());
+        for_each(exact_.size(),
+                 [&](std::uint32_t i) { exact_[i] = metric_of(mesh_.curvatures[i]); });
         metrics_.resize(patches_.fans.size());
-        for_each(metrics_.size(), [&](std::uint32_t i) {
-            metrics_[i] = metric_of(curvature_at(mesh_, patches_, patches_.fans[i]));
-        });
+        fitted_.resize(patches_.fans.size());
+        for_each(metrics_.size(), [&](std::uint32_t i) { metrics_[i] = metric_of_fan(i); });
         std::vector<std::vector<PointSource>> inside(mesh_.triangles.size());
         corner_walls_.resize(mesh_.triangles.size());
         for_each(inside.size(), [&](std::uint32_t t) { divide(t, triangle(t), false, inside[t]); });
@@ -127,6 +129,35 @@ private:
         return metric_from_frame({h1, h2, std::min(h1, h2)}, curvature.frame);
     }
 
+    /// Which of the exact metrics a corner of a triangle has.
+    std::uint32_t exact_at(std::uint32_t t, std::size_t corner) const {
+        return exact_.empty() ? SurfaceMesh::unknown : mesh_.curvature_of[t][corner];
+    }
+
+    /// By the curvatures of its faces, of which all count, or by that which is fitted.
+    Metric metric_of_fan(std::uint32_t i) {
+        std::vector<std::uint32_t> faces;
+        for (const std::uint32_t t : patches_.fans[i].triangles) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (patches_.fan_of[t][k] == i) faces.push_back(exact_at(t, k));
+            }
+        }
+        std::sort(faces.begin(), faces.end());
+        faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+        std::vector<Metric> metrics;
+        for (const std::uint32_t face : faces) {
+            fitted_[i] = face == SurfaceMesh::unknown;
+            metrics.push_back(fitted_[i]
+                                  ? metric_of(curvature_at(mesh_, patches_, patches_.fans[i]))
+                                  : exact_[face]);
+        }
+        return intersection_of(metrics);
+    }
+
+    static Metric intersection_of(const std::vector<Metric>& metrics) {
+        return metrics.size() == 1 ? metrics.front() : order_free_intersection(metrics).metric();
+    }
+
     /// `m` with the length across a wall or gap.
     Metric with_wall(const Metric& m, const Vector& normal, double thickness) const {
         const double across = std::max(across_ * thickness, bounds_.h_min);
@@ -138,8 +169,8 @@ private:
         return isotropic_ ? Metric::isotropic(shortest(m)) : m;
     }
 
-    /// A triangle; without the curvature of its corners if it is far flatter itself, as the large
-    /// triangles of a plate between fillets are.
+    /// A triangle with the exact metrics of its face at its corners, or fitted ones; without these
+    /// if it is far flatter itself, as the large triangles of a plate between fillets are.
     Piece triangle(std::uint32_t t) const {
         constexpr double far_flatter = 4;
         const double own = length(patches_.bends[t]);
@@ -147,9 +178,12 @@ private:
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t i = patches_.fan_of[t][k];
             const Fan& fan = patches_.fans[i];
+            const std::uint32_t exact = exact_at(t, k);
             const bool flatter = !fan.apex && own > far_flatter * shortest(metrics_[i]);
             piece.at[k] = mesh_.vertices[fan.vertex];
-            piece.metric[k] = flatter ? Metric::isotropic(own) : metrics_[i];
+            piece.metric[k] = exact != SurfaceMesh::unknown ? exact_[exact]
+                              : flatter                     ? Metric::isotropic(own)
+                                                            : metrics_[i];
             piece.is_corner[k] = true;
         }
         return piece;
@@ -196,17 +230,26 @@ private:
         std::vector<PointSource> sources(mesh_.vertices.size());
         for_each(sources.size(), [&](std::uint32_t v) {
             if (metrics[v].empty()) return;
-            const Metric met = metrics[v].size() == 1
-                                   ? metrics[v].front()
-                                   : order_free_intersection(metrics[v]).metric();
-            sources[v] = {mesh_.vertices[v], as_wanted(met)};
+            sources[v] = {mesh_.vertices[v], as_wanted(intersection_of(metrics[v]))};
         });
         SurfaceSources result;
         for (std::size_t v = 0; v < sources.size(); ++v) {
             if (!metrics[v].empty()) result.sources.push_back(sources[v]);
         }
         result.skipped = sources.size() - result.sources.size();
+        result.fitted = fitted_vertices();
         return result;
+    }
+
+    /// Vertices with a fan whose curvature is fitted.
+    std::size_t fitted_vertices() const {
+        std::vector<std::uint32_t> vertices;
+        for (std::size_t i = 0; i < fitted_.size(); ++i) {
+            if (fitted_[i]) vertices.push_back(patches_.fans[i].vertex);
+        }
+        std::sort(vertices.begin(), vertices.end());
+        return static_cast<std::size_t>(std::unique(vertices.begin(), vertices.end()) -
+                                        vertices.begin());
     }
 
     const SurfaceMesh& mesh_;
@@ -215,7 +258,9 @@ private:
     const Bounds bounds_;
     const double chord_, across_;
     const bool isotropic_;
+    std::vector<Metric> exact_;                        ///< by the exact curvatures
     std::vector<Metric> metrics_;                      ///< of fans, by curvature
+    std::vector<char> fitted_;                         ///< whether a fan's is
     std::vector<std::array<double, 3>> corner_walls_;  ///< distances next to corners of triangles
 };
 

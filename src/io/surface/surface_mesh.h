@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -9,11 +10,24 @@
 
 namespace controlspace {
 
+/// Principal curvatures without sign, larger first: along the first two columns of `frame`, which
+/// is orthonormal; the third is the normal.
+struct Curvature {
+    std::array<double, 2> along = {0, 0};
+    Eigen::Matrix3d frame;
+};
+
 /// A surface of triangles, with the indices of their vertices; in no common orientation.
 struct SurfaceMesh {
     std::vector<Point> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
     double diagonal = 0;  ///< of the box around the vertices
+
+    /// Curvatures that are known exactly, and for each corner of each triangle which of them is
+    /// that of its face, or `unknown`. Empty where none is known.
+    std::vector<Curvature> curvatures = {};
+    std::vector<std::array<std::uint32_t, 3>> curvature_of = {};
+    static constexpr std::uint32_t unknown = ~std::uint32_t{};
 };
 
 /// Longest distance that is taken for rounding: coordinates of .stl files have 24 bits.

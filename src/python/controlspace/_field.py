@@ -221,7 +221,7 @@ def build(
     )
     field = _field(handle, None)
     sources = Sources(
-        size=ctypes.sizeof(Sources),
+        struct_size=ctypes.sizeof(Sources),
         n=len(points),
         positions=points.ctypes.data,
         metrics=None if h.ndim == 1 else h.ctypes.data,

@@ -17,7 +17,7 @@ class Sources(ctypes.Structure):
     """cspace_sources."""
 
     _fields_ = (
-        ("size", c_size_t),
+        ("struct_size", c_size_t),
         ("n", c_size_t),
         ("positions", c_void_p),
         ("metrics", c_void_p),

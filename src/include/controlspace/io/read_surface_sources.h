@@ -30,6 +30,7 @@ struct CurvatureSizes {
 struct SurfaceSources {
     std::vector<PointSource> sources;
     std::size_t skipped = 0;  ///< vertices without a source: no triangle there has an area
+    std::size_t fitted = 0;   ///< vertices whose curvature is fitted to the triangles
 };
 
 /// Sources at the vertices of a surface of polygons (.stl, .obj, .ply, .off), each vertex once, and

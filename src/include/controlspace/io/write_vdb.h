@@ -24,8 +24,9 @@ using VdbNote = std::pair<std::string, std::variant<double, std::string>>;
 
 struct VdbOptions {
     double voxel = 0;  ///< edge [length]; 0: 1/128 of the domain's longest edge
-    double tolerance =
-        0.02;           ///< δ within which voxels share a metric; 0: only where they are equal
+    /// Relative difference of lengths, in any direction, up to which voxels share a metric; 0: only
+    /// equal metrics.
+    double tolerance = 0.01;
     bool half = false;  ///< numbers of 16 bits in the file
     VdbCompression compression = VdbCompression::blosc;
     std::vector<std::string> grids = {};  ///< names of metric_grids(); none: all of them
@@ -51,7 +52,8 @@ struct VdbReport {
 
 /// Samples `field` over `domain` at the centres of cubic voxels and writes metric_grids() to the
 /// .vdb file `path`, in the units of the domain; tensors are M, whose eigenvalues are lengths.
-/// Every active voxel is within `tolerance` of the field at its centre; 8^3 voxels that share a
+/// The lengths of every active voxel are those of the field at its centre within a factor of
+/// 1 + tolerance; 8^3 voxels that share a
 /// metric become a tile. Runs on all of TBB's threads, with the same grids whatever their number.
 ///
 /// Throws InputError for options out of range, names of grids that are not known, a field that is

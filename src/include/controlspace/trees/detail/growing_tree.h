@@ -19,7 +19,7 @@
 namespace controlspace {
 
 [[noreturn]] void fail_too_many_leaves();
-[[noreturn]] void fail_too_large(std::size_t max_bytes);
+[[noreturn]] void fail_too_large(std::size_t bytes, std::size_t max_bytes);
 /// AdaptationReport::shortfall where leaves of the deepest level are not cut.
 std::string depth_shortfall(int max_depth);
 
@@ -135,7 +135,7 @@ protected:
         const std::size_t gradation_bytes_per_leaf =
             neighbourhood == Neighbourhood::all ? 700 : 300;
         const std::size_t bytes = footprint().bytes_total() + leaves * gradation_bytes_per_leaf;
-        if (bytes > options_.max_bytes) fail_too_large(options_.max_bytes);
+        if (bytes > options_.max_bytes) fail_too_large(bytes, options_.max_bytes);
         next_check_ = leaves + leaves / 16;
     }
 

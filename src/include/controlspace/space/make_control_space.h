@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "controlspace/space/catalogue.h"
+
+namespace controlspace {
+
+/// The entry that is named `id`, or once was. Throws UnknownStructure, which lists the ids.
+const CatalogueEntry& entry_named(std::span<const CatalogueEntry> entries, std::string_view id);
+
+/// Builds the field of point sources, in one step; never null.
+///
+/// `id`: a tree (tree_catalogue, anchored_catalogue), or one of `entries`: those of structures()
+/// are all. `options`: its `ratio` is the gradation ratio of the sources; a finest_length of 0
+/// becomes theirs. `target`: with one, the structure is adapted to the exact field until δ is at
+/// most that, which `report`, unless null, says whether it was reached; without one, sources are
+/// inserted and graded, which is faster and less accurate.
+///
+/// Throws UnknownStructure, IndexedError for a source that cannot be used, MemoryLimitError where
+/// the structure would outgrow options.max_bytes, and InputError for options out of range.
+std::unique_ptr<ControlSpace> make_control_space(std::string_view id,
+                                                 std::span<const PointSource> sources,
+                                                 const SpaceOptions& options,
+                                                 std::optional<double> target = {},
+                                                 AdaptationReport* report = nullptr);
+std::unique_ptr<ControlSpace> make_control_space(std::span<const CatalogueEntry> entries,
+                                                 std::string_view id,
+                                                 std::span<const PointSource> sources,
+                                                 const SpaceOptions& options,
+                                                 std::optional<double> target = {},
+                                                 AdaptationReport* report = nullptr);
+
+/// The same, for more sources to come: the builder, filled.
+std::unique_ptr<ControlSpaceBuilder> make_filled_builder(const CatalogueEntry& entry,
+                                                         std::span<const PointSource> sources,
+                                                         SpaceOptions options,
+                                                         std::optional<double> target = {},
+                                                         AdaptationReport* report = nullptr);
+
+}  // namespace controlspace

@@ -1,0 +1,66 @@
+#include "controlspace/space/make_control_space.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "controlspace/input_errors.h"
+#include "files/text_file.h"
+
+namespace controlspace {
+
+const CatalogueEntry& entry_named(std::span<const CatalogueEntry> entries, std::string_view id) {
+    if (const CatalogueEntry* entry = find_entry(entries, id)) return *entry;
+    std::string ids;
+    for (const CatalogueEntry& entry : entries) {
+        ids.append(ids.empty() ? "" : ", ").append(entry.id);
+    }
+    throw UnknownStructure(fmt::format("there is no structure {}: give one of {}", quote(id), ids));
+}
+
+std::unique_ptr<ControlSpaceBuilder> make_filled_builder(const CatalogueEntry& entry,
+                                                         std::span<const PointSource> sources,
+                                                         SpaceOptions options,
+                                                         std::optional<double> target,
+                                                         AdaptationReport* report) {
+    for (std::size_t i = 0; i < sources.size(); ++i) require_valid(sources[i], i, options.domain);
+    if (options.finest_length == 0 && !sources.empty()) {
+        options.finest_length = finest_length(sources);
+    }
+    auto builder = entry.make(options);
+    AdaptationReport adapted;
+    if (target) {
+        adapted = builder->adapt({.sources = sources,
+                                  .continuous = nullptr,
+                                  .ratio = options.ratio,
+                                  .target = *target,
+                                  .intersection = options.intersection});
+    } else {
+        builder->insert(sources);
+        builder->grade({.ratio = options.ratio});
+    }
+    if (report != nullptr) *report = adapted;
+    return builder;
+}
+
+std::unique_ptr<ControlSpace> make_control_space(std::span<const CatalogueEntry> entries,
+                                                 std::string_view id,
+                                                 std::span<const PointSource> sources,
+                                                 const SpaceOptions& options,
+                                                 std::optional<double> target,
+                                                 AdaptationReport* report) {
+    return make_filled_builder(entry_named(entries, id), sources, options, target, report)->build();
+}
+
+std::unique_ptr<ControlSpace> make_control_space(std::string_view id,
+                                                 std::span<const PointSource> sources,
+                                                 const SpaceOptions& options,
+                                                 std::optional<double> target,
+                                                 AdaptationReport* report) {
+    std::vector<CatalogueEntry> trees(tree_catalogue().begin(), tree_catalogue().end());
+    trees.insert(trees.end(), anchored_catalogue().begin(), anchored_catalogue().end());
+    return make_control_space(trees, id, sources, options, target, report);
+}
+
+}  // namespace controlspace
