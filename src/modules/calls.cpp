@@ -20,6 +20,10 @@ SurfaceSources surface_sources(const SurfaceMesh& mesh, const CurvatureSizes& si
     return module_table<CgalModule>("cgal").surface_sources(mesh, sizes, file);
 }
 
+DistanceField surface_distance(const SurfaceMesh& mesh) {
+    return module_table<CgalModule>("cgal").surface_distance(mesh);
+}
+
 SurfaceMesh read_cad_surface(const fs::path& path) {
     return module_table<GmshModule>("gmsh").read_cad_surface(path);
 }

@@ -8,6 +8,7 @@
 #include "controlspace/io/read_vtk_sources.h"
 #include "controlspace/io/write_vdb.h"
 #include "gmsh/cad_surface.h"
+#include "io/surface/surface_distance.h"
 #include "io/surface/surface_mesh.h"
 #include "io/surface/surface_sources.h"
 
@@ -37,6 +38,7 @@ struct CgalModule {
     std::string_view version;
     decltype(&controlspace::read_surface_mesh) read_surface_mesh;
     decltype(&controlspace::surface_sources) surface_sources;
+    decltype(&controlspace::surface_distance) surface_distance;
 };
 
 /// The module of Gmsh, which is under the GPL: meshes and CAD files.

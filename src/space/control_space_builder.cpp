@@ -37,16 +37,19 @@ AdaptationReport NodeBuilder::adapt(const AdaptationGoal& goal) {
 }
 
 void require_valid(const PointSource& source, std::size_t index, const Box& domain) {
+    if (!is_valid(source, domain)) require_valid(source, fmt::format("source {}", index), domain);
+}
+
+void require_valid(const PointSource& source, const std::string& name, const Box& domain) {
     if (!domain.contains(source.position)) {
         throw InputError(fmt::format(
-            "source {} at ({}, {}, {}) lies outside the domain {}: enlarge the domain or drop it",
-            index, source.position.x(), source.position.y(), source.position.z(),
-            to_string(domain)));
+            "{} at ({}, {}, {}) lies outside the domain {}: enlarge the domain or drop it", name,
+            source.position.x(), source.position.y(), source.position.z(), to_string(domain)));
     }
     if (!is_positive_definite(source.metric)) {
-        throw InputError(fmt::format(
-            "source {} has the metric {} (xx yy zz xy xz yz), which is not positive definite",
-            index, to_string(source.metric)));
+        throw InputError(
+            fmt::format("{} has the metric {} (xx yy zz xy xz yz), which is not positive definite",
+                        name, to_string(source.metric)));
     }
 }
 

@@ -17,7 +17,7 @@ namespace {
 class SourceField final : public ControlSpace {
 public:
     SourceField(const GivenSources& given, double ratio, const SpaceOptions& space)
-        : cones_(given.all(), ratio, largest_metric(space.domain), tolerance, space.intersection) {}
+        : cones_(given.all(), ratio, largest_metric(space), tolerance, space.intersection) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         cones_.evaluate(x, out);

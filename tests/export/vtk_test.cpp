@@ -14,6 +14,7 @@
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridReader.h>
+#include <vtkXMLUnstructuredGridWriter.h>
 
 #include <Eigen/Geometry>
 #include <array>
@@ -27,6 +28,7 @@
 #include "controlspace/space/catalogue.h"
 #include "editable_space.h"
 #include "io/text/cells.h"
+#include "io/text/metric_rows.h"
 #include "io/text/vtk_xml.h"
 #include "sources/files.h"
 
@@ -248,9 +250,9 @@ TEST_CASE("arrays of 1, 6 and 9 components, however VTK encodes them") {
     const auto floats = write_vtp<vtkFloatArray>(folder, components, "size", *writer);
     check_close(read_vtk_sources(floats, "size"), expected, 1e-5);
     CHECK_THAT(error_of([&] { read_vtk_sources(floats); }),
-               Contains("no array of points is named :metric, there are 'size': name one"));
+               Contains("no array is named :metric, there are 'size': name one"));
     CHECK_THAT(error_of([&] { read_vtk_sources(floats, "sizes"); }),
-               Contains("0 of its arrays of points can be meant: name one of 'size'"));
+               Contains("no array is named 'sizes', there are 'size': name one"));
 }
 
 TEST_CASE("arrays that are no metrics are refused") {
@@ -260,4 +262,89 @@ TEST_CASE("arrays that are no metrics are refused") {
                    read_vtk_sources(write_vtp<vtkDoubleArray>(folder, 3, ":metric", *writer));
                }),
                Contains("array ':metric' has 3 components: give 1"));
+}
+
+TEST_CASE("data of cells are sources at the centres of the cells") {
+    const ScratchDirectory folder;
+    vtkNew<vtkUnstructuredGrid> grid;
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (const Point& p :
+         {Point(0, 0, 0), Point(4, 0, 0), Point(0, 4, 0), Point(0, 0, 4), Point(4, 4, 4)}) {
+        points->InsertNextPoint(p.data());
+    }
+    grid->SetPoints(points);
+    const std::array<vtkIdType, 4> first{0, 1, 2, 3}, second{1, 2, 3, 4};
+    grid->InsertNextCell(VTK_TETRA, 4, first.data());
+    grid->InsertNextCell(VTK_TETRA, 4, second.data());
+    const int components = GENERATE(1, 6, 9);
+    std::vector<PointSource> expected = two;
+    expected[0].position = {1, 1, 1};
+    expected[1].position = {2, 2, 2};
+    vtkNew<vtkDoubleArray> values;
+    values->SetName("a:metric");
+    values->SetNumberOfComponents(components);
+    for (PointSource& s : expected) {
+        if (components == 1) s.metric = Metric::isotropic(s.metric.xx);
+        const auto numbers = components == 1
+                                 ? std::array<double, 9>{s.metric.xx}
+                                 : numbers_of(s.metric, components == 6 ? vtk_tensor : matrix_rows);
+        values->InsertNextTuple(numbers.data());
+    }
+    grid->GetCellData()->AddArray(values);
+    const auto path = folder.path() / "cells.vtu";
+    const auto write = [&] {
+        vtkNew<vtkXMLUnstructuredGridWriter> writer;
+        writer->SetFileName(path.c_str());
+        writer->SetInputData(grid);
+        writer->Write();
+    };
+    write();
+    check_close(read_vtk_sources(path), expected);
+    check_close(read_vtk_sources(path, "a:metric"), expected);
+    CHECK_THAT(error_of([&] { read_vtk_sources(path, "b"); }),
+               Contains("no array is named 'b', there are 'a:metric' (of cells): name one"));
+
+    // Points come first, under the same name too.
+    vtkNew<vtkDoubleArray> of_points;
+    of_points->SetName("a:metric");
+    for (int i = 0; i < 5; ++i) of_points->InsertNextValue(0.5 + i);
+    grid->GetPointData()->AddArray(of_points);
+    write();
+    const auto read = read_vtk_sources(path);
+    REQUIRE(read.size() == 5);
+    CHECK(read[4].metric == Metric::isotropic(4.5));
+    grid->GetPointData()->RemoveArray("a:metric");
+
+    values->SetTuple1(1, -0.5);
+    if (components == 1) {
+        write();
+        CHECK_THAT(error_of([&] { read_vtk_sources(path); }), Contains("size 2 is -0.5"));
+    }
+    grid->GetCellData()->RemoveArray("a:metric");
+    write();
+    CHECK_THAT(error_of([&] { read_vtk_sources(path); }), Contains("it has no arrays"));
+}
+
+TEST_CASE("exported leaves, nodes and slices are sources again") {
+    const ScratchDirectory folder;
+    const auto space = filled(GENERATE("K_oL", "K_oV", "K_L"));
+    const auto check = [&](const std::vector<PointSource>& sources, std::size_t count) {
+        CHECK(sources.size() == count);
+        for (const PointSource& s : sources) {
+            Metric m;
+            space->sample({&s.position, 1}, {&m, 1});
+            CHECK(s.metric.matrix().isApprox(m.matrix(), 1e-10));
+        }
+    };
+    write_leaves(folder / "leaves.vtu", *space);
+    check(read_vtk_sources(folder / "leaves.vtu"), space->footprint().cells);
+    write_slice(folder / "slice.vti", *space, domain, {.at = 0.3, .samples = 31});
+    const auto slice = read_vtk_sources(folder / "slice.vti");
+    check(slice, 21 * 21);
+    for (const PointSource& s : slice) CHECK(s.position.z() == Approx(0.3));
+    const auto lengths = read_vtk_sources(folder / "slice.vti", "h_min");
+    for (std::size_t i = 0; i < slice.size(); ++i) {
+        CHECK(lengths[i].metric.xx == Approx(eigen_frame(slice[i].metric).lengths[0]));
+    }
 }

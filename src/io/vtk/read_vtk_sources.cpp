@@ -2,14 +2,18 @@
 
 #include <fmt/format.h>
 #include <vtkCallbackCommand.h>
+#include <vtkCellData.h>
 #include <vtkDataArray.h>
+#include <vtkDataSet.h>
 #include <vtkExecutive.h>
+#include <vtkIdList.h>
+#include <vtkImageData.h>
 #include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPointSet.h>
 #include <vtkPolyData.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
@@ -64,7 +68,7 @@ private:
 };
 
 template <class Reader>
-vtkSmartPointer<vtkPointSet> read_points(const std::filesystem::path& path) {
+vtkSmartPointer<vtkDataSet> read_data_set(const std::filesystem::path& path) {
     vtkNew<Reader> reader;
     ErrorLog errors;
     for (const auto event : {vtkCommand::ErrorEvent, vtkCommand::WarningEvent}) {
@@ -83,44 +87,81 @@ vtkSmartPointer<vtkPointSet> read_points(const std::filesystem::path& path) {
     return reader->GetOutput();
 }
 
-vtkDataArray& array_named(const std::filesystem::path& path, vtkPointData& data,
-                          const std::string& name) {
+/// Sizes or metrics, at points or in cells.
+struct Values {
+    vtkDataArray* array = nullptr;
+    bool at_points = true;
+};
+
+/// Arrays of numbers that have a name.
+std::vector<vtkDataArray*> arrays_of(vtkDataSetAttributes& data) {
     std::vector<vtkDataArray*> arrays;
-    std::vector<std::string> names;
-    std::string all;
     for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
         vtkDataArray* array = data.GetArray(i);
-        if (array == nullptr || array->GetName() == nullptr) continue;  // of texts, or nameless
-        const std::string its_name = array->GetName();
-        all += (all.empty() ? "" : ", ") + quote(its_name);
-        if (name.empty() && its_name.find(":metric") == its_name.npos) continue;
-        arrays.push_back(array);
-        names.push_back(its_name);
+        if (array != nullptr && array->GetName() != nullptr) arrays.push_back(array);
     }
-    if (all.empty()) fail(path, "its points have no arrays: give sizes or metrics at points");
-    if (names.empty()) {
-        fail(path, fmt::format("no array of points is named :metric, there are {}: name one "
-                               "(--source-array)",
-                               all));
+    return arrays;
+}
+
+/// The array of that name, the only one of metrics without a name; of cells where points have none.
+Values array_named(const std::filesystem::path& path, vtkDataSet& grid, const std::string& name) {
+    std::string all;
+    for (const bool at_points : {true, false}) {
+        const auto arrays =
+            at_points ? arrays_of(*grid.GetPointData()) : arrays_of(*grid.GetCellData());
+        std::vector<vtkDataArray*> fitting;
+        std::vector<std::string> names;
+        for (vtkDataArray* array : arrays) {
+            const std::string its_name = array->GetName();
+            all.append(all.empty() ? "" : ", ").append(quote(its_name));
+            if (!at_points) all.append(" (of cells)");
+            if (name.empty() ? its_name.find(":metric") == its_name.npos : its_name != name)
+                continue;
+            fitting.push_back(array);
+            names.push_back(its_name);
+        }
+        if (fitting.empty()) continue;
+        const char* kind = at_points ? "arrays of points" : "arrays of cells";
+        return {fitting[chosen_array(path, kind, names, name)], at_points};
     }
-    return *arrays[chosen_array(path, "arrays of points", names, name)];
+    if (all.empty()) fail(path, "it has no arrays: give sizes or metrics at points or of cells");
+    fail(path, fmt::format("no array is named {}, there are {}: name one (--source-array)",
+                           name.empty() ? ":metric" : quote(name), all));
+}
+
+/// The mean of a cell's points.
+Point centre_of(const std::filesystem::path& path, vtkDataSet& grid, vtkIdType cell) {
+    vtkNew<vtkIdList> points;
+    grid.GetCellPoints(cell, points);
+    const vtkIdType n = points->GetNumberOfIds();
+    if (n == 0) fail(path, fmt::format("cell {} has no points: leave it out", cell + 1));
+    Point sum = Point::Zero();
+    for (vtkIdType k = 0; k < n; ++k) {
+        Point x;
+        grid.GetPoint(points->GetId(k), x.data());
+        sum += x;
+    }
+    return sum / static_cast<double>(n);
 }
 
 }  // namespace
 
 std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
-                                          const std::string& array) {
+                                          const std::string& name) {
     if (read_binary_file(path).find("<VTKFile") == std::string::npos) {
         fail(path, "no VTKFile element: give a file in VTK's XML format");
     }
-    const auto grid = lower_case_extension(path) == ".vtp"
-                          ? read_points<vtkXMLPolyDataReader>(path)
-                          : read_points<vtkXMLUnstructuredGridReader>(path);
-    vtkDataArray& values = array_named(path, *grid->GetPointData(), array);
-    const vtkIdType count = grid->GetNumberOfPoints();
-    if (count == 0) fail(path, "no points: nothing to read");
+    const std::string ending = lower_case_extension(path);
+    const auto grid = ending == ".vtp"   ? read_data_set<vtkXMLPolyDataReader>(path)
+                      : ending == ".vti" ? read_data_set<vtkXMLImageDataReader>(path)
+                                         : read_data_set<vtkXMLUnstructuredGridReader>(path);
+    const auto [array, at_points] = array_named(path, *grid, name);
+    vtkDataArray& values = *array;
+    const vtkIdType count = at_points ? grid->GetNumberOfPoints() : grid->GetNumberOfCells();
+    const char* what = at_points ? "point" : "cell";
+    if (count == 0) fail(path, fmt::format("no {}s: nothing to read", what));
     if (values.GetNumberOfTuples() != count) {
-        fail(path, fmt::format("{} points, but {} values in {}: is it cut off?", count,
+        fail(path, fmt::format("{} {}s, but {} values in {}: is it cut off?", count, what,
                                values.GetNumberOfTuples(), quote(values.GetName())));
     }
     const auto components = static_cast<std::size_t>(values.GetNumberOfComponents());
@@ -134,8 +175,12 @@ std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
     std::array<double, 9> numbers{};
     for (vtkIdType i = 0; i < count; ++i) {
         Point& x = positions[static_cast<std::size_t>(i)];
-        grid->GetPoint(i, x.data());
-        require_coordinates(x, "point", static_cast<std::size_t>(i) + 1, where);
+        if (at_points) {
+            grid->GetPoint(i, x.data());
+        } else {
+            x = centre_of(path, *grid, i);
+        }
+        require_coordinates(x, what, static_cast<std::size_t>(i) + 1, where);
         values.GetTuple(i, numbers.data());
         metrics.add(std::span(numbers).first(components));
     }
