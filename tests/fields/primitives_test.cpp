@@ -154,6 +154,7 @@ TEST_CASE("what is no primitive is refused with the text and the remedy") {
         {"ball:0,0,0,radius=1,h=1", "unknown setting 'radius': known are r, h and g"},
         {"box:0,1,0,1,0,1,r=1,h=1", "unknown setting 'r': known are h and g"},
         {"ball:0,0,0,r=1,h=1,g=0.5", "g is 0.5: give a gradation ratio from 1"},
+        {"ball:0,0,0,r=1,h=1,g=5.1", "g is 5.1: give a gradation ratio from 1 to 5"},
         {"ball:0,0,0,r=1,h=1,g=nan", "g is nan: give a gradation ratio from 1"},
         {"ball:0,0,x,r=1,h=1", "'x' is no number"},
         {"ball:0,0,0,r=1,h=", "'' is no number"},

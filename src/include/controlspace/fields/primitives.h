@@ -25,7 +25,8 @@ enum class Shape { box, ball, cylinder, segment, surface };
 ///   segment:x0,y0,z0,x1,y1,z1,h=0.02
 ///   surface:part.stl,h=0.02               the triangles of a file, growing on both sides
 ///
-/// and g=1.5 for a growth of its own, as a gradation ratio of 1 or more.
+/// and g=1.5 for a growth of its own, as a gradation ratio from 1 to 5, the steepest that trees can
+/// follow.
 struct Primitive {
     Shape shape = Shape::ball;
     Point a = Point::Zero();           ///< lowest corner, centre, or one end
