@@ -120,8 +120,16 @@ FileReaders file_readers() {
         };
     }
     readers.vdb_field = [](const FieldChoice& choice) {
-        const auto read = [&] { return read_vdb_field(choice.file, choice.vdb); };
-        load_module("openvdb");
+        const std::string ending = lower_case_extension(choice.file);
+        const bool is_vtk = ending == ".vtu" || ending == ".vti";
+        if (is_vtk && choice.vdb.density) {
+            throw InputError("field_density_sizes is for a .vdb: leave it out");
+        }
+        const auto read = [&] {
+            return is_vtk ? read_vtk_field(choice.file, choice.vdb.grid)
+                          : read_vdb_field(choice.file, choice.vdb);
+        };
+        load_module(is_vtk ? "vtk" : "openvdb");
         require_readable(choice.file, read);
         return read();
     };

@@ -11,6 +11,10 @@ std::vector<PointSource> read_vtk_sources(const fs::path& path, const std::strin
     return module_table<VtkModule>("vtk").read_vtk_sources(path, array);
 }
 
+AnalyticField read_vtk_field(const fs::path& path, const std::string& array) {
+    return module_table<VtkModule>("vtk").read_vtk_field(path, array);
+}
+
 SurfaceMesh read_surface_mesh(const fs::path& path) {
     return module_table<CgalModule>("cgal").read_surface_mesh(path);
 }

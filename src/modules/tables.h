@@ -31,6 +31,7 @@ struct OpenvdbModule {
 struct VtkModule {
     std::string_view version;
     decltype(&controlspace::read_vtk_sources) read_vtk_sources;
+    decltype(&controlspace::read_vtk_field) read_vtk_field;
 };
 
 /// The module of CGAL: sources from surfaces.

@@ -104,7 +104,7 @@ void require_sensible(const Case& c) {
         throw InputError("neither sources nor a field: give one of them");
     }
     if (c.sources.field.kind == FieldKind::file && c.sources.field.file.empty()) {
-        throw InputError("field = \"file\" needs field_file: name a .vdb");
+        throw InputError("field = \"file\" needs field_file: name a .vdb, .vtu or .vti");
     }
     if (!(c.sources.h_min <= c.sources.h_max)) {
         throw InputError(fmt::format("h_min is {} and h_max {}: give h_min <= h_max",

@@ -330,10 +330,12 @@ std::vector<Parameter<Study>> table() {
         {"field_largest", length,
          "Length up to which they grow; left out: half of the domain's diagonal", field_largest(),
          making, field_surface},
-        {"field_file", "", "The .vdb of the field file", text_of(of_field(&FieldChoice::file)),
-         making, field_file},
+        {"field_file", "", "The file of the field file: a .vdb, or the cells of a .vtu or .vti",
+         text_of(of_field(&FieldChoice::file)), making, field_file},
         {"field_grid", "",
-         "Its grid of lengths, or of densities; left out: metric_diag and metric_off",
+         "Its grid of lengths, or of densities; left out: metric_diag and metric_off. Of a .vtu or "
+         ".vti "
+         "its array of sizes or metrics; left out: the one named :metric",
          text_of([](auto& s) -> auto& { return s.sources.field.vdb.grid; }), making, field_file},
         {"field_density_sizes", length,
          "Lengths at densities 1 and 0 of that grid; left out: the grid contains lengths",

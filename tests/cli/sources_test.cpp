@@ -121,9 +121,6 @@ TEST_CASE("sources that cannot be used are named in one line") {
         {"--sources ball:0,0,0,r=1,h=0.1,nan.csv", "nan.csv: no such file"},
         {"--sources surface:s.csv,h=0.1", "s.csv is no part"},
         {"s.csv --sources sphere", "--sources sphere does not go with s.csv"},
-#ifdef CONTROLSPACE_CGAL
-        {"--sources surface:none.stl,h=0.1", "none.stl"},
-#endif
     }));
     CAPTURE(arguments);
     check_refused(box.run("build -o out.ctrl " + arguments), expected);
@@ -148,6 +145,7 @@ TEST_CASE("lengths grow with the distance from a surface, on both sides") {
     CHECK(worst(box.run("query parts/study.toml places.csv"), expected) < 1.11);
     fs::copy_file(box / "parts/plane.off", box / "parts/plane.csv");
     check_refused(box.run("build --sources surface:parts/plane.csv,h=1 -o f.ctrl"), "is no part");
+    check_refused(box.run("build --sources surface:none.stl,h=1 -o f.ctrl"), "none.stl");
 }
 #endif
 
@@ -170,6 +168,16 @@ TEST_CASE("exports are sources again: the field that is graded from them is clos
             box.run("query " + std::string(file) + domain + " --structures direct places.csv");
         CHECK(worst(direct, expected) < 1.12);
     }
+    // As a finished field: in each leaf the length at its centre, which no place of it is far from.
+    const Outcome field = box.run(
+        "build --sources none --field file --field-file leaves.vtu --structures K_oL -o "
+        "again.ctrl");
+    INFO(field.err);
+    REQUIRE(field.status == 0);
+    const auto of_leaf = rows_of(box.run("query f.ctrl places.csv").out);
+    std::size_t next = 0;
+    const Outcome again = box.run("query again.ctrl places.csv");
+    CHECK(worst(again, [&](double, double, double) { return of_leaf[next++][3]; }) < 1.6);
     CHECK_THAT(box.run("info slice.vti").out, Contains("sources      1681, all positive definite"));
     CHECK(box.run("convert leaves.vtu leaves.csv").status == 0);
 }

@@ -1,26 +1,33 @@
 #include "controlspace/io/read_vtk_sources.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <vtkCallbackCommand.h>
+#include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
 #include <vtkExecutive.h>
+#include <vtkGenericCell.h>
 #include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkStaticCellLocator.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <algorithm>
 #include <array>
+#include <memory>
 #include <new>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
@@ -104,7 +111,9 @@ std::vector<vtkDataArray*> arrays_of(vtkDataSetAttributes& data) {
 }
 
 /// The array of that name, the only one of metrics without a name; of cells where points have none.
-Values array_named(const std::filesystem::path& path, vtkDataSet& grid, const std::string& name) {
+/// `option` names one, for messages.
+Values array_named(const std::filesystem::path& path, vtkDataSet& grid, const std::string& name,
+                   const char* option) {
     std::string all;
     for (const bool at_points : {true, false}) {
         const auto arrays =
@@ -118,15 +127,18 @@ Values array_named(const std::filesystem::path& path, vtkDataSet& grid, const st
             if (name.empty() ? its_name.find(":metric") == its_name.npos : its_name != name)
                 continue;
             fitting.push_back(array);
-            names.push_back(its_name);
+            names.push_back(quote(its_name));
         }
-        if (fitting.empty()) continue;
-        const char* kind = at_points ? "arrays of points" : "arrays of cells";
-        return {fitting[chosen_array(path, kind, names, name)], at_points};
+        if (fitting.size() > 1) {
+            fail(path, fmt::format("{} of its arrays of {} can be meant: name one of {} ({})",
+                                   fitting.size(), at_points ? "points" : "cells",
+                                   fmt::join(names, ", "), option));
+        }
+        if (!fitting.empty()) return {fitting.front(), at_points};
     }
     if (all.empty()) fail(path, "it has no arrays: give sizes or metrics at points or of cells");
-    fail(path, fmt::format("no array is named {}, there are {}: name one (--source-array)",
-                           name.empty() ? ":metric" : quote(name), all));
+    fail(path, fmt::format("no array is named {}, there are {}: name one ({})",
+                           name.empty() ? ":metric" : quote(name), all, option));
 }
 
 /// The mean of a cell's points.
@@ -144,10 +156,16 @@ Point centre_of(const std::filesystem::path& path, vtkDataSet& grid, vtkIdType c
     return sum / static_cast<double>(n);
 }
 
-}  // namespace
+/// The metrics at the points or centres of cells of a file.
+struct VtkMetrics {
+    vtkSmartPointer<vtkDataSet> grid;
+    bool at_points;
+    std::vector<Point> positions;
+    std::vector<Metric> metrics;
+};
 
-std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
-                                          const std::string& name) {
+VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& name,
+                        const char* option) {
     if (read_binary_file(path).find("<VTKFile") == std::string::npos) {
         fail(path, "no VTKFile element: give a file in VTK's XML format");
     }
@@ -155,7 +173,7 @@ std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
     const auto grid = ending == ".vtp"   ? read_data_set<vtkXMLPolyDataReader>(path)
                       : ending == ".vti" ? read_data_set<vtkXMLImageDataReader>(path)
                                          : read_data_set<vtkXMLUnstructuredGridReader>(path);
-    const auto [array, at_points] = array_named(path, *grid, name);
+    const auto [array, at_points] = array_named(path, *grid, name, option);
     vtkDataArray& values = *array;
     const vtkIdType count = at_points ? grid->GetNumberOfPoints() : grid->GetNumberOfCells();
     const char* what = at_points ? "point" : "cell";
@@ -184,7 +202,80 @@ std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
         values.GetTuple(i, numbers.data());
         metrics.add(std::span(numbers).first(components));
     }
-    return sources_from(positions, metrics.take());
+    return {grid, at_points, std::move(positions), metrics.take()};
+}
+
+/// Constant in each cell, or by the cells' shape functions between points.
+class CellField final : public ControlSpace {
+public:
+    explicit CellField(VtkMetrics data) : data_(std::move(data)) {
+        std::array<double, 6> bounds{};
+        data_.grid->GetBounds(bounds.data());
+        domain_ = {{bounds[0], bounds[2], bounds[4]}, {bounds[1], bounds[3], bounds[5]}};
+        locator_->SetDataSet(data_.grid);
+        locator_->BuildLocator();
+    }
+
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+        const vtkNew<vtkGenericCell> cell;
+        std::vector<double> weights(static_cast<std::size_t>(data_.grid->GetMaxCellSize()));
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            out[i] = at(x[i].cwiseMax(domain_.low).cwiseMin(domain_.high), cell, weights);
+        }
+    }
+    Box domain() const override { return domain_; }
+
+private:
+    Metric at(Point x, vtkGenericCell* cell, std::vector<double>& weights) const {
+        Point inside;
+        int part = 0;
+        double distance = 0;
+        vtkIdType id = locator_->FindCell(x.data(), 0, cell, inside.data(), weights.data());
+        if (id < 0) {  // between cells, or beside an uneven boundary
+            Point nearest;
+            locator_->FindClosestPoint(x.data(), nearest.data(), cell, id, part, distance);
+            cell->EvaluatePosition(nearest.data(), nullptr, part, inside.data(), distance,
+                                   weights.data());
+        }
+        if (!data_.at_points) return data_.metrics[static_cast<std::size_t>(id)];
+        Metric sum{0, 0, 0, 0, 0, 0};
+        double all = 0;
+        for (int k = 0; k < static_cast<int>(cell->GetNumberOfPoints()); ++k) {
+            const double weight = std::max(0.0, weights[static_cast<std::size_t>(k)]);
+            const Metric& m = data_.metrics[static_cast<std::size_t>(cell->GetPointId(k))];
+            sum = {sum.xx + weight * m.xx, sum.yy + weight * m.yy, sum.zz + weight * m.zz,
+                   sum.xy + weight * m.xy, sum.xz + weight * m.xz, sum.yz + weight * m.yz};
+            all += weight;
+        }
+        return (1 / all) * sum;
+    }
+
+    VtkMetrics data_;
+    Box domain_;
+    vtkNew<vtkStaticCellLocator> locator_;
+};
+
+}  // namespace
+
+std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
+                                          const std::string& name) {
+    const VtkMetrics data = read_metrics(path, name, "--source-array");
+    return sources_from(data.positions, data.metrics);
+}
+
+AnalyticField read_vtk_field(const std::filesystem::path& path, const std::string& name) {
+    VtkMetrics data = read_metrics(path, name, "--field-grid");
+    for (vtkIdType i = 0; i < data.grid->GetNumberOfCells(); ++i) {
+        if (data.grid->GetCell(i)->GetCellDimension() == 3) continue;
+        fail(path, fmt::format("cell {} has no volume, so that nothing is between points: leave "
+                               "such cells out, or read points as sources (--sources)",
+                               i + 1));
+    }
+    if (data.grid->GetNumberOfCells() == 0) fail(path, "no cells: nothing to read");
+    double finest = largest_magnitude;
+    for (const Metric& m : data.metrics) finest = std::min(finest, eigen_frame(m).lengths[0]);
+    std::vector<Point> places = data.positions;
+    return {std::make_shared<CellField>(std::move(data)), finest, std::move(places)};
 }
 
 }  // namespace controlspace

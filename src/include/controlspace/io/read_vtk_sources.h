@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "controlspace/fields/analytic_field.h"
 #include "controlspace/sources/point_source.h"
 
 namespace controlspace {
@@ -22,5 +23,11 @@ namespace controlspace {
 /// unknown origin in a process of their own first, as the program does.
 std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
                                           const std::string& array = {});
+
+/// A finished field: in each cell of a .vtu or .vti (all with a volume) its own metric, or, of
+/// arrays of points, the metrics M blended linearly by the cell's shape functions. It is defined in
+/// the box of the cells; where that has no cell, and outside, the nearest place of a cell answers.
+/// Throws InputError as above, and for cells without a volume.
+AnalyticField read_vtk_field(const std::filesystem::path& path, const std::string& array = {});
 
 }  // namespace controlspace
