@@ -24,7 +24,10 @@ namespace {
 class Sources {
 public:
     explicit Sources(const SpaceOptions& options)
-        : domain_(options.domain), ratio_(options.ratio), intersection_(options.intersection) {
+        : domain_(options.domain),
+          ratio_(options.ratio),
+          h_max_(options.h_max),
+          intersection_(options.intersection) {
         require_valid(options);
     }
 
@@ -92,6 +95,7 @@ public:
 
     const Box& domain() const { return domain_; }
     double ratio() const { return ratio_; }
+    Metric largest() const { return largest_metric(domain_, h_max_); }
     IntersectionRule rule() const { return intersection_; }
     const std::vector<PointSource>& all() const { return sources_; }
     const ControlSpace* continuous() const { return continuous_.get(); }
@@ -107,6 +111,7 @@ private:
 
     Box domain_;
     double ratio_;
+    double h_max_;
     IntersectionRule intersection_;
     std::vector<PointSource> sources_;
     std::shared_ptr<const ControlSpace> continuous_;
@@ -117,7 +122,7 @@ class Direct final : public ControlSpace, public HasControlNodes, public Saved {
 public:
     explicit Direct(std::shared_ptr<const Sources> sources)
         : sources_(std::move(sources)),
-          cones_(sources_->all(), sources_->ratio(), largest_metric(sources_->domain()),
+          cones_(sources_->all(), sources_->ratio(), sources_->largest(),
                  sources_->rule() == IntersectionRule::order_free ? tolerance : 0,
                  sources_->rule()) {}
 
@@ -170,6 +175,7 @@ std::unique_ptr<ControlSpace> Sources::finished(std::shared_ptr<const Sources> s
 AdaptationReport Sources::adapt(const AdaptationGoal& goal) {
     const GoalField wanted(goal, domain_);
     ratio_ = goal.ratio;
+    h_max_ = std::min(h_max_, goal.h_max);
     intersection_ = goal.intersection;
     sources_.assign(goal.sources.begin(), goal.sources.end());
     continuous_ = goal.continuous;

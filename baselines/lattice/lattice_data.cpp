@@ -177,7 +177,7 @@ void LatticeData::round(std::vector<Metric>& metrics) const {
 
 const std::vector<Metric>& LatticeData::field() const {
     if (field_.empty()) {
-        field_ = large_array<Metric>(lattice().size(), largest_metric(domain()));
+        field_ = large_array<Metric>(lattice().size(), largest_metric(options()));
         round(field_);
     }
     return field_;

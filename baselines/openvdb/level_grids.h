@@ -151,7 +151,7 @@ private:
     static constexpr const char* field_name = "levels.field";
     static constexpr const char* requested_name = "levels.requested";
 
-    LevelStack new_stack() const { return {cells_, largest_metric(options_.domain), Values()}; }
+    LevelStack new_stack() const { return {cells_, largest_metric(options_), Values()}; }
     void load_stack(LevelStack& stack, const char* name, const StateReader& state) {
         load_levels(stack, cells_, name, state, [&](LevelWriter& at, int level, const Coord& c) {
             split(stack, at, level, c);

@@ -13,7 +13,7 @@ public:
     static constexpr bool shares_field = false;
 
     explicit VdbTree(const std::shared_ptr<const LatticeData>& data)
-        : tree_(VdbMetric(largest_metric(data->domain()))) {
+        : tree_(VdbMetric(largest_metric(data->options()))) {
         fill_densely(tree_, *data, [](const Metric& m) { return VdbMetric(m); });
         const double delta = data->options().prune_delta;
         // Voxels that fill up the outermost leaves are inactive, and nobody reads them.

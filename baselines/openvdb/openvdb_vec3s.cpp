@@ -35,7 +35,7 @@ public:
     static constexpr bool shares_field = false;
 
     explicit Vec3sPair(const std::shared_ptr<const LatticeData>& data)
-        : diagonals_(diagonal(largest_metric(data->domain()))), off_diagonals_(Vec3s(0)) {
+        : diagonals_(diagonal(largest_metric(data->options()))), off_diagonals_(Vec3s(0)) {
         fill_densely(diagonals_, *data, diagonal);
         fill_densely(off_diagonals_, *data, off_diagonal);
     }

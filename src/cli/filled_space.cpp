@@ -54,9 +54,7 @@ FilledSpace filled_space(const std::filesystem::path& input, const std::filesyst
         return filled;
     }
     Study study = study_of_input(input, given);
-    std::vector<std::filesystem::path> read = files_of(study.sources);
-    read.push_back(study.sources.field.file);
-    require_no_input(output, read);
+    require_no_input(output, input_files_of(study.sources));
     filled.threads = limit_threads(study.threads);
     Case c = only_case(study);
     Workload workload = make_workload(study, c.sources, file_readers());

@@ -13,6 +13,7 @@
 #include "controlspace/io/read_vdb.h"
 #include "controlspace/io/read_vtk_sources.h"
 #include "gmsh/cad_surface.h"
+#include "io/surface/surface_distance.h"
 #include "io/surface/surface_mesh.h"
 #include "io/surface/surface_sources.h"
 #include "modules/load.h"
@@ -68,6 +69,7 @@ constexpr SourceFormat formats[] = {
     {".vdb", "openvdb", read_vdb},
     {".vtu", "vtk", read_vtk},
     {".vtp", "vtk", read_vtk},
+    {".vti", "vtk", read_vtk},
     {".stl", "cgal", read_surface, try_surface},
     {".obj", "cgal", read_surface, try_surface},
     {".ply", "cgal", read_surface, try_surface},
@@ -95,6 +97,12 @@ const SourceFormat* format_of(const std::filesystem::path& file) {
 
 }  // namespace
 
+[[noreturn]] void fail_as_no_part(const std::filesystem::path& file) {
+    throw InputError(fmt::format(
+        "{} is no part: name a .stl, .obj, .ply, .off, .step, .stp, .iges, .igs or .brep",
+        file.string()));
+}
+
 bool is_part(const std::filesystem::path& file) {
     const SourceFormat* format = format_of(file);
     return format != nullptr && format->try_read != nullptr;
@@ -102,11 +110,7 @@ bool is_part(const std::filesystem::path& file) {
 
 Part read_part(const std::filesystem::path& file, double crease) {
     const SourceFormat* format = format_of(file);
-    if (!is_part(file)) {
-        throw InputError(fmt::format(
-            "{} is no part: name a .stl, .obj, .ply, .off, .step, .stp, .iges, .igs or .brep",
-            file.string()));
-    }
+    if (!is_part(file)) fail_as_no_part(file);
     load_module(format->module);
     require_readable(file, [&] { format->try_read({.file = file}); });
     if (format->read == read_cad) return {.cad = file};
@@ -122,17 +126,36 @@ FileReaders file_readers() {
         };
     }
     readers.vdb_field = [](const FieldChoice& choice) {
-        const auto read = [&] { return read_vdb_field(choice.file, choice.vdb); };
-        load_module("openvdb");
+        const std::string ending = lower_case_extension(choice.file);
+        const bool is_vtk = ending == ".vtu" || ending == ".vti";
+        if (is_vtk && choice.vdb.density) {
+            throw InputError("field_density_sizes is for a .vdb: leave it out");
+        }
+        const auto read = [&] {
+            return is_vtk ? read_vtk_field(choice.file, choice.vdb.grid)
+                          : read_vdb_field(choice.file, choice.vdb);
+        };
+        load_module(is_vtk ? "vtk" : "openvdb");
         require_readable(choice.file, read);
         return read();
+    };
+    readers.surface_distance = [](const std::filesystem::path& file) {
+        const SourceFormat* format = format_of(file);
+        if (!is_part(file)) fail_as_no_part(file);
+        load_module(format->module);
+        require_readable(file, [&] { format->try_read({.file = file}); });
+        const bool is_cad = format->read == read_cad;
+        const SurfaceMesh mesh = is_cad ? read_cad_surface(file) : read_surface_mesh(file);
+        load_module("cgal");
+        return surface_distance(mesh);
     };
     return readers;
 }
 
 std::string source_formats_help() {
     return "Sources: .csv; .mesh, .sol, .meshb or .solb, the other beside it; .pos; .msh; .vtu, "
-           ".vtp; or a surface: .stl, .obj, .ply, .off, or in a .vdb; or CAD: .step, .iges, .brep";
+           ".vtp, .vti; or a surface: .stl, .obj, .ply, .off, or in a .vdb; or CAD: .step, .iges, "
+           ".brep";
 }
 
 }  // namespace controlspace

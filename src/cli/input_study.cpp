@@ -17,6 +17,25 @@
 
 namespace controlspace {
 
+namespace {
+
+/// Before the others.
+void add_file(const std::filesystem::path& file, SourcesChoice& sources) {
+    std::vector<std::filesystem::path> files = files_of(sources);
+    if (sources.kind != SourcesKind::file) {
+        if (sources.primitives.empty() || sources.kind != SourcesKind::none) {
+            throw InputError(fmt::format("--sources {} does not go with {}: leave one out",
+                                         sources_name(sources), file.string()));
+        }
+        sources.kind = SourcesKind::file;
+    }
+    if (std::ranges::count(files, file) > 0) return;
+    sources.file = file;
+    sources.further_files = std::move(files);
+}
+
+}  // namespace
+
 Study study_of_input(const std::filesystem::path& input, const GivenSettings& given) {
     Study study;
     if (input.extension() == ".toml") {
@@ -28,7 +47,12 @@ Study study_of_input(const std::filesystem::path& input, const GivenSettings& gi
             study.sources.file = input;
         }
     }
+    const auto is_sources = [](const auto& setting) { return setting.first == "sources"; };
+    const bool is_one_of_several = study.sources.kind == SourcesKind::file &&
+                                   input.extension() != ".toml" &&
+                                   std::ranges::any_of(given, is_sources);
     apply(given, study);
+    if (is_one_of_several) add_file(input, study.sources);
     return study;
 }
 
@@ -42,13 +66,13 @@ DefaultTarget::DefaultTarget(const std::filesystem::path& input, const GivenSett
 }
 
 bool DefaultTarget::set(Case& c, std::span<const PointSource> sources) const {
-    constexpr double within = 1.1;
+    if (applies_ && has_field(c.sources)) return c.target_delta.has_value();  // by expand
     const auto is_length = [](const PointSource& s) { return is_isotropic(s.metric); };
     if (!applies_ || c.structure != "K_oV" || sources.empty() ||
         !std::ranges::all_of(sources, is_length)) {
         return false;
     }
-    c.target_delta = nonconformity_of_factor(within);
+    c.target_delta = nonconformity_of_factor(default_within);
     return true;
 }
 

@@ -11,6 +11,10 @@ std::vector<PointSource> read_vtk_sources(const fs::path& path, const std::strin
     return module_table<VtkModule>("vtk").read_vtk_sources(path, array);
 }
 
+AnalyticField read_vtk_field(const fs::path& path, const std::string& array) {
+    return module_table<VtkModule>("vtk").read_vtk_field(path, array);
+}
+
 SurfaceMesh read_surface_mesh(const fs::path& path) {
     return module_table<CgalModule>("cgal").read_surface_mesh(path);
 }
@@ -18,6 +22,10 @@ SurfaceMesh read_surface_mesh(const fs::path& path) {
 SurfaceSources surface_sources(const SurfaceMesh& mesh, const CurvatureSizes& sizes,
                                const fs::path& file) {
     return module_table<CgalModule>("cgal").surface_sources(mesh, sizes, file);
+}
+
+DistanceField surface_distance(const SurfaceMesh& mesh) {
+    return module_table<CgalModule>("cgal").surface_distance(mesh);
 }
 
 SurfaceMesh read_cad_surface(const fs::path& path) {

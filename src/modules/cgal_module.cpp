@@ -6,6 +6,7 @@ CONTROLSPACE_MODULE {
     static const controlspace::CgalModule table{
         .version = controlspace::version(),
         .read_surface_mesh = controlspace::read_surface_mesh,
-        .surface_sources = controlspace::surface_sources};
+        .surface_sources = controlspace::surface_sources,
+        .surface_distance = controlspace::surface_distance};
     return &table;
 }

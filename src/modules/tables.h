@@ -8,6 +8,7 @@
 #include "controlspace/io/read_vtk_sources.h"
 #include "controlspace/io/write_vdb.h"
 #include "gmsh/cad_surface.h"
+#include "io/surface/surface_distance.h"
 #include "io/surface/surface_mesh.h"
 #include "io/surface/surface_sources.h"
 
@@ -30,6 +31,7 @@ struct OpenvdbModule {
 struct VtkModule {
     std::string_view version;
     decltype(&controlspace::read_vtk_sources) read_vtk_sources;
+    decltype(&controlspace::read_vtk_field) read_vtk_field;
 };
 
 /// The module of CGAL: sources from surfaces.
@@ -37,6 +39,7 @@ struct CgalModule {
     std::string_view version;
     decltype(&controlspace::read_surface_mesh) read_surface_mesh;
     decltype(&controlspace::surface_sources) surface_sources;
+    decltype(&controlspace::surface_distance) surface_distance;
 };
 
 /// The module of Gmsh, which is under the GPL: meshes and CAD files.

@@ -4,6 +4,7 @@
 
 CONTROLSPACE_MODULE {
     static const controlspace::VtkModule table{.version = controlspace::version(),
-                                               .read_vtk_sources = controlspace::read_vtk_sources};
+                                               .read_vtk_sources = controlspace::read_vtk_sources,
+                                               .read_vtk_field = controlspace::read_vtk_field};
     return &table;
 }

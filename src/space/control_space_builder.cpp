@@ -37,25 +37,28 @@ AdaptationReport NodeBuilder::adapt(const AdaptationGoal& goal) {
 }
 
 void require_valid(const PointSource& source, std::size_t index, const Box& domain) {
-    if (!domain.contains(source.position)) {
-        throw IndexedError(index, fmt::format("source {} at ({}, {}, {}) lies outside the domain "
-                                              "{}: enlarge the domain or drop it",
-                                              index, source.position.x(), source.position.y(),
-                                              source.position.z(), to_string(domain)));
+    if (!is_valid(source, domain)) {
+        require_valid(source, index, fmt::format("source {}", index), domain);
     }
-    if (!is_positive_definite(source.metric)) {
-        throw IndexedError(
-            index,
-            fmt::format(
-                "source {} has the metric {} (xx yy zz xy xz yz), which is not positive definite",
-                index, to_string(source.metric)));
-    }
-    if (!is_source_growth(source.growth)) {
-        throw InputError(fmt::format(
-            "source {} has the gradation ratio {}: give one from 1 to 1e6, or 0 for that of the "
-            "field",
-            index, source.growth));
-    }
+}
+
+void require_valid(const PointSource& source, std::size_t index, const std::string& name,
+                   const Box& domain) {
+    const auto require = [&](bool holds, const std::string& what) {
+        if (!holds) throw IndexedError(index, name + what);
+    };
+    const Point& p = source.position;
+    require(
+        domain.contains(p),
+        fmt::format(" at ({}, {}, {}) lies outside the domain {}: enlarge the domain or drop it",
+                    p.x(), p.y(), p.z(), to_string(domain)));
+    require(is_positive_definite(source.metric),
+            fmt::format(" has the metric {} (xx yy zz xy xz yz), which is not positive definite",
+                        to_string(source.metric)));
+    require(is_source_growth(source.growth),
+            fmt::format(" has the gradation ratio {}: give one from 1 to 1e6, or 0 for that of the "
+                        "field",
+                        source.growth));
 }
 
 bool is_valid(const PointSource& source, const Box& domain) {

@@ -140,6 +140,7 @@ void save(const std::filesystem::path& file, const Saved* saved) {
     state("structure", recipe.structure);
     exchange(recipe.options, state);
     state("options.intersection", recipe.options.intersection, IntersectionRule::in_turn);
+    state("options.h_max", recipe.options.h_max);
     if (recipe.precision) state("compact.precision", *recipe.precision, Precision::floats);
     saved->save(state);
     if (saved->given()) saved->given()->save(state);
@@ -185,6 +186,7 @@ SavedControlSpace open_control_space(const std::filesystem::path& file,
     if (state.has("options.intersection")) {
         state("options.intersection", saved.recipe.options.intersection, IntersectionRule::in_turn);
     }
+    if (state.has("options.h_max")) state("options.h_max", saved.recipe.options.h_max);
     const CatalogueEntry* entry = find_entry(structures, structure);
     if (entry == nullptr) {
         throw InputError(fmt::format(

@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "cones/cone_field.h"
-#include "controlspace/error.h"
+#include "controlspace/input_errors.h"
 #include "controlspace/metric/intersection.h"
 #include "geometry/threads.h"
 
@@ -19,7 +19,7 @@ namespace {
 class SourceField final : public ControlSpace {
 public:
     SourceField(const GivenSources& given, double ratio, const SpaceOptions& space)
-        : cones_(given.all(), ratio, largest_metric(space.domain), tolerance, space.intersection) {}
+        : cones_(given.all(), ratio, largest_metric(space), tolerance, space.intersection) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         cones_.evaluate(x, out);
@@ -97,12 +97,14 @@ void GivenSources::load(const StateReader& state) {
 }
 
 void require_alike_growth(std::span<const PointSource> sources) {
-    const auto own = std::ranges::find_if(sources, [](const auto& s) { return s.growth != 0; });
-    if (own == sources.end()) return;
-    throw InputError(fmt::format(
-        "source {} has a gradation ratio of its own, {}: insert such sources before the "
-        "structure is adapted or its metrics are assigned, or adapt it anew",
-        own - sources.begin(), own->growth));
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        if (sources[i].growth == 0) continue;
+        throw IndexedError(
+            i, fmt::format("source {} has a gradation ratio of its own, {}: insert such sources "
+                           "before the structure is adapted or its metrics are assigned, or adapt "
+                           "it anew",
+                           i, sources[i].growth));
+    }
 }
 
 NodeGradation::NodeGradation(const GradationOptions& wanted, const GivenSources* given,

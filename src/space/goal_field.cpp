@@ -27,6 +27,9 @@ const AdaptationGoal& require_valid(const AdaptationGoal& goal, const Box& domai
         throw InputError(
             fmt::format("target_delta is {}: give a positive non-conformity", goal.target));
     }
+    if (!(goal.h_max > 0)) {
+        throw InputError(fmt::format("h_max is {}: give a positive length", goal.h_max));
+    }
     for (std::size_t i = 0; i < goal.sources.size(); ++i) {
         controlspace::require_valid(goal.sources[i], i, domain);
     }
@@ -65,7 +68,7 @@ GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
       largest_ratio_(largest_growth(goal.sources, goal.ratio)),
       sources_(goal.sources),
       continuous_(goal.continuous),
-      largest_(largest_metric(domain)),
+      largest_(largest_metric(domain, goal.h_max)),
       cones_(std::make_unique<ConeField>(goal.sources, goal.ratio, largest_, tolerance_for(goal),
                                          goal.intersection)),
       remembered_(std::make_unique<Remembered>()) {}

@@ -42,6 +42,7 @@ void require_valid(const SpaceOptions& options) {
     require_positive("the insertion tolerance (epsilon)", options.tolerance);
     require_not_negative("voxel", options.voxel);
     require_positive("voxel_factor", options.voxel_factor);
+    require_positive("h_max", options.h_max);
     require_not_negative("prune_delta", options.prune_delta);
     // Past these depths a double has no number left between the faces of any box.
     require_depth("the depth of kd-trees", options.kd_depth, 200);

@@ -92,6 +92,16 @@ Access<Case> ratio_from(double (*convert)(double)) {
     return access;
 }
 
+Access<Case> gradation_ratio() {
+    Access<Case> access = number_of(&Case::g_r, within(1, 1e6));
+    access.set = [set = access.set](Case& c, const Values& values) {
+        set(c, values);
+        // Others share their sources between ratios.
+        if (!c.sources.primitives.empty()) c.sources.primitives_ratio = c.g_r;
+    };
+    return access;
+}
+
 Access<Case> reference_of(std::span<const ReferenceKind* const> kinds) {
     Access<Case> access;
     access.type = ValueType::text;
@@ -182,7 +192,7 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
         of_samples(work("s_n", "tangential length", "Normal length of sampled sources",
                         number_of(of_sources(&S::s_n)), {1},
                         if_given("s_n {}", of_sources(&S::s_n)))),
-        work("g_r", "", "Gradation ratio, 1 or more", number_of(&Case::g_r, within(1, 1e6)), {1.25},
+        work("g_r", "", "Gradation ratio, 1 or more", gradation_ratio(), {1.25},
              if_given("g_r {:.6g}", &Case::g_r)),
         form_of_g_r("mmg_hgrad", "Gradation ratio as MMG's -hgrad: g_r = 1 + ln(hgrad)",
                     gradation_ratio_from_mmg),

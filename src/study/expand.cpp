@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "controlspace/error.h"
+#include "controlspace/metric/nonconformity.h"
 #include "controlspace/study/study.h"
 
 namespace controlspace {
@@ -90,6 +91,11 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
         }
         cases = std::move(product);
     }
+    // Without adaptation trees do not follow a field.
+    if (has_field(setting.sources) && entry.has<SourceLeaves>() &&
+        run.find("target_delta") == nullptr) {
+        for (Case& c : cases) c.target_delta = nonconformity_of_factor(default_within);
+    }
     return cases;
 }
 
@@ -98,7 +104,11 @@ void require_sensible(const Case& c) {
         throw InputError("neither sources nor a field: give one of them");
     }
     if (c.sources.field.kind == FieldKind::file && c.sources.field.file.empty()) {
-        throw InputError("field = \"file\" needs field_file: name a .vdb");
+        throw InputError("field = \"file\" needs field_file: name a .vdb, .vtu or .vti");
+    }
+    if (!(c.sources.h_min <= c.sources.h_max)) {
+        throw InputError(fmt::format("h_min is {} and h_max {}: give h_min <= h_max",
+                                     c.sources.h_min, c.sources.h_max));
     }
     c.reference->require_fit(c.sources);
     if (c.equal_delta && c.equal_memory) {

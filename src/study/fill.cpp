@@ -15,7 +15,7 @@ namespace {
 /// A field is followed by adaptation; without a target only what keeps its cells can follow it.
 void require_follows(const Case& c, const CatalogueEntry& entry) {
     if (c.target_delta || !entry.has<SourceLeaves>()) return;
-    throw InputError("an analytic field is followed by adaptation: set target_delta, for trees");
+    throw InputError("a continuous field is followed by adaptation: set target_delta, for trees");
 }
 
 /// δ and the factor between lengths, and how they are known.
@@ -38,7 +38,9 @@ void adapt(Filled& filled, const Case& c, const Workload& workload) {
     AdaptationGoal goal{.sources = workload.sources,
                         .continuous = workload.field.field,
                         .ratio = c.g_r,
-                        .intersection = c.intersection};
+                        .intersection = c.intersection,
+                        .h_max = c.sources.h_max,
+                        .places = workload.field.places};
     if (c.target_delta) goal.target = *c.target_delta;
     const AdaptationReport report = filled.builder->adapt(goal);
     if (c.target_delta) {

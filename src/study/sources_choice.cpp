@@ -1,30 +1,41 @@
 #include "controlspace/study/sources_choice.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <stdexcept>
 
 #include "controlspace/fields/ugawg_fields.h"
 
 namespace controlspace {
 
-std::string sources_name(const SourcesChoice& s) {
-    switch (s.kind) {
-        case SourcesKind::sphere:
-            return "sphere";
-        case SourcesKind::planes:
-            return "planes";
-        case SourcesKind::none:
-            return "none";
-        case SourcesKind::file:
-            break;
-    }
-    std::string names = s.file.string();
-    for (const auto& file : s.further_files) names.append(1, ',').append(file.string());
+std::vector<std::string> source_names(const SourcesChoice& s) {
+    std::vector<std::string> names;
+    if (s.kind == SourcesKind::sphere) names.emplace_back("sphere");
+    if (s.kind == SourcesKind::planes) names.emplace_back("planes");
+    if (s.kind == SourcesKind::none && s.primitives.empty()) names.emplace_back("none");
+    for (const auto& file : files_of(s)) names.push_back(file.string());
+    for (const Primitive& primitive : s.primitives) names.push_back(to_string(primitive));
     return names;
 }
 
+std::string sources_name(const SourcesChoice& s) {
+    return fmt::format("{}", fmt::join(source_names(s), ","));
+}
+
 std::vector<std::filesystem::path> files_of(const SourcesChoice& s) {
+    if (s.kind != SourcesKind::file) return {};
     std::vector<std::filesystem::path> files{s.file};
     files.insert(files.end(), s.further_files.begin(), s.further_files.end());
+    return files;
+}
+
+std::vector<std::filesystem::path> input_files_of(const SourcesChoice& s) {
+    std::vector<std::filesystem::path> files = files_of(s);
+    for (const Primitive& primitive : s.primitives) {
+        if (primitive.shape == Shape::surface) files.push_back(primitive.file);
+    }
+    if (!s.field.file.empty()) files.push_back(s.field.file);
     return files;
 }
 

@@ -144,6 +144,11 @@ Study parse_study(std::string_view text, const std::filesystem::path& place,
         study.sources.file = place.parent_path() / study.sources.file;
         for (auto& file : study.sources.further_files) file = place.parent_path() / file;
     }
+    for (Primitive& primitive : study.sources.primitives) {
+        if (primitive.shape == Shape::surface) {
+            primitive.file = place.parent_path() / primitive.file;
+        }
+    }
     std::filesystem::path& field_file = study.sources.field.file;
     if (!field_file.empty()) field_file = place.parent_path() / field_file;
     return study;

@@ -1,9 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
+#include <string_view>
+#include <utility>
 
 #include "controlspace/io/read_sources.h"
 #include "controlspace/study/study.h"
+#include "files/text_file.h"
 
 namespace controlspace {
 namespace {
@@ -33,6 +38,20 @@ auto of_curvature(M CurvatureSizes::*member) {
 template <class Place>
 Access<Study> number_of(Place place, const Check& check = any_number) {
     return number<Study>(place, check);
+}
+/// A length of which 0 means that it is not given, as does `none`, which is stored then.
+template <class Place>
+Access<Study> limit(Place place, double none) {
+    Access<Study> access;
+    access.set = [=](Study& s, const Values& v) {
+        const double x = v.front().number();
+        std::invoke(place, s) = x == 0 ? none : positive(x);
+    };
+    access.get = [=](const Study& s) {
+        const double x = std::invoke(place, s);
+        return x == none ? Values{} : Values{x};
+    };
+    return access;
 }
 /// A length of which 0 means that it is not given.
 template <class Place>
@@ -64,6 +83,28 @@ Access<Study> name() {
     return access;
 }
 
+/// The command line separates sources and the numbers of primitives alike by commas.
+std::vector<std::string> whole_sources(const Values& values) {
+    const auto continues = [](const std::string& word) {
+        double number = 0;
+        const std::size_t equals = word.find('=');
+        return parse_number(word, number) ||
+               (equals != word.npos && equals > 0 &&
+                std::all_of(word.begin(), word.begin() + static_cast<std::ptrdiff_t>(equals),
+                            [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; }));
+    };
+    std::vector<std::string> whole;
+    for (const Value& value : values) {
+        const std::string& word = value.text();
+        if (!whole.empty() && is_primitive(whole.back()) && continues(word)) {
+            whole.back().append(1, ',').append(word);
+        } else {
+            whole.push_back(word);
+        }
+    }
+    return whole;
+}
+
 Access<Study> sources() {
     constexpr std::pair<const char*, SourcesKind> words[] = {{"sphere", SourcesKind::sphere},
                                                              {"planes", SourcesKind::planes},
@@ -72,35 +113,44 @@ Access<Study> sources() {
     access.type = ValueType::text;
     access.at_most = 0;
     access.set = [words](Study& s, const Values& v) {
-        s.sources.kind = SourcesKind::file;
-        s.sources.file.clear();
-        s.sources.further_files.clear();
-        for (const Value& value : v) {
-            const std::string& what = value.text();
+        const auto word_of = [](const auto& word) { return std::string_view(word.first); };
+        std::vector<Primitive> primitives;
+        std::vector<std::filesystem::path> files;
+        const SourcesKind* kind = nullptr;
+        std::string other;
+        for (const std::string& what : whole_sources(v)) {
             if (what.empty()) {
-                throw InputError("no name: give sphere, planes, none or the names of files");
+                throw InputError(
+                    "no name: give sphere, planes, none, the names of files or primitives");
             }
-            for (const auto& [word, kind] : words) {
-                if (what != word) continue;
-                if (v.size() > 1) {
-                    throw InputError(what + " is no file: give it alone, or only names of files");
-                }
-                s.sources.kind = kind;
-                return;
+            if (is_primitive(what)) {
+                primitives.push_back(parse_primitive(what));
+                continue;
             }
-            const char* standard_input = "/dev/stdin";
-            const std::filesystem::path file = what == "-" ? standard_input : what;
-            if (s.sources.file.empty()) {
-                s.sources.file = file;
+            if (!other.empty() &&
+                (kind != nullptr || std::ranges::count(words, what, word_of) > 0)) {
+                throw InputError((kind != nullptr ? other : what) +
+                                 " is no file: give it alone, or only names of files");
+            }
+            other = what;
+            const auto* word = std::ranges::find(words, what, word_of);
+            if (word != std::end(words)) {
+                kind = &word->second;
             } else {
-                s.sources.further_files.push_back(file);
+                files.emplace_back(what == "-" ? "/dev/stdin" : what);
             }
         }
+        s.sources.kind = kind != nullptr ? *kind
+                         : files.empty() ? SourcesKind::none
+                                         : SourcesKind::file;
+        s.sources.file = files.empty() ? std::filesystem::path() : files.front();
+        if (!files.empty()) files.erase(files.begin());
+        s.sources.further_files = std::move(files);
+        s.sources.primitives = std::move(primitives);
     };
     access.get = [](const Study& s) {
-        if (s.sources.kind != SourcesKind::file) return Values{sources_name(s.sources)};
         Values names;
-        for (const auto& file : files_of(s.sources)) names.emplace_back(file.string());
+        for (const std::string& name : source_names(s.sources)) names.emplace_back(name);
         return names;
     };
     return access;
@@ -190,8 +240,8 @@ std::vector<Parameter<Study>> table() {
     const AppliesTo<Study> planes{"the planes", of_kind(SourcesKind::planes)};
     const AppliesTo<Study> sampled{"sampled surfaces",
                                    [](const Study& s) { return is_sampled(s.sources); }};
-    const AppliesTo<Study> arrays{".vtu, .vtp, .msh and .pos",
-                                  in_file({".vtu", ".vtp", ".msh", ".pos"})};
+    const AppliesTo<Study> arrays{".vtu, .vtp, .vti, .msh and .pos",
+                                  in_file({".vtu", ".vtp", ".vti", ".msh", ".pos"})};
     const AppliesTo<Study> surface{
         "surfaces: .stl, .obj, .ply, .off, .step, .iges and .brep",
         in_file({".stl", ".obj", ".ply", ".off", ".step", ".stp", ".iges", ".igs", ".brep"})};
@@ -206,11 +256,21 @@ std::vector<Parameter<Study>> table() {
     return {
         {"name", "", "Name of the study, and of its folder of results", name(), Use::results},
         {"sources", "",
-         "sphere or planes (sampled); none (only a field); files, the smallest of whose metrics "
-         "counts where they overlap: of points with metrics, .csv (- for standard input), .mesh or "
-         ".meshb with .sol or .solb, .pos, .msh, .vtu or .vtp; or a "
-         "surface: .stl, .obj, .ply, .off, .step, .iges, .brep or in a .vdb",
+         "sphere or planes (sampled); none (only a field); or files and primitives, the smallest "
+         "of "
+         "whose metrics counts where they overlap. Files of points with metrics: .csv (- for "
+         "standard input), .mesh or .meshb with .sol or .solb, .pos, .msh, .vtu, .vtp or .vti; or "
+         "a surface: .stl, .obj, .ply, .off, .step, .iges, .brep or in a .vdb. Primitives: "
+         "box:x0,x1,y0,y1,z0,z1,h=H, ball:x,y,z,r=R,h=H, cylinder:x0,y0,z0,x1,y1,z1,r=R,h=H, "
+         "segment:x0,y0,z0,x1,y1,z1,h=H, surface:FILE,h=H: the length is H on them and inside, and "
+         "H + (g - 1) d at the distance d, by g_r or with g=G by G",
          sources()},
+        {"h_min", length, "Smallest length: what is requested to be shorter, is this long",
+         limit(of_sources(&Sources::h_min), 0)},
+        {"h_max", length,
+         "Largest length anywhere; left out: half of the domain's diagonal, and no length of "
+         "sources is limited",
+         limit(of_sources(&Sources::h_max), largest_magnitude)},
         {"centre", length, "x y z: centre of the sphere", point_of(of_sources(&Sources::centre)),
          making, sphere},
         {"radius", length, "Radius of the sphere",
@@ -270,17 +330,20 @@ std::vector<Parameter<Study>> table() {
         {"field_largest", length,
          "Length up to which they grow; left out: half of the domain's diagonal", field_largest(),
          making, field_surface},
-        {"field_file", "", "The .vdb of the field file", text_of(of_field(&FieldChoice::file)),
-         making, field_file},
+        {"field_file", "", "The file of the field file: a .vdb, or the cells of a .vtu or .vti",
+         text_of(of_field(&FieldChoice::file)), making, field_file},
         {"field_grid", "",
-         "Its grid of lengths, or of densities; left out: metric_diag and metric_off",
+         "Its grid of lengths, or of densities; left out: metric_diag and metric_off. Of a .vtu or "
+         ".vti "
+         "its array of sizes or metrics; left out: the one named :metric",
          text_of([](auto& s) -> auto& { return s.sources.field.vdb.grid; }), making, field_file},
         {"field_density_sizes", length,
          "Lengths at densities 1 and 0 of that grid; left out: the grid contains lengths",
          density_sizes(), making, field_file},
         {"source_array", "",
-         "Sources of a .vtu, .vtp, .msh or .pos: the array or view of sizes (1 component) or "
-         "Riemannian metrics (6 or 9); left out: the array named :metric, the only view",
+         "Sources of a .vtu, .vtp, .vti, .msh or .pos: the array or view of sizes (1 component) or "
+         "Riemannian metrics (6 or 9), at points, or else of cells, for their centres; left out: "
+         "the array named :metric, the only view",
          text_of([](auto& s) -> auto& { return s.sources.in_file.array; }), reading, arrays},
         {"surface_angle", "degrees",
          "Sources of a surface (.stl, .obj, .ply, .off): part of the circle of curvature that an "

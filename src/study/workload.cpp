@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "controlspace/error.h"
+#include "controlspace/fields/formula_field.h"
+#include "controlspace/fields/mixture.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/space/control_space.h"
@@ -24,32 +26,10 @@ namespace {
 
 /// Formats that other libraries read.
 bool needs_reader(const std::string& ending) {
-    constexpr std::string_view endings[] = {".vdb", ".vtu",  ".vtp", ".stl",  ".obj", ".ply",
-                                            ".off", ".step", ".stp", ".iges", ".igs", ".brep"};
+    constexpr std::string_view endings[] = {".vdb",  ".vtu", ".vtp", ".vti",  ".stl",
+                                            ".obj",  ".ply", ".off", ".step", ".stp",
+                                            ".iges", ".igs", ".brep"};
     return std::ranges::count(endings, ending) > 0;
-}
-
-std::vector<PointSource> make_sources(const SourcesChoice& s, std::uint64_t seed,
-                                      const FileReaders& readers) {
-    switch (s.kind) {
-        case SourcesKind::sphere:
-            return scatter_sphere({.centre = s.centre,
-                                   .radius = s.radius,
-                                   .h = s.h,
-                                   .s_a = s.s_a,
-                                   .s_n = s.s_n,
-                                   .rho = s.rho},
-                                  s.sampling, seed);
-        case SourcesKind::planes:
-            return scatter_planes(
-                {.h = s.h, .s_a = s.s_a, .s_n = s.s_n, .rho = s.rho, .slope = s.slope}, s.sampling,
-                seed);
-        case SourcesKind::none:
-            return {};
-        case SourcesKind::file:
-            break;
-    }
-    return read_source_file(s, readers);
 }
 
 AnalyticField field_of(const FieldChoice& choice, const FileReaders& readers) {
@@ -58,16 +38,89 @@ AnalyticField field_of(const FieldChoice& choice, const FileReaders& readers) {
     return readers.vdb_field(choice);
 }
 
-Box domain_of(const Study& study, const SourcesChoice& choice, const Workload& workload) {
+std::vector<DistanceField> distances_of(const SourcesChoice& choice, const FileReaders& readers) {
+    std::vector<DistanceField> distances;
+    for (const Primitive& primitive : choice.primitives) {
+        if (primitive.shape != Shape::surface) {
+            distances.push_back(distance_from(primitive));
+            continue;
+        }
+        if (!readers.surface_distance) fail_without_reader(primitive.file);
+        distances.push_back(readers.surface_distance(primitive.file));
+    }
+    return distances;
+}
+
+/// Lengths along the metric's own directions, between the limits.
+Metric limited(const Metric& m, const SourcesChoice& limits) {
+    const auto within = [&](double h) { return std::clamp(h, limits.h_min, limits.h_max); };
+    if (is_isotropic(m)) return Metric::isotropic(within(m.xx));
+    EigenFrame frame = eigen_frame(m);
+    if (frame.lengths[0] >= limits.h_min && frame.lengths[2] <= limits.h_max) return m;
+    for (double& h : frame.lengths) h = within(h);
+    return metric_from_frame(frame.lengths, frame.directions);
+}
+
+bool has_limits(const SourcesChoice& choice) {
+    return choice.h_min > 0 || choice.h_max < largest_magnitude;
+}
+
+AnalyticField limited(const AnalyticField& field, const SourcesChoice& limits) {
+    const auto at = [inner = field.field, limits](const Point& p) {
+        return limited(sample_at(*inner, p), limits);
+    };
+    return {std::make_shared<FormulaField<decltype(at)>>(at, field.field->domain()),
+            std::clamp(field.finest_length, limits.h_min, limits.h_max), field.places};
+}
+
+/// The analytic field and the primitives together.
+AnalyticField continuous_field(const SourcesChoice& choice,
+                               const std::vector<DistanceField>& distances,
+                               const FileReaders& readers) {
+    AnalyticField field;
+    if (choice.field.kind != FieldKind::none) field = field_of(choice.field, readers);
+    if (!choice.primitives.empty()) {
+        AnalyticField own = primitives_field(choice.primitives, distances, choice.primitives_ratio);
+        if (field.field) {
+            own.finest_length = std::min(own.finest_length, field.finest_length);
+            own.field = mixture({field.field, own.field});
+        }
+        field = std::move(own);
+    }
+    return field.field && has_limits(choice) ? limited(field, choice) : field;
+}
+
+Box domain_of(const Study& study, const SourcesChoice& choice, const Workload& workload,
+              const std::vector<DistanceField>& distances) {
     if (study.domain) return *study.domain;
     if (workload.field.field && workload.field.field->domain() != Box::everywhere()) {
         return workload.field.field->domain();
     }
-    if (choice.kind != SourcesKind::file) return {Point::Constant(-1), Point::Constant(1)};
+    const bool are_alone = choice.kind == SourcesKind::none && choice.field.kind == FieldKind::none;
+    if (choice.kind != SourcesKind::file && !are_alone) {
+        return {Point::Constant(-1), Point::Constant(1)};
+    }
     std::vector<Point> positions;
-    positions.reserve(workload.sources.size());
     for (const PointSource& source : workload.sources) positions.push_back(source.position);
+    if (are_alone) {
+        for (const DistanceField& d : distances) {
+            positions.insert(positions.end(), {d.box.low, d.box.high});
+        }
+    }
     return bounding_box(positions, study.margin);
+}
+
+void require_inside(const SourcesChoice& choice, const std::vector<DistanceField>& distances,
+                    const Box& domain) {
+    for (std::size_t i = 0; i < distances.size(); ++i) {
+        const Box& box = distances[i].box;
+        if ((box.low.array() <= domain.high.array()).all() &&
+            (box.high.array() >= domain.low.array()).all()) {
+            continue;
+        }
+        throw InputError(fmt::format("{} lies outside the domain {}: enlarge the domain or drop it",
+                                     to_string(choice.primitives[i]), to_string(domain)));
+    }
 }
 
 double finest_length_of(const Workload& workload) {
@@ -75,10 +128,6 @@ double finest_length_of(const Workload& workload) {
     if (workload.sources.empty()) return workload.field.finest_length;
     return std::min(workload.field.finest_length, finest_length(workload.sources));
 }
-
-}  // namespace
-
-namespace {
 
 std::vector<PointSource> read_one(const SourcesChoice& choice, const FileReaders& readers) {
     const std::string ending = lower_case_extension(choice.file);
@@ -89,28 +138,84 @@ std::vector<PointSource> read_one(const SourcesChoice& choice, const FileReaders
     return read_sources(choice.file, choice.in_file.array);
 }
 
-}  // namespace
+/// The sources of several files, one after the other.
+struct JoinedSources {
+    std::vector<PointSource> all;
+    std::vector<std::size_t> of_file;  ///< how many each file has
 
-std::vector<PointSource> read_source_file(const SourcesChoice& choice, const FileReaders& readers) {
-    std::vector<PointSource> sources;
+    /// "source 17 (sources.csv, line 19)"
+    std::string name(const SourcesChoice& choice, std::size_t index) const {
+        std::string name = fmt::format("source {}", index);
+        const auto files = files_of(choice);
+        for (std::size_t f = 0; f < of_file.size(); ++f) {
+            if (index < of_file[f]) {
+                return name + fmt::format(" ({}, {})", files[f].string(),
+                                          place_of_source(files[f], index));
+            }
+            index -= of_file[f];
+        }
+        return name;
+    }
+};
+
+JoinedSources read_files(const SourcesChoice& choice, const FileReaders& readers) {
+    JoinedSources joined;
     for (const auto& file : files_of(choice)) {
         SourcesChoice one = choice;
         one.file = file;
         const auto more = read_one(one, readers);
-        sources.insert(sources.end(), more.begin(), more.end());
+        joined.of_file.push_back(more.size());
+        joined.all.insert(joined.all.end(), more.begin(), more.end());
     }
-    return sources;
+    return joined;
+}
+
+JoinedSources make_sources(const SourcesChoice& s, std::uint64_t seed, const FileReaders& readers) {
+    switch (s.kind) {
+        case SourcesKind::sphere:
+            return {scatter_sphere({.centre = s.centre,
+                                    .radius = s.radius,
+                                    .h = s.h,
+                                    .s_a = s.s_a,
+                                    .s_n = s.s_n,
+                                    .rho = s.rho},
+                                   s.sampling, seed),
+                    {}};
+        case SourcesKind::planes:
+            return {scatter_planes(
+                        {.h = s.h, .s_a = s.s_a, .s_n = s.s_n, .rho = s.rho, .slope = s.slope},
+                        s.sampling, seed),
+                    {}};
+        case SourcesKind::none:
+            return {};
+        case SourcesKind::file:
+            break;
+    }
+    return read_files(s, readers);
+}
+
+}  // namespace
+
+std::vector<PointSource> read_source_file(const SourcesChoice& choice, const FileReaders& readers) {
+    return read_files(choice, readers).all;
 }
 
 Workload make_workload(const Study& study, const SourcesChoice& choice,
                        const FileReaders& readers) {
     Workload workload;
-    workload.sources = make_sources(choice, study.seed, readers);
-    if (has_field(choice)) workload.field = field_of(choice.field, readers);
-    workload.domain = domain_of(study, choice, workload);
+    JoinedSources sources = make_sources(choice, study.seed, readers);
+    workload.sources = std::move(sources.all);
+    const std::vector<DistanceField> distances = distances_of(choice, readers);
+    workload.field = continuous_field(choice, distances, readers);
+    workload.domain = domain_of(study, choice, workload, distances);
     require_defined(workload.field, workload.domain, std::string(name_of(choice.field.kind)));
+    require_inside(choice, distances, workload.domain);
     for (std::size_t i = 0; i < workload.sources.size(); ++i) {
-        require_valid(workload.sources[i], i, workload.domain);
+        PointSource& source = workload.sources[i];
+        if (!is_valid(source, workload.domain)) {
+            require_valid(source, i, sources.name(choice, i), workload.domain);
+        }
+        if (has_limits(choice)) source.metric = limited(source.metric, choice);
     }
     workload.finest_length = finest_length_of(workload);
     return workload;
@@ -124,6 +229,7 @@ SpaceOptions space_options(const Study& study, const Case& c, const Workload& wo
     options.l_min = c.tau;
     options.tolerance = c.epsilon;
     options.finest_length = workload.finest_length;
+    options.h_max = c.sources.h_max;
     options.ratio = c.g_r;
     options.max_bytes = static_cast<std::size_t>(std::ceil(study.max_memory_gib * gib));
     if (c.split) options.split = *c.split;
@@ -150,7 +256,8 @@ const ReferenceKind& exact_reference_kind() {
         "exact", "intersection of the cones of all sources",
         [](const Study& study, const Case& c,
            const Workload& workload) -> std::shared_ptr<const ControlSpace> {
-            return exact_reference(workload.sources, c.g_r, largest_metric(workload.domain),
+            return exact_reference(workload.sources, c.g_r,
+                                   largest_metric(workload.domain, c.sources.h_max),
                                    study.reference_tolerance, c.intersection, workload.field.field);
         }};
     return exact;

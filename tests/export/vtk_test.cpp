@@ -12,8 +12,10 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLHyperTreeGridReader.h>
 #include <vtkXMLImageDataReader.h>
+#include <vtkXMLImageDataWriter.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridReader.h>
+#include <vtkXMLUnstructuredGridWriter.h>
 
 #include <Eigen/Geometry>
 #include <array>
@@ -27,6 +29,7 @@
 #include "controlspace/space/catalogue.h"
 #include "editable_space.h"
 #include "io/text/cells.h"
+#include "io/text/metric_rows.h"
 #include "io/text/vtk_xml.h"
 #include "sources/files.h"
 
@@ -69,6 +72,12 @@ bool is_riemannian_of(const Eigen::Matrix3d& t, const Metric& m) {
 
 double value_at(vtkDataSetAttributes& data, const char* name, vtkIdType i) {
     return data.GetArray(name)->GetTuple1(i);
+}
+
+Metric metric_at(const ControlSpace& field, const Point& p) {
+    Metric m;
+    field.sample({&p, 1}, {&m, 1});
+    return m;
 }
 
 void check_close(const std::vector<PointSource>& a, const std::vector<PointSource>& b,
@@ -248,9 +257,9 @@ TEST_CASE("arrays of 1, 6 and 9 components, however VTK encodes them") {
     const auto floats = write_vtp<vtkFloatArray>(folder, components, "size", *writer);
     check_close(read_vtk_sources(floats, "size"), expected, 1e-5);
     CHECK_THAT(error_of([&] { read_vtk_sources(floats); }),
-               Contains("no array of points is named :metric, there are 'size': name one"));
+               Contains("no array is named :metric, there are 'size': name one"));
     CHECK_THAT(error_of([&] { read_vtk_sources(floats, "sizes"); }),
-               Contains("0 of its arrays of points can be meant: name one of 'size'"));
+               Contains("no array is named 'sizes', there are 'size': name one"));
 }
 
 TEST_CASE("arrays that are no metrics are refused") {
@@ -260,4 +269,147 @@ TEST_CASE("arrays that are no metrics are refused") {
                    read_vtk_sources(write_vtp<vtkDoubleArray>(folder, 3, ":metric", *writer));
                }),
                Contains("array ':metric' has 3 components: give 1"));
+}
+
+TEST_CASE("data of cells are sources at the centres of the cells") {
+    const ScratchDirectory folder;
+    vtkNew<vtkUnstructuredGrid> grid;
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (const Point& p :
+         {Point(0, 0, 0), Point(4, 0, 0), Point(0, 4, 0), Point(0, 0, 4), Point(4, 4, 4)}) {
+        points->InsertNextPoint(p.data());
+    }
+    grid->SetPoints(points);
+    const std::array<vtkIdType, 4> first{0, 1, 2, 3}, second{1, 2, 3, 4};
+    grid->InsertNextCell(VTK_TETRA, 4, first.data());
+    grid->InsertNextCell(VTK_TETRA, 4, second.data());
+    const int components = GENERATE(1, 6, 9);
+    std::vector<PointSource> expected = two;
+    expected[0].position = {1, 1, 1};
+    expected[1].position = {2, 2, 2};
+    vtkNew<vtkDoubleArray> values;
+    values->SetName("a:metric");
+    values->SetNumberOfComponents(components);
+    for (PointSource& s : expected) {
+        if (components == 1) s.metric = Metric::isotropic(s.metric.xx);
+        const auto numbers = components == 1
+                                 ? std::array<double, 9>{s.metric.xx}
+                                 : numbers_of(s.metric, components == 6 ? vtk_tensor : matrix_rows);
+        values->InsertNextTuple(numbers.data());
+    }
+    grid->GetCellData()->AddArray(values);
+    const auto path = folder.path() / "cells.vtu";
+    const auto write = [&] {
+        vtkNew<vtkXMLUnstructuredGridWriter> writer;
+        writer->SetFileName(path.c_str());
+        writer->SetInputData(grid);
+        writer->Write();
+    };
+    write();
+    check_close(read_vtk_sources(path), expected);
+    check_close(read_vtk_sources(path, "a:metric"), expected);
+    CHECK_THAT(error_of([&] { read_vtk_sources(path, "b"); }),
+               Contains("no array is named 'b', there are 'a:metric' (of cells): name one"));
+
+    // Points come first, under the same name too.
+    vtkNew<vtkDoubleArray> of_points;
+    of_points->SetName("a:metric");
+    for (int i = 0; i < 5; ++i) of_points->InsertNextValue(0.5 + i);
+    grid->GetPointData()->AddArray(of_points);
+    write();
+    const auto read = read_vtk_sources(path);
+    REQUIRE(read.size() == 5);
+    CHECK(read[4].metric == Metric::isotropic(4.5));
+    grid->GetPointData()->RemoveArray("a:metric");
+
+    if (components == 1) {
+        values->SetTuple1(1, -0.5);
+        write();
+        CHECK_THAT(error_of([&] { read_vtk_sources(path); }), Contains("size 2 is -0.5"));
+    }
+    grid->GetCellData()->RemoveArray("a:metric");
+    write();
+    CHECK_THAT(error_of([&] { read_vtk_sources(path); }), Contains("it has no arrays"));
+}
+
+TEST_CASE("exported leaves, nodes and slices are sources again") {
+    const ScratchDirectory folder;
+    const auto space = filled(GENERATE("K_oL", "K_oV", "K_L"));
+    const auto check = [&](const std::vector<PointSource>& sources, std::size_t count) {
+        CHECK(sources.size() == count);
+        for (const PointSource& s : sources) {
+            Metric m;
+            space->sample({&s.position, 1}, {&m, 1});
+            CHECK(s.metric.matrix().isApprox(m.matrix(), 1e-10));
+        }
+    };
+    write_leaves(folder / "leaves.vtu", *space);
+    check(read_vtk_sources(folder / "leaves.vtu"), space->footprint().cells);
+    write_slice(folder / "slice.vti", *space, domain, {.at = 0.3, .samples = 31});
+    const auto slice = read_vtk_sources(folder / "slice.vti");
+    check(slice, 31 * 31);
+    for (const PointSource& s : slice) CHECK(s.position.z() == Approx(0.3));
+    const auto lengths = read_vtk_sources(folder / "slice.vti", "h_min");
+    for (std::size_t i = 0; i < slice.size(); ++i) {
+        CHECK(lengths[i].metric.xx == Approx(eigen_frame(slice[i].metric).lengths[0]));
+    }
+}
+
+TEST_CASE("exported leaves are the field again, in each leaf the metric at its centre") {
+    const ScratchDirectory folder;
+    const auto space = filled(GENERATE("K_oL", "K_L", "K_oV"));
+    write_leaves(folder / "leaves.vtu", *space);
+    const AnalyticField field = read_vtk_field(folder / "leaves.vtu");
+    CHECK(field.field->domain() == domain);
+    std::vector<Point> x;
+    for (int i = 0; i < 3000; ++i) {
+        const auto part = [&](double irrational) { return std::fmod(irrational * (i + 1), 1.0); };
+        x.push_back(domain.low + Vector(part(0.7548776662), part(0.5698402909), part(0.4301597090))
+                                     .cwiseProduct(domain.edges()));
+    }
+    x.emplace_back(9, -9, 9);  // outside: as at the corner
+    std::vector<Point> centres;
+    for (const Point& p : x) centres.push_back(space->cell_at(p)->centre());
+    std::vector<Metric> own(x.size()), read(x.size());
+    space->sample(centres, own);
+    field.field->sample(x, read);
+    double finest = 1e9;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        CHECK(read[i].matrix().isApprox(own[i].matrix(), 1e-10));
+        finest = std::min(finest, eigen_frame(own[i]).lengths[0]);
+    }
+    CHECK(field.finest_length <= finest * (1 + 1e-10));
+}
+
+TEST_CASE("between points with metrics a field is linear") {
+    const ScratchDirectory folder;
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(4, 3, 5);
+    image->SetOrigin(-1, 0, 1);
+    image->SetSpacing(0.5, 1, 0.25);
+    const auto length_at = [](const Point& p) {
+        return 1 + 0.1 * p.x() - 0.2 * p.y() + 0.3 * p.z();
+    };
+    vtkNew<vtkDoubleArray> sizes;
+    sizes->SetName("h");
+    for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i) {
+        sizes->InsertNextValue(length_at(Point(image->GetPoint(i))));
+    }
+    image->GetPointData()->AddArray(sizes);
+    const auto path = folder / "h.vti";
+    vtkNew<vtkXMLImageDataWriter> writer;
+    writer->SetFileName(path.c_str());
+    writer->SetInputData(image);
+    writer->Write();
+    const auto field = read_vtk_field(path, "h").field;
+    for (const Point& p : {Point(-0.9, 0.3, 1.1), Point(0.4, 1.7, 1.9), Point(0, 1, 1.5)}) {
+        CHECK(metric_at(*field, p).xx == Approx(length_at(p)).epsilon(1e-12));
+    }
+    CHECK(metric_at(*field, {9, 1, 1.5}).xx == Approx(length_at({0.5, 1, 1.5})).epsilon(1e-12));
+    CHECK_THAT(error_of([&] { read_vtk_field(path); }), Contains("'h': name one (--field-grid)"));
+
+    write_nodes(folder / "nodes.vtu", *filled("K_oV"));
+    CHECK_THAT(error_of([&] { read_vtk_field(folder / "nodes.vtu"); }),
+               Contains("cell 1 has no volume"));
 }

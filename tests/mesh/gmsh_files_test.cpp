@@ -85,6 +85,63 @@ TEST_CASE("data at the nodes of a mesh by Gmsh are sources") {
     check_sources(sources, sizes);
 }
 
+TEST_CASE("data of the elements of a mesh by Gmsh are sources at their centres") {
+    const ScratchDirectory folder;
+    const bool sizes = GENERATE(true, false);
+    const bool binary = GENERATE(false, true);
+    const int order = GENERATE(1, 2);
+    const auto path = folder.path() / "box.msh";
+    std::size_t count = 0;
+    in_gmsh_session(1, [&] {
+        gmsh::option::setNumber("Mesh.Binary", binary ? 1 : 0);
+        gmsh::option::setNumber("Mesh.MeshSizeMax", 0.4);
+        gmsh::option::setNumber("Mesh.SaveAll", 1);
+        gmsh::model::occ::addBox(0, 0, 0, 1, 1, 2);
+        gmsh::model::occ::synchronize();
+        gmsh::model::mesh::generate(3);
+        gmsh::model::mesh::setOrder(order);
+        std::vector<std::size_t> tags, nodes;
+        gmsh::model::mesh::getElementsByType(order == 1 ? 4 : 11, tags, nodes);
+        count = tags.size();
+        const std::size_t each = nodes.size() / count;
+        std::vector<std::vector<double>> rows;
+        for (std::size_t i = 0; i < count; ++i) {
+            Point sum = Point::Zero();
+            for (std::size_t k = 0; k < each; ++k) {
+                std::vector<double> x, unused;
+                int dimension = 0, entity = 0;
+                gmsh::model::mesh::getNode(nodes[each * i + k], x, unused, dimension, entity);
+                sum += Point(x.data());
+            }
+            rows.push_back(row_of(sum / static_cast<double>(each), sizes));
+        }
+        gmsh::write(path.string());
+        std::string model;
+        gmsh::model::getCurrent(model);
+        const int view = gmsh::view::add("of cells");
+        gmsh::view::addModelData(view, 0, model, "ElementData", tags, rows);
+        gmsh::view::write(view, path.string(), true);
+    });
+    const auto sources = read_msh_sources(path);
+    CHECK(sources.size() == count);
+    CHECK(count > 100);
+    check_sources(sources, sizes);
+    CHECK(read_msh_sources(path, "of cells") == sources);
+    CHECK_THAT(error_of([&] { read_msh_sources(path, "other"); }), Contains("'of cells'"));
+    if (binary) return;
+    const std::string text = read_text_file(path);
+    const auto error = [&](const std::string& from, const std::string& to) {
+        std::ofstream(path, std::ios::binary) << altered(text, from, to);
+        return error_of([&] { read_msh_sources(path); });
+    };
+    CHECK_THAT(error("$Elements", "$Pixels"), Contains("but no $Elements"));
+    const std::string block = order == 1 ? "\n3 1 4 " : "\n3 1 11 ";
+    CHECK_THAT(error(block, "\n3 1 99 "), Contains("elements of the unknown type 99"));
+    CHECK_THAT(error(block + std::to_string(count), block + "2000000000"),
+               Contains("Elements 2000"));
+    CHECK_THAT(error(block + std::to_string(count), block + "1"), Contains("box.msh"));
+}
+
 TEST_CASE("list views that Gmsh saved are sources") {
     const ScratchDirectory folder;
     const std::string type = GENERATE("SP", "TP", "SS", "TS");

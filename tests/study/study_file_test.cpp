@@ -47,6 +47,8 @@ TEST_CASE("every key of a study file is read") {
         h = 0.25
         domain = [-1, 1, -2, 2, -3, 3.5]
         margin = 0.125
+        h_min = 0.01
+        h_max = 0.75
         max_memory = 0.5
         seed = 7
         threads = 3
@@ -94,6 +96,8 @@ TEST_CASE("every key of a study file is read") {
     CHECK(study.sources.h == 0.25);
     CHECK(study.domain == Box{{-1, -2, -3}, {1, 2, 3.5}});
     CHECK(study.margin == 0.125);
+    CHECK(study.sources.h_min == 0.01);
+    CHECK(study.sources.h_max == 0.75);
     CHECK(study.max_memory_gib == 0.5);
     CHECK(study.seed == 7);
     CHECK(study.threads == 3);
@@ -220,8 +224,9 @@ TEST_CASE("study files that cannot be read are named") {
 }
 
 TEST_CASE("each parameter gives back what it was set to") {
+    const Study defaults;
     for (const auto& p : study_parameters()) {
-        const Values values = p.access.get(Study{});
+        const Values values = p.access.get(defaults);
         if (values.empty()) continue;
         Study other;
         other.name = "another";

@@ -91,7 +91,8 @@ std::vector<PointSource> read_vdb_sources(const std::filesystem::path& path,
         !is_length(by_curvature ? surface.per_radius : surface.h)) {
         file.fail(
             "a surface has no lengths of its own: give a positive length (--vdb-size), or one in "
-            "units of the radius of curvature (--vdb-size-per-radius)");
+            "units of the radius of curvature (--vdb-size-per-radius); a field, as `export` writes "
+            "it, is read by --field file --field-file");
     }
     const auto grid = file.read_as<openvdb::FloatGrid>(grid_of(file, surface));
     require_finite(file, *grid);

@@ -1,40 +1,19 @@
 #include "io/surface/facing_walls.h"
 
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
-#include <CGAL/Simple_cartesian.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "io/surface/triangle_tree.h"
+
 namespace controlspace {
-namespace {
-
-using Kernel = CGAL::Simple_cartesian<double>;
-using Triangles = std::vector<Kernel::Triangle_3>;
-using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
-
-Kernel::Point_3 point_of(const Point& p) { return {p.x(), p.y(), p.z()}; }
-
-Triangles triangles_of(const SurfaceMesh& mesh) {
-    Triangles triangles;
-    for (const auto& [a, b, c] : mesh.triangles) {
-        triangles.emplace_back(point_of(mesh.vertices[a]), point_of(mesh.vertices[b]),
-                               point_of(mesh.vertices[c]));
-    }
-    return triangles;
-}
-
-}  // namespace
 
 struct FacingWalls::Tree {
     const SurfaceMesh& mesh;
     const SmoothPatches& patches;
     const Triangles triangles = triangles_of(mesh);
-    CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> tree{triangles.begin(), triangles.end()};
+    TriangleTree tree{triangles.begin(), triangles.end()};
 
     std::size_t index(Triangles::const_iterator triangle) const {
         return static_cast<std::size_t>(triangle - triangles.begin());

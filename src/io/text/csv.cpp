@@ -206,6 +206,14 @@ std::vector<PointSource> read_csv_sources(const std::filesystem::path& path) {
     return parse_csv_sources(read_text_file(path), path);
 }
 
+std::string csv_line_of(const std::filesystem::path& path, std::size_t index) {
+    const std::string text = read_text_file(path);
+    Table table(text, path, /*positions_alone=*/false);
+    for (std::size_t i = 0; i <= index; ++i) table.next();
+    const std::string where = table.where();
+    return where.substr(where.rfind(':') + 1);
+}
+
 std::vector<Point> read_csv_points(const std::filesystem::path& path) {
     const std::string text = read_text_file(path);
     Table table(text, path, /*positions_alone=*/true);

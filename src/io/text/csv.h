@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -24,6 +25,9 @@ std::vector<PointSource> read_csv_sources(const std::filesystem::path& path);
 /// The same for a text at hand; `path` is for messages.
 std::vector<PointSource> parse_csv_sources(std::string_view text,
                                            const std::filesystem::path& path);
+
+/// The line, from 1, of the source of that number, from 0, in a file that was read.
+std::string csv_line_of(const std::filesystem::path& path, std::size_t index);
 
 /// Places as a table of the same kind: columns x, y and z; others are passed over.
 std::vector<Point> read_csv_points(const std::filesystem::path& path);

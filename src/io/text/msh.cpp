@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
 #include <unordered_map>
@@ -19,44 +20,71 @@ namespace {
 struct View {
     std::uint64_t step;
     std::uint64_t components;
-    std::map<std::uint64_t, std::vector<double>> rows;  ///< by node
+    std::map<std::uint64_t, std::vector<double>> rows;  ///< by node or element
 };
+using Views = std::map<std::string, View>;
 
-/// Reads a file section by section; passes over all but nodes and their data.
+/// Of the element types that Gmsh writes; 0 for unknown ones.
+std::size_t nodes_of_element(std::int32_t type) {
+    constexpr std::array<std::uint8_t, 32> nodes{0,  2,  3,  4,  4, 8, 6,  5,  3,  6, 9,
+                                                 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10,
+                                                 12, 15, 15, 21, 4, 5, 6,  20, 35, 56};
+    return type > 0 && static_cast<std::size_t>(type) < nodes.size()
+               ? nodes[static_cast<std::size_t>(type)]
+               : 0;
+}
+
+/// Reads a file section by section; passes over all but nodes and data.
 class Parser {
 public:
     Parser(std::string_view bytes, const std::filesystem::path& path) : file_(bytes, path) {
         read_format();
         while (find_section()) {
             if (section_ == "Nodes") read_nodes();
-            if (section_ == "NodeData") read_data();
+            if (section_ == "Elements") elements_at_ = file_.at();
+            if (section_ == "NodeData") read_data(of_nodes_);
+            if (section_ == "ElementData") read_data(of_elements_);
             const std::size_t end = file_.rest().find("$End" + section_);
             file_.go_to(file_.at() + std::min(end, file_.rest().size()));
         }
     }
 
-    std::vector<PointSource> sources(const std::string& view) const {
+    std::vector<PointSource> sources(const std::string& view) {
         const std::filesystem::path& path = file_.path();
         const auto fail = [&](const std::string& what) {
             throw InputError(fmt::format("{}: {}", path.string(), what));
         };
-        if (views_.empty()) fail("no $NodeData: save a view with the mesh");
+        if (of_nodes_.empty() && of_elements_.empty()) {
+            fail("no $NodeData or $ElementData: save a view with the mesh");
+        }
+        const bool at_nodes = view.empty()
+                                  ? !of_nodes_.empty()
+                                  : of_nodes_.contains(view) || !of_elements_.contains(view);
         std::vector<std::string> names;
-        for (const auto& [name, data] : views_) names.push_back(name);
-        const View& data = views_.at(names[chosen_array(path, "views", names, view)]);
+        for (const auto& [name, data] : at_nodes ? of_nodes_ : of_elements_) names.push_back(name);
+        if (at_nodes && !view.empty()) {
+            for (const auto& [name, data] : of_elements_) {
+                if (!of_nodes_.contains(name)) names.push_back(name);
+            }
+        }
+        const std::string& chosen = names[chosen_array(path, "views", names, view)];
+        const View& data = (at_nodes ? of_nodes_ : of_elements_).at(chosen);
         if (data.components != 1 && data.components != matrix_rows.numbers) {
             fail(fmt::format("{} components: give 1 (sizes) or 9 (tensors)", data.components));
         }
-        if (data.rows.empty()) fail("no data at any node: nothing to read");
+        const char* what = at_nodes ? "node" : "element";
+        if (data.rows.empty()) fail(fmt::format("no data at any {}: nothing to read", what));
+        if (!at_nodes) read_elements(data);
+        const auto& places = at_nodes ? nodes_ : centres_;
         const auto where = [&] { return path.string(); };
         std::vector<Point> positions;
         MetricRows metrics(where, matrix_rows);
-        for (const auto& [node, row] : data.rows) {
-            const auto position = nodes_.find(node);
-            if (position == nodes_.end()) {
-                fail(fmt::format("data for node {}, which is not there", node));
+        for (const auto& [tag, row] : data.rows) {
+            const auto position = places.find(tag);
+            if (position == places.end()) {
+                fail(fmt::format("data for {} {}, which is not there", what, tag));
             }
-            require_coordinates(position->second, "node", node, where);
+            require_coordinates(position->second, what, tag, where);
             positions.push_back(position->second);
             metrics.add(row);
         }
@@ -125,7 +153,45 @@ private:
         if (left > 0) file_.fail(fmt::format("{} are in no block: {} left", section_, left));
     }
 
-    void read_data() {
+    /// The centres of the elements that have data: means of their nodes.
+    void read_elements(const View& data) {
+        if (elements_at_ == 0) file_.fail("data of elements, but no $Elements: save them too");
+        file_.go_to(elements_at_);
+        section_ = "Elements";
+        file_.set_binary(is_binary_);
+        const auto count = [&] { return file_.number<std::uint64_t>(section_); };
+        const std::uint64_t blocks = count();
+        const std::uint64_t all = count();
+        constexpr std::size_t least = 4;  // a tag and a node, in text
+        file_.require_room(section_, all, least);
+        count();  // smallest tag
+        count();  // largest tag
+        for (std::uint64_t block = 0; block < blocks; ++block) {
+            file_.number<std::int32_t>("a block");  // dimension
+            file_.number<std::int32_t>("a block");  // the entity
+            const auto type = file_.number<std::int32_t>("a block");
+            const std::size_t nodes = nodes_of_element(type);
+            if (nodes == 0) file_.fail(fmt::format("elements of the unknown type {}", type));
+            const auto n = count();
+            file_.require_room(section_, n, least);
+            for (std::uint64_t i = 0; i < n; ++i) {
+                const auto tag = count();
+                const bool is_needed = data.rows.contains(tag);
+                Point sum = Point::Zero();
+                for (std::size_t k = 0; k < nodes; ++k) {
+                    const auto node = nodes_.find(count());
+                    if (!is_needed) continue;
+                    if (node == nodes_.end()) {
+                        file_.fail(fmt::format("element {} has a node that is not there", tag));
+                    }
+                    sum += node->second;
+                }
+                if (is_needed) centres_.emplace(tag, sum / static_cast<double>(nodes));
+            }
+        }
+    }
+
+    void read_data(Views& views) {
         const auto count = [&] {
             const auto n = file_.number<std::uint64_t>(section_);
             file_.require_room(section_, n, 1);
@@ -145,16 +211,19 @@ private:
         file_.require_room(section_, rows, is_binary_ ? 12 : 2);
         const std::size_t begin = texts[0].find('"') + 1;
         const std::string name = texts[0].substr(begin, texts[0].rfind('"') - begin);
-        View& view = views_.try_emplace(name, View{step, components, {}}).first->second;
+        View& view = views.try_emplace(name, View{step, components, {}}).first->second;
         if (step > view.step) return;
         if (step < view.step) view = {step, components, {}};
         file_.set_binary(is_binary_);
         for (std::uint64_t i = 0; i < rows; ++i) {
-            const auto node = static_cast<std::uint64_t>(file_.number<std::int32_t>("a node"));
-            std::vector<double>& row = view.rows[node];
-            if (!row.empty()) file_.fail(fmt::format("node {} has two values", node));
+            const auto tag = static_cast<std::uint64_t>(file_.number<std::int32_t>(section_));
+            std::vector<double>& row = view.rows[tag];
+            if (!row.empty()) {
+                const char* what = &views == &of_nodes_ ? "node" : "element";
+                file_.fail(fmt::format("{} {} has two values", what, tag));
+            }
             for (std::uint64_t c = 0; c < components; ++c) {
-                row.push_back(file_.number<double>("data of a node"));
+                row.push_back(file_.number<double>(section_));
             }
         }
     }
@@ -163,7 +232,9 @@ private:
     bool is_binary_ = false;
     std::string section_;
     std::unordered_map<std::uint64_t, Point> nodes_;
-    std::map<std::string, View> views_;
+    std::unordered_map<std::uint64_t, Point> centres_;  ///< of elements
+    std::size_t elements_at_ = 0;                       ///< where they begin; 0: nowhere
+    Views of_nodes_, of_elements_;
 };
 
 }  // namespace

@@ -85,6 +85,14 @@ std::vector<PointSource> read_sources(const std::filesystem::path& path, const s
         fmt::format("{}: name a .csv, a .mesh beside a .sol, a .pos or a .msh", path.string()));
 }
 
+std::string place_of_source(const std::filesystem::path& path, std::size_t index) {
+    std::error_code ignored;
+    if (lower_case_extension(path) == ".csv" && std::filesystem::is_regular_file(path, ignored)) {
+        return fmt::format("line {}", csv_line_of(path, index));
+    }
+    return fmt::format("number {}", index + 1);
+}
+
 void write_sources(const std::filesystem::path& path, std::span<const PointSource> sources) {
     const std::string extension = lower_case_extension(path);
     if (extension == ".csv" || path == "/dev/stdout") return write_csv_sources(path, sources);

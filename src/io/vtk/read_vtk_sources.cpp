@@ -1,22 +1,33 @@
 #include "controlspace/io/read_vtk_sources.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <vtkCallbackCommand.h>
+#include <vtkCell.h>
+#include <vtkCellData.h>
 #include <vtkDataArray.h>
+#include <vtkDataSet.h>
 #include <vtkExecutive.h>
+#include <vtkGenericCell.h>
+#include <vtkIdList.h>
+#include <vtkImageData.h>
 #include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
-#include <vtkPointSet.h>
 #include <vtkPolyData.h>
+#include <vtkStaticCellLocator.h>
 #include <vtkUnstructuredGrid.h>
+#include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <algorithm>
 #include <array>
+#include <memory>
 #include <new>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
@@ -64,7 +75,7 @@ private:
 };
 
 template <class Reader>
-vtkSmartPointer<vtkPointSet> read_points(const std::filesystem::path& path) {
+vtkSmartPointer<vtkDataSet> read_data_set(const std::filesystem::path& path) {
     vtkNew<Reader> reader;
     ErrorLog errors;
     for (const auto event : {vtkCommand::ErrorEvent, vtkCommand::WarningEvent}) {
@@ -83,44 +94,92 @@ vtkSmartPointer<vtkPointSet> read_points(const std::filesystem::path& path) {
     return reader->GetOutput();
 }
 
-vtkDataArray& array_named(const std::filesystem::path& path, vtkPointData& data,
-                          const std::string& name) {
+/// Sizes or metrics, at points or in cells.
+struct Values {
+    vtkDataArray* array = nullptr;
+    bool at_points = true;
+};
+
+/// Arrays of numbers that have a name.
+std::vector<vtkDataArray*> arrays_of(vtkDataSetAttributes& data) {
     std::vector<vtkDataArray*> arrays;
-    std::vector<std::string> names;
-    std::string all;
     for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
         vtkDataArray* array = data.GetArray(i);
-        if (array == nullptr || array->GetName() == nullptr) continue;  // of texts, or nameless
-        const std::string its_name = array->GetName();
-        all += (all.empty() ? "" : ", ") + quote(its_name);
-        if (name.empty() && its_name.find(":metric") == its_name.npos) continue;
-        arrays.push_back(array);
-        names.push_back(its_name);
+        if (array != nullptr && array->GetName() != nullptr) arrays.push_back(array);
     }
-    if (all.empty()) fail(path, "its points have no arrays: give sizes or metrics at points");
-    if (names.empty()) {
-        fail(path, fmt::format("no array of points is named :metric, there are {}: name one "
-                               "(--source-array)",
-                               all));
-    }
-    return *arrays[chosen_array(path, "arrays of points", names, name)];
+    return arrays;
 }
 
-}  // namespace
+/// The array of that name, the only one of metrics without a name; of cells where points have none.
+/// `option` names one, for messages.
+Values array_named(const std::filesystem::path& path, vtkDataSet& grid, const std::string& name,
+                   const char* option) {
+    std::string all;
+    for (const bool at_points : {true, false}) {
+        const auto arrays =
+            at_points ? arrays_of(*grid.GetPointData()) : arrays_of(*grid.GetCellData());
+        std::vector<vtkDataArray*> fitting;
+        std::vector<std::string> names;
+        for (vtkDataArray* array : arrays) {
+            const std::string its_name = array->GetName();
+            all.append(all.empty() ? "" : ", ").append(quote(its_name));
+            if (!at_points) all.append(" (of cells)");
+            if (name.empty() ? its_name.find(":metric") == its_name.npos : its_name != name)
+                continue;
+            fitting.push_back(array);
+            names.push_back(quote(its_name));
+        }
+        if (fitting.size() > 1) {
+            fail(path, fmt::format("{} of its arrays of {} can be meant: name one of {} ({})",
+                                   fitting.size(), at_points ? "points" : "cells",
+                                   fmt::join(names, ", "), option));
+        }
+        if (!fitting.empty()) return {fitting.front(), at_points};
+    }
+    if (all.empty()) fail(path, "it has no arrays: give sizes or metrics at points or of cells");
+    fail(path, fmt::format("no array is named {}, there are {}: name one ({})",
+                           name.empty() ? ":metric" : quote(name), all, option));
+}
 
-std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
-                                          const std::string& array) {
+/// The mean of a cell's points.
+Point centre_of(const std::filesystem::path& path, vtkDataSet& grid, vtkIdType cell) {
+    vtkNew<vtkIdList> points;
+    grid.GetCellPoints(cell, points);
+    const vtkIdType n = points->GetNumberOfIds();
+    if (n == 0) fail(path, fmt::format("cell {} has no points: leave it out", cell + 1));
+    Point sum = Point::Zero();
+    for (vtkIdType k = 0; k < n; ++k) {
+        Point x;
+        grid.GetPoint(points->GetId(k), x.data());
+        sum += x;
+    }
+    return sum / static_cast<double>(n);
+}
+
+/// The metrics at the points or centres of cells of a file.
+struct VtkMetrics {
+    vtkSmartPointer<vtkDataSet> grid;
+    bool at_points;
+    std::vector<Point> positions;
+    std::vector<Metric> metrics;
+};
+
+VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& name,
+                        const char* option) {
     if (read_binary_file(path).find("<VTKFile") == std::string::npos) {
         fail(path, "no VTKFile element: give a file in VTK's XML format");
     }
-    const auto grid = lower_case_extension(path) == ".vtp"
-                          ? read_points<vtkXMLPolyDataReader>(path)
-                          : read_points<vtkXMLUnstructuredGridReader>(path);
-    vtkDataArray& values = array_named(path, *grid->GetPointData(), array);
-    const vtkIdType count = grid->GetNumberOfPoints();
-    if (count == 0) fail(path, "no points: nothing to read");
+    const std::string ending = lower_case_extension(path);
+    const auto grid = ending == ".vtp"   ? read_data_set<vtkXMLPolyDataReader>(path)
+                      : ending == ".vti" ? read_data_set<vtkXMLImageDataReader>(path)
+                                         : read_data_set<vtkXMLUnstructuredGridReader>(path);
+    const auto [array, at_points] = array_named(path, *grid, name, option);
+    vtkDataArray& values = *array;
+    const vtkIdType count = at_points ? grid->GetNumberOfPoints() : grid->GetNumberOfCells();
+    const char* what = at_points ? "point" : "cell";
+    if (count == 0) fail(path, fmt::format("no {}s: nothing to read", what));
     if (values.GetNumberOfTuples() != count) {
-        fail(path, fmt::format("{} points, but {} values in {}: is it cut off?", count,
+        fail(path, fmt::format("{} {}s, but {} values in {}: is it cut off?", count, what,
                                values.GetNumberOfTuples(), quote(values.GetName())));
     }
     const auto components = static_cast<std::size_t>(values.GetNumberOfComponents());
@@ -134,12 +193,89 @@ std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
     std::array<double, 9> numbers{};
     for (vtkIdType i = 0; i < count; ++i) {
         Point& x = positions[static_cast<std::size_t>(i)];
-        grid->GetPoint(i, x.data());
-        require_coordinates(x, "point", static_cast<std::size_t>(i) + 1, where);
+        if (at_points) {
+            grid->GetPoint(i, x.data());
+        } else {
+            x = centre_of(path, *grid, i);
+        }
+        require_coordinates(x, what, static_cast<std::size_t>(i) + 1, where);
         values.GetTuple(i, numbers.data());
         metrics.add(std::span(numbers).first(components));
     }
-    return sources_from(positions, metrics.take());
+    return {grid, at_points, std::move(positions), metrics.take()};
+}
+
+/// Constant in each cell, or by the cells' shape functions between points.
+class CellField final : public ControlSpace {
+public:
+    explicit CellField(VtkMetrics data) : data_(std::move(data)) {
+        std::array<double, 6> bounds{};
+        data_.grid->GetBounds(bounds.data());
+        domain_ = {{bounds[0], bounds[2], bounds[4]}, {bounds[1], bounds[3], bounds[5]}};
+        locator_->SetDataSet(data_.grid);
+        locator_->BuildLocator();
+    }
+
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+        const vtkNew<vtkGenericCell> cell;
+        std::vector<double> weights(static_cast<std::size_t>(data_.grid->GetMaxCellSize()));
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            out[i] = at(x[i].cwiseMax(domain_.low).cwiseMin(domain_.high), cell, weights);
+        }
+    }
+    Box domain() const override { return domain_; }
+
+private:
+    Metric at(Point x, vtkGenericCell* cell, std::vector<double>& weights) const {
+        Point inside;
+        int part = 0;
+        double distance = 0;
+        vtkIdType id = locator_->FindCell(x.data(), 0, cell, inside.data(), weights.data());
+        if (id < 0) {  // between cells, or beside an uneven boundary
+            Point nearest;
+            locator_->FindClosestPoint(x.data(), nearest.data(), cell, id, part, distance);
+            cell->EvaluatePosition(nearest.data(), nullptr, part, inside.data(), distance,
+                                   weights.data());
+        }
+        if (!data_.at_points) return data_.metrics[static_cast<std::size_t>(id)];
+        Metric sum{0, 0, 0, 0, 0, 0};
+        double all = 0;
+        for (int k = 0; k < static_cast<int>(cell->GetNumberOfPoints()); ++k) {
+            const double weight = std::max(0.0, weights[static_cast<std::size_t>(k)]);
+            const Metric& m = data_.metrics[static_cast<std::size_t>(cell->GetPointId(k))];
+            sum = {sum.xx + weight * m.xx, sum.yy + weight * m.yy, sum.zz + weight * m.zz,
+                   sum.xy + weight * m.xy, sum.xz + weight * m.xz, sum.yz + weight * m.yz};
+            all += weight;
+        }
+        return (1 / all) * sum;
+    }
+
+    VtkMetrics data_;
+    Box domain_;
+    vtkNew<vtkStaticCellLocator> locator_;
+};
+
+}  // namespace
+
+std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
+                                          const std::string& name) {
+    const VtkMetrics data = read_metrics(path, name, "--source-array");
+    return sources_from(data.positions, data.metrics);
+}
+
+AnalyticField read_vtk_field(const std::filesystem::path& path, const std::string& name) {
+    VtkMetrics data = read_metrics(path, name, "--field-grid");
+    for (vtkIdType i = 0; i < data.grid->GetNumberOfCells(); ++i) {
+        if (data.grid->GetCell(i)->GetCellDimension() == 3) continue;
+        fail(path, fmt::format("cell {} has no volume, so that nothing is between points: leave "
+                               "such cells out, or read points as sources (--sources)",
+                               i + 1));
+    }
+    if (data.grid->GetNumberOfCells() == 0) fail(path, "no cells: nothing to read");
+    double finest = largest_magnitude;
+    for (const Metric& m : data.metrics) finest = std::min(finest, eigen_frame(m).lengths[0]);
+    std::vector<Point> places = data.positions;
+    return {std::make_shared<CellField>(std::move(data)), finest, std::move(places)};
 }
 
 }  // namespace controlspace

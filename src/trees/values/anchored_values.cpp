@@ -25,7 +25,7 @@ double negligible_shortening(double target) { return 0.5 * std::sqrt(target); }
 }  // namespace
 
 AnchoredValues::AnchoredValues(const SpaceOptions& options)
-    : largest_(largest_metric(options.domain)),
+    : largest_(largest_metric(options)),
       ratio_(options.ratio),
       intersection_(options.intersection) {}
 
@@ -111,6 +111,7 @@ void AnchoredValues::take_over(const AdaptationGoal& goal) {
     intersection_ = goal.intersection;
     gap_ = OrderFreeCones::gap_of(std::min(0.1 * goal.target, 0.1));  // as the goal's field
     continuous_ = goal.continuous;
+    largest_ = Metric::isotropic(std::min(largest_.xx, goal.h_max));
     sources_ = {};
     for (const PointSource& source : goal.sources) sources_.add(source);
 }

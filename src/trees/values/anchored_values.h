@@ -44,6 +44,7 @@ public:
     const SourceTable& sources() const { return sources_; }
     double ratio() const { return ratio_; }
     IntersectionRule rule() const { return intersection_; }
+    const Metric& largest() const { return largest_; }
     const std::shared_ptr<const ControlSpace>& continuous() const { return continuous_; }
     /// Anchors are from now on taken from the sources of `goal`, with its ratio.
     void take_over(const AdaptationGoal& goal);

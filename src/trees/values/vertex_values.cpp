@@ -8,7 +8,7 @@
 namespace controlspace {
 
 VertexValues::VertexValues(const SpaceOptions& options)
-    : corners_(1), metrics_(8, largest_metric(options.domain)) {
+    : corners_(1), metrics_(8, largest_metric(options)) {
     for (int i = 0; i < 8; ++i) {
         const Point x = corner(options.domain, i);
         corners_[0][static_cast<std::size_t>(i)] =

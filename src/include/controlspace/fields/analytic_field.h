@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "controlspace/geometry/box.h"
 #include "controlspace/space/control_space.h"
@@ -14,6 +15,8 @@ namespace controlspace {
 struct AnalyticField {
     std::shared_ptr<const ControlSpace> field;
     double finest_length = 0;  ///< lower bound of its lengths, in any direction
+    /// Places in what is small in the field, so that a search for it begins there; may be empty.
+    std::vector<Point> places = {};
 };
 
 /// The field whose metric at p is formula(p), for p in `domain`. `formula` is called from several

@@ -17,13 +17,18 @@ namespace controlspace {
 ///   - `.mesh`, `.meshb`, `.sol` or `.solb`: a Medit mesh or solution that has the other beside it
 ///     under the same name, with lengths, or Riemannian metrics M^-2 as xx xy yy xz yz zz; a mesh
 ///     without a solution gives the lengths of its required edges, at their ends;
-///   - `.pos` and `.msh`: a list view of Gmsh, or a mesh (format 4.1) with $NodeData, with lengths,
-///     or Riemannian metrics M^-2 by rows; `array` names the view, if there is more than one.
+///   - `.pos` and `.msh`: a list view of Gmsh, or a mesh (format 4.1) with $NodeData, or with
+///     $ElementData for the centres of elements, with lengths, or Riemannian metrics M^-2 by rows;
+///     `array` names the view, if there is more than one.
 /// Lengths are in the units of the positions. A pipe without an extension is read as CSV. Throws
 /// InputError, naming file and line or offset, for anything that cannot be read as such, and
 /// naming the first tensor that is not positive definite.
 std::vector<PointSource> read_sources(const std::filesystem::path& path,
                                       const std::string& array = {});
+
+/// Where the source of that number, from 0, stands in its file, for messages: "line 19" of a .csv,
+/// "number 18" of others and of pipes.
+std::string place_of_source(const std::filesystem::path& path, std::size_t index);
 
 /// Writes `sources` in the format that the name's ending says: .csv, .pos, .vtu, .vtp, or .mesh,
 /// .sol, .meshb or .solb, which makes a mesh and a solution. read_sources, and read_vtk_sources for

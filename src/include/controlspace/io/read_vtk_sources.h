@@ -4,13 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "controlspace/fields/analytic_field.h"
 #include "controlspace/sources/point_source.h"
 
 namespace controlspace {
 
-/// Sources at the points of a VTK file (.vtu or .vtp) that carry the array `array`; without a name,
-/// the only one whose name contains ":metric". It holds sizes h (1 component) or Riemannian
-/// metrics M^-2: 6 components in VTK's order XX YY ZZ XY YZ XZ, or 9 by rows.
+/// Sources at the points of a VTK file (.vtu, .vtp or .vti) that carry the array `array`, or, where
+/// no array of points has that name, at the centres (means of the points) of cells that do; without
+/// a name, the only one whose name contains ":metric". It holds sizes h (1 component) or Riemannian
+/// metrics M^-2: 6 components in VTK's order XX YY ZZ XY YZ XZ, or 9 by rows. Exported leaves,
+/// control nodes and slices are read again so, as sources.
 ///
 /// Throws InputError that names the file for what VTK cannot read; for more points or cells than
 /// the file has room for; for an array that is missing, or of another number of components; and for
@@ -20,5 +23,11 @@ namespace controlspace {
 /// unknown origin in a process of their own first, as the program does.
 std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
                                           const std::string& array = {});
+
+/// A finished field: in each cell of a .vtu or .vti (all with a volume) its own metric, or, of
+/// arrays of points, the metrics M blended linearly by the cell's shape functions. It is defined in
+/// the box of the cells; where that has no cell, and outside, the nearest place of a cell answers.
+/// Throws InputError as above, and for cells without a volume.
+AnalyticField read_vtk_field(const std::filesystem::path& path, const std::string& array = {});
 
 }  // namespace controlspace

@@ -22,6 +22,10 @@ struct AdaptationGoal {
     /// Largest δ to the field, strictly (`strict_nonconformity`); 0 is out of reach.
     double target = 0.1;
     IntersectionRule intersection = IntersectionRule::order_free;
+    double h_max = largest_magnitude;  ///< as of SpaceOptions: bounds M_max
+    /// Further places where trees are compared with the field, such as the middle of what is small
+    /// in `continuous`; they may be outside the domain.
+    std::span<const Point> places = {};
 };
 
 struct AdaptationReport {

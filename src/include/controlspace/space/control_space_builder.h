@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "controlspace/geometry/box.h"
 #include "controlspace/gradation/grade.h"
@@ -75,6 +76,9 @@ public:
 /// Throws InputError, naming the source by `index` (0-based), if its position is outside `domain`
 /// or its metric not positive definite.
 void require_valid(const PointSource& source, std::size_t index, const Box& domain);
+/// The same for a source of any name: "source 3 (a.csv, line 5)".
+void require_valid(const PointSource& source, std::size_t index, const std::string& name,
+                   const Box& domain);
 /// Whether it does not.
 bool is_valid(const PointSource& source, const Box& domain);
 /// Throws InputError unless there is one metric for each control node.

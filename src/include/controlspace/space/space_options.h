@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "controlspace/geometry/box.h"
@@ -28,6 +29,7 @@ struct SpaceOptions {
     double finest_length = 0;  ///< smallest length any source requests; grids size voxels by it
     double voxel = 0;          ///< longest edge of a grid's finest voxels; 0: l_min * finest_length
     double voxel_factor = 1;   ///< grids in levels: longest edge of a voxel, in the metric it holds
+    double h_max = largest_magnitude;  ///< largest length anywhere, where M_max is larger
     double prune_delta = 0;    ///< δ up to which voxels of a field that is set join; 0: none do
     /// g_r of the gradation to come, for structures that keep sources, and for those with quadratic
     /// leaves, whose interpolation it bounds until they are graded.
@@ -53,9 +55,13 @@ struct SpaceOptions {
     std::size_t max_bytes = std::size_t{4} << 30;
 };
 
-/// M_max, which a new control space holds everywhere: H I, H half of the domain's diagonal.
-inline Metric largest_metric(const Box& domain) {
-    return Metric::isotropic(domain.half_diagonal());
+/// M_max, which a new control space holds everywhere: H I, H half of the domain's diagonal, or
+/// `h_max` where that is less.
+inline Metric largest_metric(const Box& domain, double h_max = largest_magnitude) {
+    return Metric::isotropic(std::min(domain.half_diagonal(), h_max));
+}
+inline Metric largest_metric(const SpaceOptions& options) {
+    return largest_metric(options.domain, options.h_max);
 }
 
 /// Depths and lengths within what the structures can hold; throws InputError that names the option.

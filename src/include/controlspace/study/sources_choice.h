@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "controlspace/fields/analytic_field.h"
+#include "controlspace/fields/primitives.h"
 #include "controlspace/fields/surface_fields.h"
 #include "controlspace/io/read_surface_sources.h"
 #include "controlspace/io/read_vdb.h"
@@ -34,7 +35,7 @@ struct FieldChoice {
 
 /// The part of a file of sources to be read, or lengths for a file without any.
 struct FileSources {
-    std::string array = {};         ///< .vtu, .vtp, .msh, .pos; empty: the only one
+    std::string array = {};         ///< .vtu, .vtp, .vti, .msh, .pos; empty: the only one
     CurvatureSizes curvature = {};  ///< .stl, .obj, .ply, .off
 
     bool operator==(const FileSources&) const = default;
@@ -55,8 +56,12 @@ struct SourcesChoice {
     double s_a = 2;                ///< tangential length in units of h
     double s_n = 1;                ///< normal length in units of the tangential one
     FieldChoice field = {};
-    VdbSurface surface = {};   ///< file only, a .vdb
-    FileSources in_file = {};  ///< file only, of other formats
+    std::vector<Primitive> primitives = {};  ///< beside these sources
+    double primitives_ratio = 1.25;    ///< of those without a growth of their own: g_r of the case
+    double h_min = 0;                  ///< shorter requested lengths are this long
+    double h_max = largest_magnitude;  ///< no length of a structure is longer
+    VdbSurface surface = {};           ///< file only, a .vdb
+    FileSources in_file = {};          ///< file only, of other formats
 
     bool operator==(const SourcesChoice&) const = default;
 };
@@ -66,13 +71,20 @@ inline bool is_sampled(const SourcesChoice& s) {
     return s.kind == SourcesKind::sphere || s.kind == SourcesKind::planes;
 }
 
-/// Whether there is an analytic field: structures follow it and the sources together.
-inline bool has_field(const SourcesChoice& s) { return s.field.kind != FieldKind::none; }
+/// Whether there is a continuous field, analytic or of primitives: structures follow it and the
+/// sources together.
+inline bool has_field(const SourcesChoice& s) {
+    return s.field.kind != FieldKind::none || !s.primitives.empty();
+}
 
-/// All files of sources, the first one first.
+/// All files of point sources, the first one first.
 std::vector<std::filesystem::path> files_of(const SourcesChoice& s);
+/// These, and files of surfaces and of a field.
+std::vector<std::filesystem::path> input_files_of(const SourcesChoice& s);
 
-/// As in options and study files: "sphere", "none", "folder/file.csv", "a.csv,b.stl".
+/// As in options and study files: "sphere", "none", or "folder/a.csv", "ball:0,0,0,r=1,h=0.1".
+std::vector<std::string> source_names(const SourcesChoice& s);
+/// The same between commas.
 std::string sources_name(const SourcesChoice& s);
 
 /// The field of a formula. Throws InputError for parameters out of range. Precondition:

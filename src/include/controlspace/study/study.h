@@ -54,6 +54,10 @@ private:
     std::map<std::string, Values> lists_;
 };
 
+/// Trees that are to follow a continuous field, without a target: the largest factor between
+/// their lengths and those of the field.
+inline constexpr double default_within = 1.1;
+
 /// A comparison: one kind of sources, one domain, one way to measure, and the runs.
 struct Study {
     std::string name = "study";

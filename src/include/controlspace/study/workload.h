@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "controlspace/fields/analytic_field.h"
+#include "controlspace/fields/primitives.h"
 #include "controlspace/geometry/box.h"
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/sources/point_source.h"
@@ -20,6 +21,8 @@ struct FileReaders {
     std::map<std::string, std::function<std::vector<PointSource>(const SourcesChoice&)>> sources;
     /// A field of kind `file`; may be empty.
     std::function<AnalyticField(const FieldChoice&)> vdb_field;
+    /// The distance from the surface in a file; may be empty.
+    std::function<DistanceField(const std::filesystem::path&)> surface_distance;
 };
 
 /// Sources and field, shared by all cases with the same ones.
@@ -34,8 +37,10 @@ struct Workload {
 /// read_sources. Throws InputError.
 std::vector<PointSource> read_source_file(const SourcesChoice& choice, const FileReaders& readers);
 
-/// Samples or reads the sources. Throws InputError for a source outside the domain, and for a
-/// domain beyond that of the field.
+/// Samples or reads the sources, with lengths between h_min and h_max of `choice`. Without a domain
+/// in the study, primitives define it only where there is nothing else. Throws InputError for a
+/// source (named by its index, file and line) or a primitive outside the domain, and for a domain
+/// beyond that of the field.
 Workload make_workload(const Study& study, const SourcesChoice& choice,
                        const FileReaders& readers = {});
 

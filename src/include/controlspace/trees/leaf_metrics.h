@@ -18,7 +18,7 @@ public:
     using constant_leaves = LeafMetrics;
 
     explicit LeafMetrics(const SpaceOptions& options)
-        : metrics_(1, largest_metric(options.domain)) {}
+        : metrics_(1, largest_metric(options)) {}
 
     NodeMetrics& metrics() { return metrics_; }
     const NodeMetrics& metrics() const { return metrics_; }

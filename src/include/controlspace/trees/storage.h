@@ -31,7 +31,7 @@ namespace controlspace {
 //                                        whose metric it is then. Or, for many at once,
 //   values_in(tree, leaves, x, nodes, out)
 //
-// and a constructor from SpaceOptions, for a tree of one leaf with largest_metric(domain). A single
+// and a constructor from SpaceOptions, for a tree of one leaf with largest_metric(options). A single
 // node of a leaf stands at its centre; for eight, corners() and positions() give those of all
 // leaves and all nodes. Constants:
 //

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <vector>
@@ -39,6 +40,8 @@ public:
             }
         } else {
             for (const PointSource& source : goal.sources) sources_.push_back(source.position);
+            std::ranges::copy_if(goal.places, std::back_inserter(sources_),
+                                 [&](const Point& x) { return tree.domain().contains(x); });
         }
         at_sources_.resize(sources_.size());
         sample_parallel(field, sources_, at_sources_);
