@@ -17,16 +17,45 @@
 
 namespace controlspace {
 
+namespace {
+
+std::string name_of(SourcesKind kind) {
+    SourcesChoice choice;
+    choice.kind = kind;
+    return sources_name(choice);
+}
+
+}  // namespace
+
+void set_sources(Study& study, const std::filesystem::path& input) {
+    std::error_code none;
+    if (std::filesystem::exists(input, none)) {
+        study.sources.kind = SourcesKind::file;
+        study.sources.file = input;
+        return;
+    }
+    apply(given_settings({{"sources", {input.string()}}}), study_parameters(), study);
+    if (study.sources.kind != SourcesKind::file) return;
+    for (const std::filesystem::path& file : files_of(study.sources)) {
+        // Of a name with an ending, its reader tells what is wrong.
+        if (file.has_extension() || std::filesystem::exists(file, none)) continue;
+        std::string names;
+        for (const auto kind : {SourcesKind::sphere, SourcesKind::planes, SourcesKind::none}) {
+            names.append(names.empty() ? "" : ", ").append(name_of(kind));
+        }
+        throw InputError(
+            fmt::format("there is no file '{}', and it names no sources: give a file, or one of {}",
+                        file.string(), names));
+    }
+}
+
 Study study_of_input(const std::filesystem::path& input, const GivenSettings& given) {
     Study study;
     if (input.extension() == ".toml") {
         study = read_study(input, program_parameters());
     } else {
         study.runs.front() = one_structure();
-        if (!input.empty()) {
-            study.sources.kind = SourcesKind::file;
-            study.sources.file = input;
-        }
+        if (!input.empty()) set_sources(study, input);
     }
     apply(given, study);
     return study;
@@ -101,14 +130,17 @@ void require_no_input(const std::filesystem::path& output,
     }
 }
 
-std::vector<PointSource> sources_of_input(const std::filesystem::path& file,
+std::vector<PointSource> sources_of_input(const std::filesystem::path& input,
                                           const GivenSettings& given) {
     Study study;
+    study.runs.front() = one_structure();
+    set_sources(study, input);
     apply(given, study_parameters(), study);
-    study.sources.kind = SourcesKind::file;
-    study.sources.file = file;
     require_applicable(study);
-    return read_source_file(study.sources, file_readers());
+    if (study.sources.kind == SourcesKind::file) {
+        return read_source_file(study.sources, file_readers());
+    }
+    return make_workload(study, only_case(study).sources, file_readers()).sources;
 }
 
 }  // namespace controlspace

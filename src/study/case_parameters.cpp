@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
+#include <set>
 
 #include "controlspace/gradation/law.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/study/parameter.h"
+#include "space/depth_limits.h"
 
 namespace controlspace {
 namespace {
@@ -43,7 +46,8 @@ bool is_graded(const CatalogueEntry& entry, const Case& c) {
 /// The deepest level of trees of one kind.
 Access<Case> depth_if(bool with_split) {
     Access<Case> depth = number_of(
-        [](auto& c) -> auto& { return c.max_depth; }, within(0, 1000));
+        [](auto& c) -> auto& { return c.max_depth; },
+        within(0, with_split ? deepest_kd_level : deepest_octree_level));
     depth.get = [get = depth.get, with_split](const Case& c) {
         return c.split.has_value() == with_split ? get(c) : Values{};
     };
@@ -149,6 +153,19 @@ CaseParameter structure(const char* key, const char* unit, const char* help, Acc
             std::move(label),
             std::move(fits),
             result_key};
+}
+
+Topic topic_of(const CaseParameter& row) {
+    static const std::map<Topic, std::set<std::string>> others{
+        {Topic::accuracy,
+         {"within", "target_delta", "equal_delta", "equal_memory", "epsilon", "tau", "reference"}},
+        {Topic::fields, {"field"}},
+        {Topic::paper, {"law", "schedule", "intersection", "interpolation", "neighbourhood"}}};
+    for (const auto& [topic, keys] : others) {
+        if (keys.contains(row.key)) return topic;
+    }
+    if (row.applies_to.is_true_of) return Topic::paper;  // of its samples
+    return row.role == Role::structure ? Topic::structures : Topic::sizes;
 }
 
 }  // namespace
@@ -261,6 +278,7 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
                   if_given("pruned at {:.4g}", &Case::prune_delta)),
     };
     std::ranges::find(rows, "reference", &CaseParameter::key)->use = Use::accuracy;
+    for (CaseParameter& row : rows) row.topic = topic_of(row);
     return rows;
 }
 
