@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cmath>
+
 #include "cli/export.h"
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
@@ -23,8 +25,8 @@ std::string report(const Export& e, const SizeFile& file, const std::string& wha
     }
     std::string text = fmt::format("{} {}", file.count, what);
     if (file.within) {
-        text += fmt::format("; 99 % of 1000 random places within {:.3g}x of the structure",
-                            *file.within);
+        text += fmt::format("; 99 % of 1000 random places within {:.2f}x of the structure",
+                            std::ceil(100 * *file.within) / 100);
         if (*file.within > far) spdlog::warn("{}: {}", e.output.string(), remedy);
     }
     return written(e, text);
@@ -35,7 +37,7 @@ constexpr const char* finer_grid = "lengths are off by more than 1.25x: give mor
 std::string write_structured(const Export& e) {
     const int samples = e.samples.value_or(grid_samples);
     return report(e, write_gmsh_structured(e.output, *e.filled.space, samples),
-                  "nodes of a field Structured of Gmsh (TextFormat = 0)", finer_grid);
+                  "nodes of a field Structured of Gmsh (TextFormat = 0, SetOutsideValue = 0)", finer_grid);
 }
 
 std::string write_jigsaw(const Export& e) {

@@ -160,8 +160,8 @@ TEST_CASE("sizes for Gmsh, JIGSAW, Netgen and TetGen") {
 TEST_CASE("sizes that mislead are warned of") {
     const Sandbox box("export-sizes-warned");
     box.write("s.csv", sources_csv);
-    box.write("thin.csv", "x,y,z,xx,yy,zz,xy,xz,yz\n0,0,0,0.1,0.4,0.4,0,0,0\n1,1,1,1,1,1,0,0,0\n");
-    const Outcome coarse = box.run("export s.csv -o a.msh --samples 2");
+    box.write("thin.csv", "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n0,0,0,0.1,0.4,0.4,0,0,0\n1,1,1,1,1,1,0,0,0\n");
+    const Outcome coarse = box.run("export sphere --h 0.05 -o a.msh --samples 5");
     CHECK_THAT(coarse.err, Contains("warning: a.msh: ") && Contains("more --samples"));
     const Outcome jumps = box.run("export s.csv -o a.b.ele --structures K_oL");
     CHECK_THAT(jumps.err, Contains("continuous (K_oV)"));

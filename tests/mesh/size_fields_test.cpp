@@ -46,7 +46,11 @@ std::vector<double> by_gmsh(const std::string& kind, const std::string& option,
     in_gmsh_session(1, [&] {
         const int field = gmsh::model::mesh::field::add(kind);
         gmsh::model::mesh::field::setString(field, option, value);
-        if (kind == "Structured") gmsh::model::mesh::field::setNumber(field, "TextFormat", 0);
+        if (kind == "Structured") {
+            gmsh::model::mesh::field::setNumber(field, "TextFormat", 0);
+            // Without a value of its own outside; 4.8.4 leaves that open.
+            gmsh::model::mesh::field::setNumber(field, "SetOutsideValue", 0);
+        }
         std::vector<double> data;
         for (const Point& x : places()) {
             data.insert(data.end(), x.begin(), x.end());

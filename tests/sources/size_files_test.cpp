@@ -2,6 +2,7 @@
 // descriptions. Gmsh, TetGen and Netgen themselves read them in tests/mesh and tests/cli.
 #include "io/text/size_files.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -181,8 +182,9 @@ TEST_CASE("at its nodes, JIGSAW's grid is the field in single precision") {
 }
 
 TEST_CASE("a bisected box is filled by tetrahedra that share whole faces") {
-    const Box box = GENERATE(domain, Box{Point::Zero(), Point::Ones()},
-                             Box{Point(3, 0, 0), Point(3.2, 2, 0.1)});
+    const Box boxes[] = {
+        domain, {Point::Zero(), Point::Ones()}, {Point(3, 0, 0), Point(3.2, 2, 0.1)}};
+    const Box box = boxes[GENERATE(0, 1, 2)];
     BisectedBox mesh(box);
     RandomFractions random(3);
     std::vector<Point> places;
@@ -279,8 +281,8 @@ TEST_CASE("Netgen's sizes are as dense as they are small, the smallest first") {
         last = row[3];
         elements += row[3] * row[3] * row[3];
     }
-    // Each stands for a box with no edge longer than its length.
-    CHECK(elements >= domain.edges().prod());
+    // Each stands for a box with no edge longer than half its length.
+    CHECK(elements >= 8 * domain.edges().prod());
 }
 
 TEST_CASE("of tensors, files of lengths hold the smallest, and say so") {

@@ -13,6 +13,8 @@ namespace controlspace {
 
 SizeFile write_netgen_sizes(const std::filesystem::path& path, const ControlSpace& space) {
     constexpr std::size_t most_points = 20'000'000;
+    constexpr double spacing =
+        0.5;  // lengths: at 1, Netgen's are up to 1.4 times too large between
     std::vector<std::pair<double, Point>> points;
     bool has_tensors = false;
     std::vector<Box> boxes = elements_of(space);
@@ -26,7 +28,8 @@ SizeFile write_netgen_sizes(const std::filesystem::path& path, const ControlSpac
             // Along short edges of a cell there is room for one point.
             Subdivision cut = octants(boxes[i]);
             for (Axis a = 0; a < 3; ++a) {
-                cut.cuts[static_cast<std::size_t>(a)] = boxes[i].edges()[a] > lengths.values[i];
+                cut.cuts[static_cast<std::size_t>(a)] =
+                    boxes[i].edges()[a] > spacing * lengths.values[i];
             }
             if (cut.children() == 1 || !cut.is_proper()) {
                 points.emplace_back(lengths.values[i], centres[i]);

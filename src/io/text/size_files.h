@@ -21,8 +21,9 @@ struct SizeFile {
 
 /// The grid of Gmsh's field Structured, binary (TextFormat = 0): 2 to 512 nodes along the longest
 /// edge of the domain, as many at the same distance or nearly along the others. Gmsh is trilinear
-/// between them. Throws InputError for a number of samples out of range, or if writing fails; no
-/// part of a file is left. So do all others here.
+/// between them, and constant beyond with SetOutsideValue = 0, which 4.8.4 does not set by itself.
+/// Throws InputError for a number of samples out of range, or if writing fails; no part of a file
+/// is left. So do all others here.
 SizeFile write_gmsh_structured(const std::filesystem::path& path, const ControlSpace& space,
                                int samples);
 
@@ -33,13 +34,13 @@ SizeFile write_jigsaw_grid(const std::filesystem::path& path, const ControlSpace
 
 /// The background mesh of TetGen (its option -m): BASE.node, BASE.ele and BASE.mtr, where BASE is
 /// NAME.b for the input NAME. Tetrahedra as small as the cells of the structure, and smaller where
-/// its lengths are not linear within 2 %, by up to one halving. TetGen is linear in each. Throws
-/// InputError for a field without cells.
+/// its lengths are not linear within 2 %, by up to two halvings, or 2 million nodes. TetGen is
+/// linear in each. Throws InputError for a field without cells.
 SizeFile write_tetgen_background(const std::filesystem::path& base, const ControlSpace& space);
 
-/// The local mesh sizes of Netgen (.msz, its option meshsizefilename): points as dense as the mesh
-/// will be, the smallest lengths first. Netgen takes them as upper bounds, grows from there by its
-/// own grading, and keeps lengths that are up to 20 % too large. Throws InputError for a field
+/// The local mesh sizes of Netgen (.msz, its option meshsizefilename): points at half the lengths
+/// that they request, the smallest first. Netgen takes them as upper bounds, grows from there by
+/// its own grading, and keeps lengths that are up to 20 % too large. Throws InputError for a field
 /// without cells, or that requests more than 20 million points.
 SizeFile write_netgen_sizes(const std::filesystem::path& path, const ControlSpace& space);
 

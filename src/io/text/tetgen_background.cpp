@@ -60,12 +60,13 @@ std::filesystem::path with_ending(std::filesystem::path base, const char* ending
 }  // namespace
 
 SizeFile write_tetgen_background(const std::filesystem::path& base, const ControlSpace& space) {
-    constexpr int bisections = 3;  // after those for the cells: they halve all edges
+    constexpr int bisections = 6;              // after those for the cells: three halve all edges
+    constexpr std::size_t enough = 2'000'000;  // points
     BisectedBox mesh(space.domain());
     for (const Box& cell : elements_of(space)) mesh.refine_to(cell, cell.centre());
     mesh.close();
     Lengths lengths = lengths_at(space, mesh.points());
-    for (int i = 0; i < bisections; ++i) {
+    for (int i = 0; i < bisections && mesh.points().size() < enough; ++i) {
         mesh.refine(not_linear(space, mesh, lengths.values));
         mesh.close();
         const auto added = mesh.points().subspan(lengths.values.size());
