@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/formats.h"
+#include "cli/input_study.h"
 #include "cli/options.h"
 #include "cli/paper_reference.h"
 #include "cli/run_study.h"
@@ -20,8 +21,8 @@ namespace controlspace {
 namespace {
 
 struct Compare {
-    std::filesystem::path study_file;  ///< empty: one run, on the sphere
-    WordsByKey given;                  ///< they override the study file in all of its runs
+    std::filesystem::path input;  ///< study file or sources; empty: one run, on the sphere
+    WordsByKey given;             ///< they override the study file in all of its runs
     bool as_published = false;
     std::filesystem::path resume;  ///< folder of an interrupted run to continue, or empty
     bool dry_run = false;          ///< list the cases instead of running them
@@ -30,17 +31,14 @@ struct Compare {
 
 /// The study that the options request. Throws InputError.
 Study study_of(const Compare& job) {
-    const std::filesystem::path& file = job.study_file;
-    if (file.has_extension() && file.extension() != ".toml") {
-        throw InputError(fmt::format(
-            "{0} is no study file (.toml): sources are given by --sources {0}", file.string()));
-    }
-    Study study = file.empty() ? Study{} : read_study(file, program_parameters());
+    const std::filesystem::path& input = job.input;
+    const bool is_study = input.extension() == ".toml";
+    Study study = is_study ? read_study(input, program_parameters()) : Study{};
+    if (!is_study && !input.empty()) set_sources(study, input);
     const GivenSettings given = given_settings(job.given);
     apply(given, study);
-    const bool is_named = !file.empty() || std::ranges::any_of(given, [](const auto& s) {
-        return s.first == "name";
-    });
+    const bool is_named =
+        is_study || std::ranges::any_of(given, [](const auto& s) { return s.first == "name"; });
     if (!is_named && study.sources.kind == SourcesKind::file) {
         apply({{"name", {study.sources.file.stem().string()}}}, study);
     }
@@ -73,20 +71,17 @@ int compare(const Compare& job, const std::string& command_line) {
 
 Action add_compare(Options& options) {
     const auto job = std::make_shared<Compare>();
-    options.add({"STUDY", "FILE.toml",
-                 "Study file (.toml); left out: the settings below, on the sources of a sphere"},
-                job->study_file);
-    const std::string group = "Settings of cases (lists with commas; all combinations are run)";
-    options.add_case_parameters(Run{}, group, job->given);
+    add_study_input(options, job->input);
+    options.add_settings(Run{}, Study{}, job->given);
+    options.set_note("Of settings with lists, all combinations are run.");
     options.add({"--as-published", " ",
                  "As for the paper's tables: --law mean-length --schedule passes --reference "
                  "published-sphere --intersection in-turn",
-                 group},
+                 heading(Topic::paper)},
                 job->as_published);
     for (const char* name : {"--law", "--schedule", "--reference", "--intersection"}) {
         options.exclude("--as-published", name);
     }
-    options.add_parameters(study_parameters(), Study{}, "Settings of the study", job->given);
     options.add({"--dry-run", "",
                  "Only list the cases, with estimates of time and memory from small trials"},
                 job->dry_run);

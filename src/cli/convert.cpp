@@ -6,26 +6,37 @@
 #include "cli/formats.h"
 #include "cli/input_study.h"
 #include "cli/options.h"
+#include "cli/progress.h"
+#include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
 
 namespace controlspace {
 
 Action add_convert(Options& options) {
     struct Convert {
-        std::filesystem::path input, output;
+        std::filesystem::path input, out, output;
         WordsByKey given;
+        bool quiet = false;
     };
     const auto job = std::make_shared<Convert>();
     options.add({"IN", "FILE", source_formats_help(), "", true}, job->input);
     options.add({"OUT", "FILE",
                  "File to write: .csv; .mesh, .sol, .meshb or .solb, which makes both a mesh and a "
-                 "solution; .pos; .vtu, .vtp",
-                 "", true},
-                job->output);
+                 "solution; .pos; .vtu, .vtp"},
+                job->out);
+    options.add({"-o,--output", "FILE", "The same as OUT"}, job->output);
+    options.exclude("--output", "OUT");
     add_reading_options(options, job->given);
+    add_quiet(options, job->quiet);
     return [job](const std::string&) {
-        require_no_input(job->output, {job->input});
-        write_sources(job->output, sources_of_input(job->input, given_settings(job->given)));
+        const std::filesystem::path& output = job->out.empty() ? job->output : job->out;
+        if (output.empty()) throw InputError("no OUT: name the file to write");
+        require_no_input(output, {job->input});
+        StepProgress progress(job->quiet, output);
+        progress.started("reading");
+        const auto sources = sources_of_input(job->input, given_settings(job->given));
+        progress.started("writing");
+        write_sources(output, sources);
         return 0;
     };
 }

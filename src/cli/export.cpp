@@ -11,6 +11,7 @@
 #include "cli/standard_output.h"
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
+#include "controlspace/io/write_vtk.h"
 
 namespace controlspace {
 namespace {
@@ -19,6 +20,7 @@ struct ExportJob {
     std::filesystem::path input, output;
     WordsByKey given;
     bool quiet = false;
+    int samples = 0;
     std::vector<FieldFormat> formats;
 };
 
@@ -36,21 +38,30 @@ std::string all_endings(const std::vector<FieldFormat>& formats) {
     return fmt::format("{}", fmt::join(endings, ", "));
 }
 
+bool has_group(const FieldFormat& format, const std::string& group) {
+    return std::ranges::count(format.groups, group) > 0;
+}
+
 /// The format of the output; refuses options of others.
 const FieldFormat& chosen_format(const ExportJob& job, const Options& options) {
-    const FieldFormat* chosen = nullptr;
+    const auto chosen = std::ranges::find_if(
+        job.formats, [&](const FieldFormat& format) { return has_ending(format, job.output); });
     for (const FieldFormat& format : job.formats) {
-        if (has_ending(format, job.output)) {
-            chosen = &format;
-            continue;
-        }
-        if (format.group.empty()) continue;
-        for (const std::string& name : options.given_of(format.group)) {
-            throw InputError(fmt::format("{} is for {}: leave it out", name,
-                                         fmt::join(format.endings, " and ")));
+        for (const std::string& group : format.groups) {
+            const auto given = options.given_of(group);
+            if (given.empty() || (chosen != job.formats.end() && has_group(*chosen, group))) {
+                continue;
+            }
+            std::vector<std::string> endings;
+            for (const FieldFormat& other : job.formats) {
+                if (!has_group(other, group)) continue;
+                endings.insert(endings.end(), other.endings.begin(), other.endings.end());
+            }
+            throw InputError(fmt::format("{} is for {}: leave it out", given.front(),
+                                         fmt::join(endings, " and ")));
         }
     }
-    if (chosen == nullptr) {
+    if (chosen == job.formats.end()) {
         throw InputError(fmt::format("{}: name a file of one of {}", job.output.string(),
                                      all_endings(job.formats)));
     }
@@ -67,7 +78,9 @@ int export_field(const ExportJob& job, const Options& options, const std::string
         filled =
             filled_space(job.input, job.output, given_settings(job.given), progress.observer());
         progress.started("sampling and writing");
-        what = format.write({job.input, job.output, command_line, filled, progress});
+        std::optional<int> samples;
+        if (!options.given_of(samples_group).empty()) samples = job.samples;
+        what = format.write({job.input, job.output, command_line, filled, progress, samples});
     }
     print(what);
     return report_remark(filled);
@@ -85,9 +98,14 @@ std::string written(const Export& e, const std::string& what) {
 
 Action add_export(Options& options) {
     const auto job = std::make_shared<ExportJob>();
-    for (const auto add : {add_text_formats, add_vdb_formats, add_vtk_formats}) {
+    for (const auto add : {add_text_formats, add_size_formats, add_vdb_formats, add_vtk_formats}) {
         for (FieldFormat& format : add(options)) job->formats.push_back(std::move(format));
     }
+    options.add({"--samples", "COUNT",
+                 fmt::format("Samples along the longest edge (default: {} of a .vti, {} of others)",
+                             Slice{}.samples, grid_samples),
+                 samples_group},
+                job->samples);
     add_filled_input(options, job->input);
     options.add(
         {"-o,--output", "FILE",

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct Export {
     const std::string& command_line;
     const FilledSpace& filled;
     StepProgress& progress;
+    std::optional<int> samples;  ///< along the longest edge, as given by --samples
 };
 
 /// A format of files of fields.
@@ -25,12 +27,20 @@ struct FieldFormat {
     std::vector<std::string> endings;
     /// Writes the file, and returns what was written, for standard output.
     std::function<std::string(const Export&)> write;
-    std::string group = "";  ///< of its options in the help; they are refused with other formats
+    /// Of its options in the help; they are refused with formats that do not have the group.
+    std::vector<std::string> groups = {};
     /// Throws InputError where options that it needs are missing.
     std::function<void()> check_options = [] {};
 };
 
+/// The group of --samples, the option of all formats that are sampled in equal steps.
+inline constexpr const char* samples_group = "A .vti, .structured or .msh file";
+
+/// Of grids, where it is not given.
+inline constexpr int grid_samples = 129;
+
 // Each adds the options of some formats to the command, and returns the formats.
+std::vector<FieldFormat> add_size_formats(Options& options);
 std::vector<FieldFormat> add_text_formats(Options& options);
 std::vector<FieldFormat> add_vdb_formats(Options& options);
 std::vector<FieldFormat> add_vtk_formats(Options& options);

@@ -56,7 +56,7 @@ std::vector<FieldFormat> add_text_formats(Options& options) {
             {{".pos"}, write_view},
             {{".sol", ".solb"},
              [mesh](const Export& e) { return write_solution(e, *mesh); },
-             group,
+             {group},
              [mesh] {
                  if (mesh->empty()) throw InputError("name the mesh of the solution by --mesh");
              }}};

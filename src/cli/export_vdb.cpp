@@ -115,7 +115,7 @@ std::vector<FieldFormat> add_vdb_formats(Options& options) {
                  vdb->options.compression = compression_named(vdb->compression.front());
                  return export_vdb(e, vdb->options);
              },
-             group,
+             {group},
              [vdb] { compression_named(vdb->compression.front()); }}};
 }
 

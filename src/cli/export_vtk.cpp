@@ -13,7 +13,6 @@ namespace {
 
 struct SliceOptions {
     std::vector<std::string> place{"z"};  ///< axis, and coordinate on it; the middle if left out
-    int samples = Slice{}.samples;
 };
 
 std::string write_grid(const Export& e, bool nodes) {
@@ -26,7 +25,7 @@ std::string write_grid(const Export& e, bool nodes) {
     return written(e, "the elements, with their metrics");
 }
 
-Slice slice_of(const SliceOptions& options, const Box& domain) {
+Slice slice_of(const SliceOptions& options, const Box& domain, std::optional<int> samples) {
     const std::string& name = options.place.front();
     const std::size_t axis = std::string("xyz").find(name);
     if (name.size() != 1 || axis > 2) {
@@ -35,7 +34,7 @@ Slice slice_of(const SliceOptions& options, const Box& domain) {
     Slice slice;
     slice.axis = static_cast<Axis>(axis);
     slice.at = domain.centre()[slice.axis];
-    slice.samples = options.samples;
+    if (samples) slice.samples = *samples;
     if (options.place.size() > 1 && !parse_number(options.place[1], slice.at)) {
         throw InputError(fmt::format("--slice: {} is not a number", quote(options.place[1])));
     }
@@ -44,7 +43,7 @@ Slice slice_of(const SliceOptions& options, const Box& domain) {
 
 std::string write_image(const Export& e, const SliceOptions& options) {
     const ControlSpace& space = *e.filled.space;
-    const Slice slice = slice_of(options, space.domain());
+    const Slice slice = slice_of(options, space.domain(), e.samples);
     write_slice(e.output, space, space.domain(), slice);
     return written(e, fmt::format("a slice at {} = {}", "xyz"[slice.axis], slice.at));
 }
@@ -62,12 +61,10 @@ std::vector<FieldFormat> add_vtk_formats(Options& options) {
          "the middle of the domain",
          image_group},
         slice->place, 2);
-    options.add(
-        {"--samples", "COUNT",
-         fmt::format("Samples along the longer edge (default: {})", slice->samples), image_group},
-        slice->samples);
-    return {{{".vtu"}, [nodes](const Export& e) { return write_grid(e, *nodes); }, grid_group},
-            {{".vti"}, [slice](const Export& e) { return write_image(e, *slice); }, image_group},
+    return {{{".vtu"}, [nodes](const Export& e) { return write_grid(e, *nodes); }, {grid_group}},
+            {{".vti"},
+             [slice](const Export& e) { return write_image(e, *slice); },
+             {image_group, samples_group}},
             {{".htg"}, [](const Export& e) {
                  write_octree(e.output, *e.filled.space);
                  return written(e, "an octree");

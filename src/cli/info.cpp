@@ -11,6 +11,7 @@
 #include "cli/formats.h"
 #include "cli/input_study.h"
 #include "cli/options.h"
+#include "cli/progress.h"
 #include "cli/standard_output.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/gradation/grade.h"
@@ -140,22 +141,31 @@ std::string info_text(const std::filesystem::path& input, const GivenSettings& s
 
 Action add_info(Options& options) {
     struct Info {
-        std::filesystem::path input;
+        std::filesystem::path input, output = "/dev/stdout";
         WordsByKey given;
+        bool quiet = false;
     };
     const auto job = std::make_shared<Info>();
     options.add(
         {"FILE", "FILE", source_formats_help() + "; or a saved control space (.ctrl)", "", true},
         job->input);
+    options.add({"-o,--output", "FILE", "File to write; left out: standard output"}, job->output);
     add_reading_options(options, job->given);
-    options.set_footer(
+    add_quiet(options, job->quiet);
+    options.set_statuses(
         "Exit status:\n"
         "  0    the file was read; tensors that are not positive definite are counted\n"
         "  1    the program or the system failed\n"
         "  2    the file cannot be read, or a setting does not fit");
     return [job](const std::string&) {
-        const std::string text = info_text(job->input, given_settings(job->given));
-        print(job->input.string() + "\n" + text);
+        require_no_input(job->output, {job->input});
+        std::string text;
+        {
+            StepProgress progress(job->quiet, job->output);
+            progress.started("reading");
+            text = info_text(job->input, given_settings(job->given));
+        }
+        print_to(job->output, job->input.string() + "\n" + text);
         return 0;
     };
 }

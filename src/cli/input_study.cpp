@@ -19,22 +19,64 @@ namespace controlspace {
 
 namespace {
 
-/// Before the others.
-void add_file(const std::filesystem::path& file, SourcesChoice& sources) {
-    std::vector<std::filesystem::path> files = files_of(sources);
-    if (sources.kind != SourcesKind::file) {
-        if (sources.primitives.empty() || sources.kind != SourcesKind::none) {
-            throw InputError(fmt::format("--sources {} does not go with {}: leave one out",
-                                         sources_name(sources), file.string()));
-        }
-        sources.kind = SourcesKind::file;
+std::string name_of(SourcesKind kind) {
+    SourcesChoice choice;
+    choice.kind = kind;
+    return sources_name(choice);
+}
+
+/// The files before the others.
+void add_files(const std::vector<std::filesystem::path>& files, SourcesChoice& sources) {
+    std::vector<std::filesystem::path> all = files;
+    for (const std::filesystem::path& file : files_of(sources)) {
+        if (std::ranges::count(all, file) == 0) all.push_back(file);
     }
-    if (std::ranges::count(files, file) > 0) return;
-    sources.file = file;
-    sources.further_files = std::move(files);
+    sources.kind = SourcesKind::file;
+    sources.file = all.front();
+    sources.further_files.assign(all.begin() + 1, all.end());
+}
+
+/// Of an input and of --sources: all of both.
+void add_sources(const SourcesChoice& input, SourcesChoice& sources) {
+    const auto may_join = [](const SourcesChoice& choice) {
+        return choice.kind == SourcesKind::file ||
+               (choice.kind == SourcesKind::none && !choice.primitives.empty());
+    };
+    if (!may_join(input) || !may_join(sources)) {
+        throw InputError(fmt::format("--sources {} does not go with {}: leave one out",
+                                     sources_name(sources), sources_name(input)));
+    }
+    if (input.kind == SourcesKind::file) add_files(files_of(input), sources);
+    for (const Primitive& primitive : input.primitives) {
+        if (std::ranges::count(sources.primitives, primitive) == 0) {
+            sources.primitives.push_back(primitive);
+        }
+    }
 }
 
 }  // namespace
+
+void set_sources(Study& study, const std::filesystem::path& input) {
+    std::error_code none;
+    if (std::filesystem::exists(input, none)) {
+        study.sources.kind = SourcesKind::file;
+        study.sources.file = input;
+        return;
+    }
+    apply(given_settings({{"sources", {input.string()}}}), study_parameters(), study);
+    if (study.sources.kind != SourcesKind::file) return;
+    for (const std::filesystem::path& file : files_of(study.sources)) {
+        // Of a name with an ending, its reader tells what is wrong.
+        if (file.has_extension() || std::filesystem::exists(file, none)) continue;
+        std::string names;
+        for (const auto kind : {SourcesKind::sphere, SourcesKind::planes, SourcesKind::none}) {
+            names.append(names.empty() ? "" : ", ").append(name_of(kind));
+        }
+        throw InputError(
+            fmt::format("there is no file '{}', and it names no sources: give a file, or one of {}",
+                        file.string(), names));
+    }
+}
 
 Study study_of_input(const std::filesystem::path& input, const GivenSettings& given) {
     Study study;
@@ -42,17 +84,14 @@ Study study_of_input(const std::filesystem::path& input, const GivenSettings& gi
         study = read_study(input, program_parameters());
     } else {
         study.runs.front() = one_structure();
-        if (!input.empty()) {
-            study.sources.kind = SourcesKind::file;
-            study.sources.file = input;
-        }
+        if (!input.empty()) set_sources(study, input);
     }
-    const auto is_sources = [](const auto& setting) { return setting.first == "sources"; };
-    const bool is_one_of_several = study.sources.kind == SourcesKind::file &&
-                                   input.extension() != ".toml" &&
-                                   std::ranges::any_of(given, is_sources);
+    const SourcesChoice of_input = study.sources;
     apply(given, study);
-    if (is_one_of_several) add_file(input, study.sources);
+    const auto is_sources = [](const auto& setting) { return setting.first == "sources"; };
+    if (!input.empty() && input.extension() != ".toml" && std::ranges::any_of(given, is_sources)) {
+        add_sources(of_input, study.sources);
+    }
     return study;
 }
 
@@ -125,14 +164,17 @@ void require_no_input(const std::filesystem::path& output,
     }
 }
 
-std::vector<PointSource> sources_of_input(const std::filesystem::path& file,
+std::vector<PointSource> sources_of_input(const std::filesystem::path& input,
                                           const GivenSettings& given) {
     Study study;
+    study.runs.front() = one_structure();
+    set_sources(study, input);
     apply(given, study_parameters(), study);
-    study.sources.kind = SourcesKind::file;
-    study.sources.file = file;
     require_applicable(study);
-    return read_source_file(study.sources, file_readers());
+    if (study.sources.kind == SourcesKind::file) {
+        return read_source_file(study.sources, file_readers());
+    }
+    return make_workload(study, only_case(study).sources, file_readers()).sources;
 }
 
 }  // namespace controlspace

@@ -10,8 +10,12 @@
 
 namespace controlspace {
 
-/// The study of `input`, a study file (.toml) or a file of sources, with the settings given.
-/// Without a study file: the structure K_oV, and the cut s_L for kd-trees; without a file at all:
+/// Sets the sources to `input`: a file, or, where there is none of this name, what `--sources`
+/// takes (sphere; a.csv,b.stl). Throws InputError for a word that is neither.
+void set_sources(Study& study, const std::filesystem::path& input);
+
+/// The study of `input`, a study file (.toml) or sources (see set_sources), with the settings
+/// given. Without a study file: the structure K_oV, and the cut s_L for kd-trees; without an input:
 /// on the paper's sphere. Throws InputError.
 Study study_of_input(const std::filesystem::path& input, const GivenSettings& given);
 
@@ -31,9 +35,9 @@ private:
 /// The one case of a study that makes one structure. Throws InputError where it has more.
 Case only_case(const Study& study);
 
-/// The sources of a file of any supported format; `given` are settings of a study for reading.
-/// Throws InputError.
-std::vector<PointSource> sources_of_input(const std::filesystem::path& file,
+/// The sources of a file of any supported format, or of another value of `--sources`; `given` are
+/// settings of a study for reading. Throws InputError.
+std::vector<PointSource> sources_of_input(const std::filesystem::path& input,
                                           const GivenSettings& given);
 
 /// Throws InputError if `output` is one of the files that are read. A Medit mesh and its solution

@@ -2,9 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <memory>
 
 #include "cli/command.h"
 #include "cli/given_settings.h"
+#include "cli/options.h"
 #include "cli/paper_reference.h"
 #include "cli/standard_output.h"
 #include "controlspace/baselines/catalogue.h"
@@ -39,9 +42,16 @@ std::string list_text() {
 
 }  // namespace
 
-Action add_list(Options&) {
-    return [](const std::string&) {
-        print(list_text());
+Action add_list(Options& options) {
+    struct List {
+        std::filesystem::path output = "/dev/stdout";
+        bool quiet = false;
+    };
+    const auto job = std::make_shared<List>();
+    options.add({"-o,--output", "FILE", "File to write; left out: standard output"}, job->output);
+    add_quiet(options, job->quiet);
+    return [job](const std::string&) {
+        print_to(job->output, list_text());
         return 0;
     };
 }

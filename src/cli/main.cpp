@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/help.h"
 #include "cli/options.h"
 #include "cli/standard_output.h"
 #include "controlspace/error.h"
@@ -25,19 +26,36 @@ struct CommandRow {
     const char* name;
     const char* description;
     Action (*add)(Options& options);
+    const char* examples;
 };
 constexpr CommandRow commands[] = {
-    {"compare", "Run a study: build, grade and measure structures on the same sources",
-     add_compare},
-    {"info", "Describe a file of sources (number, sizes, gradation) or a control space", add_info},
-    {"convert", "Write the sources of one file in another format", add_convert},
-    {"build", "Build and grade one structure, and save it", add_build},
-    {"query", "Write the metrics of one structure at given points", add_query},
+    {"compare", "Run a study: build, grade and measure structures on the same sources", add_compare,
+     "  controlspace compare my_sources.csv\n"
+     "  controlspace compare mesh.sol --target-delta 0.1 --structures K_oLA,K_oV\n"
+     "  controlspace compare study.toml --dry-run\n"},
+    {"info", "Describe sources (number, sizes, gradation) or a control space", add_info,
+     "  controlspace info part.stl\n"
+     "  controlspace info field.ctrl\n"},
+    {"convert", "Write the sources of one file in another format", add_convert,
+     "  controlspace convert mesh.sol sources.csv\n"
+     "  controlspace convert part.stl -o sources.vtu --isotropic\n"},
+    {"build", "Build and grade one structure, and save it", add_build,
+     "  controlspace build my_sources.csv -o field.ctrl\n"
+     "  controlspace build mesh.sol -o field.ctrl --within 1.2\n"},
+    {"query", "Write the metrics of one structure at given points", add_query,
+     "  controlspace query field.ctrl places.csv -o metrics.csv\n"
+     "  controlspace query field.ctrl --pipe    # for Gmsh's field ExternalProcess\n"},
     {"export",
      "Write the field of one structure to a file, for Blender, Houdini, ParaView or a mesher",
-     add_export},
-    {"mesh", "Make meshes with structures as size fields, and measure their conformity", add_mesh},
-    {"list", "List the structures and other values of options", add_list},
+     add_export,
+     "  controlspace export field.ctrl -o field.vtu\n"
+     "  controlspace export field.ctrl -o field.sol --mesh mesh.mesh\n"
+     "  controlspace export part.stl -o part.b.mtr    # for TetGen's part.poly\n"
+     "  controlspace export sphere --h 0.05 -o sphere.structured\n"},
+    {"mesh", "Make meshes with structures as size fields, and measure their conformity", add_mesh,
+     "  controlspace mesh part.step --isotropic\n"
+     "  controlspace mesh field.ctrl --part part.stl --mesher hxt\n"},
+    {"list", "List the structures and other values of options", add_list, ""},
 };
 
 constexpr const char* statuses =
@@ -80,13 +98,17 @@ int run(int argc, const char* const* argv) {
         "controlspace");
     app.set_version_flag("--version", "controlspace " + version_text(current_provenance()));
     app.require_subcommand(1);
-    app.footer(statuses);
+    app.footer(std::string("Examples:\n"
+                           "  controlspace build part.stl -o part.ctrl\n"
+                           "  controlspace COMMAND --help\n\n") +
+               statuses);
+    set_help(app);
     std::deque<Options> options;
     std::vector<Action> actions;
     for (const CommandRow& row : commands) {
         CLI::App* command = app.add_subcommand(row.name, row.description);
-        command->footer(statuses);
         actions.push_back(row.add(options.emplace_back(*command)));
+        options.back().set_footer(row.examples, statuses);
     }
 
     if (argc > 1 && argv[1][0] != '-') require_command(argv[1]);

@@ -213,13 +213,10 @@ int mesh(const MeshJob& job, const std::string& command_line) {
 Action add_mesh(Options& options) {
     const auto job = std::make_shared<MeshJob>();
     add_filled_input(options, job->input);
-    options.add_parameters(mesh_parameters(), MeshSettings{}, "Settings of the meshing",
-                           job->given);
-    const Uses uses{Use::making, Use::reading, Use::results, Use::accuracy};
-    options.add_case_parameters(
-        one_structure(), "Settings of cases (lists with commas; all combinations are meshed)",
-        job->given, uses);
-    options.add_parameters(study_parameters(), Study{}, "Settings of the study", job->given, uses);
+    options.add_parameters(mesh_parameters(), MeshSettings{}, "Meshing", job->given);
+    options.set_note("Of settings with lists, all combinations are meshed.");
+    options.add_settings(one_structure(), Study{}, job->given,
+                         {Use::making, Use::reading, Use::results, Use::accuracy});
     add_quiet(options, job->quiet);
     return [job](const std::string& command_line) { return mesh(*job, command_line); };
 }

@@ -77,7 +77,9 @@ void Options::add(const OptionText& text, std::vector<std::string>& values, std:
 OptionText Options::text_of(const std::string& key, const std::string& help,
                             const std::string& unit, const std::vector<Choice>& choices,
                             const std::string& group) {
-    OptionText text{option_name(key), "", help, group};
+    // Written by all commands, so that it has the short name everywhere.
+    const std::string name = option_name(key);
+    OptionText text{name == "--output" ? "-o," + name : name, "", help, group};
     for (const Choice& choice : choices) {
         text.help += (&choice == &choices.front() ? "; one of " : ", ") + choice.name;
     }
@@ -105,19 +107,19 @@ void Options::add_parameter(const OptionText& text, ValueType type, std::size_t 
     }
 }
 
-void Options::add_case_parameters(const Run& defaults, const std::string& group, WordsByKey& given,
-                                  const Uses& uses, std::string_view without) {
+void Options::add_case_parameters(const Run& defaults, WordsByKey& given, const Uses& uses,
+                                  std::string_view without) {
     const std::string key = structures_key;
     add_parameter(text_of(key,
                           "Structures (see `controlspace list`), or all, trees, further, "
                           "anchored, baselines",
-                          "", {}, group),
+                          "", {}, heading(Topic::structures)),
                   ValueType::text, 0, defaults.structures(), given[structures_key]);
     std::vector<const CaseParameter*> forms;  // in several forms of one value
     for (const CaseParameter& p : program_parameters()) {
         if (std::ranges::count(uses, p.use) == 0 || p.key == without) continue;
-        add_parameter(text_of(p.key, p.help, p.unit, p.access.choices, group), p.access.type, 0,
-                      defaults.values(p), given[p.key]);
+        add_parameter(text_of(p.key, p.help, p.unit, p.access.choices, heading(p.topic)),
+                      p.access.type, 0, defaults.values(p), given[p.key]);
         for (const CaseParameter* other : forms) {
             if (p.same_as == other->key || (!p.same_as.empty() && p.same_as == other->same_as)) {
                 exclude(option_name(p.key), option_name(other->key));
@@ -127,11 +129,21 @@ void Options::add_case_parameters(const Run& defaults, const std::string& group,
     }
 }
 
+void Options::add_settings(const Run& cases, const Study& study, WordsByKey& given,
+                           const Uses& uses, std::string_view without) {
+    add_parameters(study_parameters(), study, "", given, uses, without);
+    add_case_parameters(cases, given, uses, without);
+}
+
 void Options::exclude(const std::string& name, const std::string& other) {
     command_->get_option(name)->excludes(command_->get_option(other));
 }
 
-void Options::set_footer(const std::string& text) { command_->footer(text); }
+void Options::set_footer(const std::string& examples, const std::string& statuses) {
+    std::string text = examples.empty() ? "" : fmt::format("Examples:\n{}\n", examples);
+    if (!note_.empty()) text += note_ + "\n\n";
+    command_->footer(text + (statuses_.empty() ? statuses : statuses_));
+}
 
 std::vector<std::string> Options::given_of(const std::string& group) const {
     std::vector<std::string> names;
@@ -162,15 +174,18 @@ GivenSettings given_settings(const WordsByKey& given) {
 }
 
 void add_study_input(Options& options, std::filesystem::path& input) {
-    options.add(
-        {"INPUT", "FILE", "Study file (.toml) or file of sources; left out: the paper's sphere"},
-        input);
+    options.add({"INPUT", "FILE",
+                 "Study file (.toml), or sources: files, or another value of --sources; left out: "
+                 "the paper's sphere"},
+                input);
 }
 
-void add_filled_input(Options& options, std::filesystem::path& input) {
+void add_filled_input(Options& options, std::filesystem::path& input, bool required) {
     options.add({"INPUT", "FILE",
-                 "Study file (.toml), file of sources, or control space (.ctrl); left out: the "
-                 "paper's sphere"},
+                 std::string("Study file (.toml), control space (.ctrl), or sources: files, or "
+                             "another value of --sources") +
+                     (required ? "" : "; left out: the paper's sphere"),
+                 "", required},
                 input);
 }
 
@@ -181,20 +196,15 @@ void add_quiet(Options& options, bool& quiet) {
 Run one_structure() { return {{structures_key, {"K_oV"}}, {"splits", {"s_L"}}}; }
 
 void add_making_options(Options& options, WordsByKey& given, std::string_view another) {
-    options.set_footer(
-        "Of isotropic sources, without tau, epsilon, law, schedule or a target, K_oV is adapted\n"
+    options.set_note(
+        "Of isotropic sources, without tau, epsilon, law, schedule or a target, K_oV is adapted "
         "until lengths are within 1.1x of the exact field's; --target-delta 0: inserted and "
         "graded.");
-    const Uses uses{Use::making, Use::reading};
-    options.add_case_parameters(one_structure(), "Settings of the structure (a value each)", given,
-                                uses, another);
-    options.add_parameters(study_parameters(), Study{}, "Settings of the study", given, uses,
-                           another);
+    options.add_settings(one_structure(), Study{}, given, {Use::making, Use::reading}, another);
 }
 
 void add_reading_options(Options& options, WordsByKey& given) {
-    options.add_parameters(study_parameters(), Study{}, "Settings of reading", given,
-                           {Use::reading});
+    options.add_parameters(study_parameters(), Study{}, "", given, {Use::reading});
 }
 
 }  // namespace controlspace

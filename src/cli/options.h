@@ -6,9 +6,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/given_settings.h"
+#include "cli/help.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming)
 class App;
@@ -43,27 +45,32 @@ public:
     /// From 1 to `at_most` words; 0: any number, separated by commas.
     void add(const OptionText& text, std::vector<std::string>& values, std::size_t at_most);
 
-    /// An option for each parameter that has one of the `uses`, except `without`; the help shows
-    /// the values of `defaults`.
+    /// An option for each parameter that has one of the `uses`, except `without`, in `group` or,
+    /// where it is empty, under its topic; the help shows the values of `defaults`.
     template <class Target>
     void add_parameters(std::span<const Parameter<Target>> parameters, const Target& defaults,
                         const std::string& group, WordsByKey& given, const Uses& uses = all_uses,
                         std::string_view without = {}) {
         for (const Parameter<Target>& p : parameters) {
             if (std::ranges::count(uses, p.use) == 0 || p.key == without) continue;
-            add_parameter(text_of(p.key, p.help, p.unit, p.access.choices, group), p.access.type,
-                          p.access.at_most, p.access.get(defaults), given[p.key]);
+            add_parameter(text_of(p.key, p.help, p.unit, p.access.choices,
+                                  group.empty() ? heading(p.topic) : group),
+                          p.access.type, p.access.at_most, p.access.get(defaults), given[p.key]);
         }
     }
 
-    /// The same for the structures and the parameters of cases, with the lists of `defaults`.
-    void add_case_parameters(const Run& defaults, const std::string& group, WordsByKey& given,
-                             const Uses& uses = all_uses, std::string_view without = {});
+    /// The structures, and an option for each parameter of cases and studies, under the heading of
+    /// its topic; otherwise as above.
+    void add_settings(const Run& cases, const Study& study, WordsByKey& given,
+                      const Uses& uses = all_uses, std::string_view without = {});
 
     /// Refuses the two options together.
     void exclude(const std::string& name, const std::string& other);
-    /// Replaces the text below the options, the exit statuses.
-    void set_footer(const std::string& text);
+    /// A note below the options, and another list of exit statuses than that of all commands.
+    void set_note(std::string text) { note_ = std::move(text); }
+    void set_statuses(std::string text) { statuses_ = std::move(text); }
+    /// `examples`, the note and the exit statuses.
+    void set_footer(const std::string& examples, const std::string& statuses);
     /// Names of the options of a group that were given. To be called once it is parsed.
     std::vector<std::string> given_of(const std::string& group) const;
 
@@ -74,7 +81,11 @@ private:
     void add_parameter(const OptionText& text, ValueType type, std::size_t at_most,
                        const Values& defaults, std::vector<std::string>& words);
 
+    void add_case_parameters(const Run& defaults, WordsByKey& given, const Uses& uses,
+                             std::string_view without);
+
     CLI::App* command_;
+    std::string note_, statuses_;
 };
 
 /// The settings of which words were given.
@@ -86,7 +97,7 @@ GivenSettings given_settings(const WordsByKey& given);
 void add_study_input(Options& options, std::filesystem::path& input);
 
 /// INPUT: the same, or a saved control space.
-void add_filled_input(Options& options, std::filesystem::path& input);
+void add_filled_input(Options& options, std::filesystem::path& input, bool required = false);
 
 void add_quiet(Options& options, bool& quiet);
 

@@ -84,13 +84,16 @@ void Progress::clear_line() {
 
 StepProgress::StepProgress(bool quiet, std::filesystem::path output)
     : live_(!quiet && progress_style_of_stderr() == ProgressStyle::live),
-      output_(std::move(output)) {
+      outputs_{std::move(output)} {
     watch_.emplace(
         interruption_, [this] { show(); },
         [this] {
             clear();
-            std::error_code ignored;
-            std::filesystem::remove(OutputFile::partial(output_), ignored);
+            const std::lock_guard lock(mutex_);
+            for (const std::filesystem::path& file : outputs_) {
+                std::error_code ignored;
+                std::filesystem::remove(OutputFile::partial(file), ignored);
+            }
             print_error("controlspace: interrupted: nothing was written\n");
         });
 }
@@ -98,6 +101,11 @@ StepProgress::StepProgress(bool quiet, std::filesystem::path output)
 StepProgress::~StepProgress() {
     watch_.reset();
     clear();
+}
+
+void StepProgress::writes(std::filesystem::path output) {
+    const std::lock_guard lock(mutex_);
+    outputs_.push_back(std::move(output));
 }
 
 void StepProgress::started(std::string_view step) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "cli/signals.h"
 #include "controlspace/study/run.h"
@@ -68,6 +69,8 @@ public:
     StepProgress(const StepProgress&) = delete;
     StepProgress& operator=(const StepProgress&) = delete;
 
+    /// One more file that is written.
+    void writes(std::filesystem::path output);
     void started(std::string_view step);
     /// `done` of `all` of the step's units are done.
     void advanced(std::size_t done, std::size_t all, std::string_view unit);
@@ -84,9 +87,9 @@ private:
     void clear();
 
     const bool live_;
-    const std::filesystem::path output_;
     const Stopwatch all_;
     std::mutex mutex_;
+    std::vector<std::filesystem::path> outputs_;
     std::string step_;
     Stopwatch step_time_;
     std::optional<Part> part_;

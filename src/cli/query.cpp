@@ -11,7 +11,9 @@
 #include "cli/input_study.h"
 #include "cli/options.h"
 #include "cli/progress.h"
+#include "cli/query_pipe.h"
 #include "cli/standard_output.h"
+#include "controlspace/error.h"
 #include "io/text/csv.h"
 
 namespace controlspace {
@@ -19,11 +21,31 @@ namespace {
 
 struct Query {
     std::filesystem::path input, points, output = "/dev/stdout";
+    bool pipe = false;
     WordsByKey given;
     bool quiet = false;
 };
 
+int answer_pipe(const Query& job) {
+    if (!job.points.empty()) throw InputError("--pipe reads the points: leave out POINTS");
+    if (job.input == "/dev/stdin") {
+        throw InputError("--pipe reads the points from standard input: name a file of sources");
+    }
+    FilledSpace filled;
+    {
+        StepProgress progress(job.quiet, {});
+        filled = filled_space(job.input, {}, given_settings(job.given), progress.observer());
+    }
+    const int status = report_remark(filled);
+    answer_places(*filled.space);
+    return status;
+}
+
 int query(const Query& job) {
+    if (job.pipe) return answer_pipe(job);
+    if (job.points.empty()) {
+        throw InputError("no POINTS: name a .csv, or give --pipe (see controlspace query --help)");
+    }
     require_no_input(job.output, {job.input, job.points});
     if (is_control_space(job.output)) {
         throw InputError(
@@ -58,15 +80,18 @@ int query(const Query& job) {
 
 Action add_query(Options& options) {
     const auto job = std::make_shared<Query>();
-    options.add({"INPUT", "FILE", "Study file (.toml), file of sources, or control space (.ctrl)",
-                 "", true},
-                job->input);
-    options.add(
-        {"POINTS", "FILE.csv", "Points: columns x, y and z; other columns are ignored", "", true},
-        job->points);
+    add_filled_input(options, job->input, true);
+    options.add({"POINTS", "FILE.csv", "Points: columns x, y and z; other columns are ignored"},
+                job->points);
     options.add({"-o,--output", "FILE.csv",
                  "File to write: x,y,z,h, or the components of M; left out: standard output"},
                 job->output);
+    options.add({"--pipe", "",
+                 "In place of POINTS: answer places on standard input by lengths on standard "
+                 "output, as Gmsh's field ExternalProcess asks: three doubles in, one out, in "
+                 "binary; NaN ends"},
+                job->pipe);
+    options.exclude("--pipe", "--output");
     add_making_options(options, job->given);
     add_quiet(options, job->quiet);
     return [job](const std::string&) { return query(*job); };

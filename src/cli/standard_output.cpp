@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "controlspace/error.h"
+#include "files/output_file.h"
 
 namespace controlspace {
 
@@ -21,6 +22,13 @@ void print(std::string_view text) {
         std::fflush(stdout) != 0) {
         throw InputError("standard output cannot be written: check where it is sent to");
     }
+}
+
+void print_to(const std::filesystem::path& output, std::string_view text) {
+    if (output == "/dev/stdout") return print(text);
+    OutputFile file(output);
+    file.write(text);
+    file.commit();
 }
 
 void print_error(std::string_view text) {

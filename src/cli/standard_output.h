@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string_view>
 
 namespace controlspace {
@@ -10,6 +11,9 @@ void occupy_standard_descriptors();
 
 /// Writes `text` to standard output. Throws InputError if that fails (a full disk).
 void print(std::string_view text);
+
+/// The same to a file, or to standard output (/dev/stdout).
+void print_to(const std::filesystem::path& output, std::string_view text);
 
 /// Writes `text` to standard error. Failures are ignored.
 void print_error(std::string_view text);

@@ -7,6 +7,7 @@
 #include "controlspace/error.h"
 #include "controlspace/gradation/grade.h"
 #include "gradation/require_known.h"
+#include "space/depth_limits.h"
 
 namespace controlspace {
 
@@ -44,9 +45,8 @@ void require_valid(const SpaceOptions& options) {
     require_positive("voxel_factor", options.voxel_factor);
     require_positive("h_max", options.h_max);
     require_not_negative("prune_delta", options.prune_delta);
-    // Past these depths a double has no number left between the faces of any box.
-    require_depth("the depth of kd-trees", options.kd_depth, 200);
-    require_depth("the depth of octrees", options.octree_depth, 60);
+    require_depth("the depth of kd-trees", options.kd_depth, deepest_kd_level);
+    require_depth("the depth of octrees", options.octree_depth, deepest_octree_level);
 }
 
 }  // namespace controlspace

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
+#include <set>
 
 #include "controlspace/gradation/law.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/study/parameter.h"
+#include "space/depth_limits.h"
 
 namespace controlspace {
 namespace {
@@ -53,7 +56,8 @@ bool is_cut_by_rule(const CatalogueEntry& entry, const Case& c) {
 /// The deepest level of trees of one kind.
 Access<Case> depth_if(bool with_split) {
     Access<Case> depth = number_of(
-        [](auto& c) -> auto& { return c.max_depth; }, within(0, 1000));
+        [](auto& c) -> auto& { return c.max_depth; },
+        within(0, with_split ? deepest_kd_level : deepest_octree_level));
     depth.get = [get = depth.get, with_split](const Case& c) {
         return c.split.has_value() == with_split ? get(c) : Values{};
     };
@@ -174,6 +178,19 @@ CaseParameter structure(const char* key, const char* unit, const char* help, Acc
             result_key};
 }
 
+Topic topic_of(const CaseParameter& row) {
+    static const std::map<Topic, std::set<std::string>> others{
+        {Topic::accuracy,
+         {"within", "target_delta", "equal_delta", "equal_memory", "epsilon", "tau", "reference"}},
+        {Topic::fields, {"field"}},
+        {Topic::paper, {"law", "schedule", "intersection", "interpolation", "neighbourhood"}}};
+    for (const auto& [topic, keys] : others) {
+        if (keys.contains(row.key)) return topic;
+    }
+    if (row.applies_to.is_true_of) return Topic::paper;  // of its samples
+    return row.role == Role::structure ? Topic::structures : Topic::sizes;
+}
+
 }  // namespace
 
 std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* const> references) {
@@ -287,6 +304,7 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
     };
     std::ranges::find(rows, "reference", &CaseParameter::key)->use = Use::accuracy;
     std::ranges::find(rows, "law", &CaseParameter::key)->fits = is_graded;
+    for (CaseParameter& row : rows) row.topic = topic_of(row);
     return rows;
 }
 

@@ -233,9 +233,11 @@ std::function<bool(const Study&)> field_is(std::vector<std::string> kinds) {
 
 constexpr double exact_integers = 9007199254740992.0;  // 2^53: whole numbers pass through doubles
 constexpr Use making = Use::making, reading = Use::reading;
+constexpr Topic performance = Topic::performance, fields = Topic::fields, paper = Topic::paper;
 constexpr const char* length = "length";
 
 std::vector<Parameter<Study>> table() {
+    const AppliesTo<Study> always;
     const AppliesTo<Study> sphere{"the sphere", of_kind(SourcesKind::sphere)};
     const AppliesTo<Study> planes{"the planes", of_kind(SourcesKind::planes)};
     const AppliesTo<Study> sampled{"sampled surfaces",
@@ -254,7 +256,8 @@ std::vector<Parameter<Study>> table() {
     using Sources = SourcesChoice;
     const auto angle = [](double x) { return within(0, 180)(positive(x)); };
     return {
-        {"name", "", "Name of the study, and of its folder of results", name(), Use::results},
+        {"name", "", "Name of the study, and of its folder of results", name(), Use::results,
+         always, Topic::output},
         {"sources", "",
          "sphere or planes (sampled); none (only a field); or files and primitives, the smallest "
          "of "
@@ -272,13 +275,13 @@ std::vector<Parameter<Study>> table() {
          "sources is limited",
          limit(of_sources(&Sources::h_max), largest_magnitude)},
         {"centre", length, "x y z: centre of the sphere", point_of(of_sources(&Sources::centre)),
-         making, sphere},
+         making, sphere, paper},
         {"radius", length, "Radius of the sphere",
-         number_of(of_sources(&Sources::radius), positive), making, sphere},
+         number_of(of_sources(&Sources::radius), positive), making, sphere, paper},
         {"slope", "", "Slope a of the second plane (u, -0.2 + a u, v)",
-         number_of(of_sources(&Sources::slope)), making, planes},
+         number_of(of_sources(&Sources::slope)), making, planes, paper},
         {"h", length, "Length that the sampling of a surface starts from",
-         number_of(of_sources(&Sources::h), positive), making, sampled},
+         number_of(of_sources(&Sources::h), positive), making, sampled, paper},
         {"domain", length,
          "x0 x1 y0 y1 z0 z1; left out: where the field is defined; -1 1 along each axis for other "
          "fields and sampled surfaces; otherwise the box of the sources and a margin",
@@ -289,57 +292,59 @@ std::vector<Parameter<Study>> table() {
          "Maximum memory of a structure, gradation included; a grid is made coarser, a tree that "
          "exceeds it fails",
          number_of(&Study::max_memory_gib,
-                   [](double x) { return within(0, 1 << 20)(positive(x)); })},
+                   [](double x) { return within(0, 1 << 20)(positive(x)); }),
+         making, always, performance},
         {"seed", "", "Seed of the random places, and of sources that are not regular",
-         number_of(&Study::seed, within(0, exact_integers))},
+         number_of(&Study::seed, within(0, exact_integers)), making, always, performance},
         {"threads", "",
          "Threads for creation, probes and accuracy; access is timed on one; 0: all processors",
-         number_of(&Study::threads, within(0, 4096))},
+         number_of(&Study::threads, within(0, 4096)), making, always, performance},
         {"access_points", "", "Number of random places at which access is timed",
-         number_of(&Study::access_points, within(1, 1e8)), Use::timing},
+         number_of(&Study::access_points, within(1, 1e8)), Use::timing, always, performance},
         {"access_repeats", "", "Number of samples of the access time; results contain the median",
-         number_of(&Study::access_repeats, within(1, 1000)), Use::timing},
+         number_of(&Study::access_repeats, within(1, 1000)), Use::timing, always, performance},
         {"creation_repeats", "",
          "Number of times that each structure is made; results contain the median times",
-         number_of(&Study::creation_repeats, within(1, 1000)), Use::timing},
+         number_of(&Study::creation_repeats, within(1, 1000)), Use::timing, always, performance},
         {"probe_grid", "",
          "n: accuracy is sampled at the centres of an n x n x n grid, and access timed in their "
          "order",
-         number_of(&Study::probe_grid, within(1, 300)), Use::accuracy},
+         number_of(&Study::probe_grid, within(1, 300)), Use::accuracy, always, Topic::accuracy},
         {"fine_probe_grid", "", "The same for the finer probes of delta_R_fine and coarser_fine",
-         number_of(&Study::fine_probe_grid, within(1, 300)), Use::timing},
+         number_of(&Study::fine_probe_grid, within(1, 300)), Use::timing, always, Topic::accuracy},
         {"reference_tolerance", "",
          "t of the exact reference of anisotropic sources. Order-free: log det within 3 ln(1 + t) "
          "of the best. In turn: skip those that would shorten a length by less than this fraction: "
          "faster, with an error of about delta = 2 t^2",
-         number_of(&Study::reference_tolerance, within(0, 0.1))},
+         number_of(&Study::reference_tolerance, within(0, 0.1)), making, always, Topic::accuracy},
         {"output", "", "New folder for the results; left out: results/NAME-DATE-TIME",
-         text_of(&Study::output), Use::results},
+         text_of(&Study::output), Use::results, always, Topic::output},
         {"field_centre", length, "x y z: centre of the field sphere",
-         point_of(of_field(&FieldChoice::centre)), making, field_sphere},
+         point_of(of_field(&FieldChoice::centre)), making, field_sphere, fields},
         {"field_radius", length, "Radius of the field sphere",
-         number_of(of_field(&FieldChoice::radius), positive), making, field_sphere},
+         number_of(of_field(&FieldChoice::radius), positive), making, field_sphere, fields},
         {"field_slope", "", "Slope a of the second plane (u, -0.2 + a u, v) of the field planes",
-         number_of(of_field(&FieldChoice::slope)), making, field_planes},
+         number_of(of_field(&FieldChoice::slope)), making, field_planes, fields},
         {"field_lengths", length,
          "Lengths across and along the surface of the field sphere or planes, there",
-         field_lengths(), making, field_surface},
+         field_lengths(), making, field_surface, fields},
         {"field_growth", "length / length",
          "Growth of those lengths with the distance from the surface",
-         number_of(of_lengths(&SurfaceLengths::growth), at_least(0)), making, field_surface},
+         number_of(of_lengths(&SurfaceLengths::growth), at_least(0)), making, field_surface,
+         fields},
         {"field_largest", length,
          "Length up to which they grow; left out: half of the domain's diagonal", field_largest(),
-         making, field_surface},
+         making, field_surface, fields},
         {"field_file", "", "The file of the field file: a .vdb, or the cells of a .vtu or .vti",
-         text_of(of_field(&FieldChoice::file)), making, field_file},
+         text_of(of_field(&FieldChoice::file)), making, field_file, fields},
         {"field_grid", "",
          "Its grid of lengths, or of densities; left out: metric_diag and metric_off. Of a .vtu or "
-         ".vti "
-         "its array of sizes or metrics; left out: the one named :metric",
-         text_of([](auto& s) -> auto& { return s.sources.field.vdb.grid; }), making, field_file},
+         ".vti its array of sizes or metrics; left out: the one named :metric",
+         text_of([](auto& s) -> auto& { return s.sources.field.vdb.grid; }), making, field_file,
+         fields},
         {"field_density_sizes", length,
          "Lengths at densities 1 and 0 of that grid; left out: the grid contains lengths",
-         density_sizes(), making, field_file},
+         density_sizes(), making, field_file, fields},
         {"source_array", "",
          "Sources of a .vtu, .vtp, .vti, .msh or .pos: the array or view of sizes (1 component) or "
          "Riemannian metrics (6 or 9), at points, or else of cells, for their centres; left out: "
@@ -348,29 +353,30 @@ std::vector<Parameter<Study>> table() {
         {"surface_angle", "degrees",
          "Sources of a surface (.stl, .obj, .ply, .off): part of the circle of curvature that an "
          "edge spans",
-         number_of(of_curvature(&CurvatureSizes::angle), angle), reading, surface},
+         number_of(of_curvature(&CurvatureSizes::angle), angle), reading, surface, Topic::sizes},
         {"surface_crease", "degrees",
          "Sources of a surface: edges where the normal turns by more bound its smooth patches, and "
          "are not curvature",
          number_of(of_curvature(&CurvatureSizes::crease), angle), reading, surface},
         {"elements_across", "",
          "Sources of a surface: number of lengths across walls and gaps, thickness / length",
-         number_of(of_curvature(&CurvatureSizes::elements_across), positive), reading, surface},
+         number_of(of_curvature(&CurvatureSizes::elements_across), positive), reading, surface,
+         Topic::sizes},
         {"isotropic", "",
          "Sources of a surface: the shortest length in all directions; left out: lengths by both "
          "principal curvatures and across walls",
          flag<Study>(of_curvature(&CurvatureSizes::isotropic)), reading, surface},
         {"surface_h_min", length,
          "Sources of a surface: smallest length; left out: a thousandth of the diagonal of its box",
-         length_if_given(of_curvature(&CurvatureSizes::h_min)), reading, surface},
+         length_if_given(of_curvature(&CurvatureSizes::h_min)), reading, surface, Topic::sizes},
         {"surface_h_max", length,
          "Sources of a surface: largest length; left out: a tenth of that diagonal",
-         length_if_given(of_curvature(&CurvatureSizes::h_max)), reading, surface},
+         length_if_given(of_curvature(&CurvatureSizes::h_max)), reading, surface, Topic::sizes},
         {"vdb_size", length, "Sources of a .vdb: length at its surface",
-         length_if_given(of_vdb(&VdbSurface::h)), reading, vdb},
+         length_if_given(of_vdb(&VdbSurface::h)), reading, vdb, Topic::sizes},
         {"vdb_size_per_radius", "smaller radius of curvature",
          "Sources of a .vdb: length at its surface",
-         length_if_given(of_vdb(&VdbSurface::per_radius)), reading, vdb},
+         length_if_given(of_vdb(&VdbSurface::per_radius)), reading, vdb, Topic::sizes},
         {"vdb_grid", "",
          "Sources of a .vdb: the level set or fog; left out: the only grid of the file",
          text_of(of_vdb(&VdbSurface::grid)), reading, vdb},

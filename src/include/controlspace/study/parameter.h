@@ -20,6 +20,18 @@ enum class Use {
     timing,    ///< other measurements, by `compare` only
 };
 
+/// What a parameter is about; the help lists them by it.
+enum class Topic {
+    sources,
+    sizes,
+    accuracy,
+    structures,
+    output,
+    performance,
+    fields,  ///< analytic ones to test with
+    paper,   ///< its samples, and schemes for comparisons with it
+};
+
 /// To which targets a parameter applies: in words ("the sphere"), and as a condition; without one,
 /// to all. A value other than the default where it does not apply is an error.
 template <class Target>
@@ -37,6 +49,7 @@ struct Parameter {
     Access<Target> access;
     Use use = Use::making;
     AppliesTo<Target> applies_to{};
+    Topic topic = Topic::sources;
 
     bool applies(const Target& target) const {
         return !applies_to.is_true_of || applies_to.is_true_of(target);

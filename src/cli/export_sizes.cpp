@@ -1,0 +1,86 @@
+// Formats of `export` for meshers that take one length a place: Gmsh, JIGSAW, Netgen and TetGen.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+
+#include "cli/export.h"
+#include "controlspace/error.h"
+#include "controlspace/io/read_sources.h"
+#include "io/text/size_files.h"
+
+namespace controlspace {
+namespace {
+
+/// "FILE: 81 nodes for JIGSAW; 99 % of 1000 random places within 1.02x; 1.2 MB"; what the mesher
+/// does not see is a warning.
+std::string report(const Export& e, const SizeFile& file, const std::string& what,
+                   const std::string& remedy) {
+    constexpr double far = 1.25;
+    if (file.has_tensors) {
+        spdlog::warn(
+            "{} holds one length a place, the smallest of each tensor: for MMG, which follows "
+            "tensors, write a .sol",
+            e.output.string());
+    }
+    std::string text = fmt::format("{} {}", file.count, what);
+    if (file.within) {
+        text += fmt::format("; 99 % of 1000 random places within {:.2f}x of the structure",
+                            std::ceil(100 * *file.within) / 100);
+        if (*file.within > far) spdlog::warn("{}: {}", e.output.string(), remedy);
+    }
+    return written(e, text);
+}
+
+constexpr const char* finer_grid = "lengths are off by more than 1.25x: give more --samples";
+
+std::string write_structured(const Export& e) {
+    const int samples = e.samples.value_or(grid_samples);
+    return report(e, write_gmsh_structured(e.output, *e.filled.space, samples),
+                  "nodes of a field Structured of Gmsh (TextFormat = 0, SetOutsideValue = 0)", finer_grid);
+}
+
+std::string write_jigsaw(const Export& e) {
+    const int samples = e.samples.value_or(grid_samples);
+    return report(e, write_jigsaw_grid(e.output, *e.filled.space, samples),
+                  "nodes of a grid for JIGSAW (hfun_file, hfun_scal = absolute)", finer_grid);
+}
+
+std::string write_netgen(const Export& e) {
+    return report(e, write_netgen_sizes(e.output, *e.filled.space),
+                  "points with mesh sizes for Netgen", "");
+}
+
+/// NAME.b, of whose three files the output names one. NAME.node itself is TetGen's input.
+std::filesystem::path background_base(const std::filesystem::path& output) {
+    std::filesystem::path base = output;
+    base.replace_extension();
+    if (base.extension() == ".b") return base;
+    throw InputError(fmt::format(
+        "{}: TetGen reads the background mesh of NAME.poly from NAME.b.node, NAME.b.ele and "
+        "NAME.b.mtr: name {}.b{}",
+        output.string(), base.string(), output.extension().string()));
+}
+
+std::string write_tetgen(const Export& e) {
+    const std::filesystem::path base = background_base(e.output);
+    for (const char* ending : {".node", ".ele", ".mtr"}) {
+        std::filesystem::path file = base;
+        e.progress.writes(file += ending);
+    }
+    return report(e, write_tetgen_background(base, *e.filled.space),
+                  "nodes of a background mesh for TetGen (-m), in three files",
+                  "lengths are off by more than 1.25x, as they jump in this structure: write one "
+                  "that is continuous (K_oV)");
+}
+
+}  // namespace
+
+std::vector<FieldFormat> add_size_formats(Options&) {
+    return {{{".structured"}, write_structured, {samples_group}},
+            {{".msh"}, write_jigsaw, {samples_group}},
+            {{".msz"}, write_netgen},
+            {{".node", ".ele", ".mtr"}, write_tetgen}};
+}
+
+}  // namespace controlspace

@@ -1,0 +1,122 @@
+// Regular grids of lengths: Gmsh's Structured, and JIGSAW's EUCLIDEAN-GRID.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "controlspace/error.h"
+#include "files/output_file.h"
+#include "io/text/lengths_at.h"
+#include "io/text/size_files.h"
+
+namespace controlspace {
+namespace {
+
+struct Grid {
+    Point low;
+    Vector spacing;
+    std::array<int, 3> counts;
+    std::vector<double> lengths;  ///< z fastest, x slowest
+    bool has_tensors = false;
+
+    double coordinate(Axis a, int i) const { return low[a] + spacing[a] * i; }
+    std::size_t index(int i, int j, int k) const {
+        const auto n = [](int x) { return static_cast<std::size_t>(x); };
+        return (n(i) * n(counts[1]) + n(j)) * n(counts[2]) + n(k);
+    }
+    double trilinear(const Point& x) const {
+        std::array<int, 3> cell{};
+        Vector t;
+        for (Axis a = 0; a < 3; ++a) {
+            const double steps = (x[a] - low[a]) / spacing[a];
+            const int last = counts[static_cast<std::size_t>(a)] - 2;
+            int& i = cell[static_cast<std::size_t>(a)];
+            i = std::clamp(static_cast<int>(steps), 0, last);
+            t[a] = std::clamp(steps - i, 0.0, 1.0);
+        }
+        double length = 0;
+        for (int c = 0; c < 8; ++c) {
+            const int i = c & 1, j = c >> 1 & 1, k = c >> 2 & 1;
+            length += (i != 0 ? t.x() : 1 - t.x()) * (j != 0 ? t.y() : 1 - t.y()) *
+                      (k != 0 ? t.z() : 1 - t.z()) *
+                      lengths[index(cell[0] + i, cell[1] + j, cell[2] + k)];
+        }
+        return length;
+    }
+};
+
+Grid sampled(const ControlSpace& space, int samples) {
+    constexpr int fewest = 2, most = 512;
+    if (samples < fewest || samples > most) {
+        throw InputError(
+            fmt::format("{} samples along the longest edge: give {} to {}", samples, fewest, most));
+    }
+    const Box domain = space.domain();
+    const Vector edges = domain.edges();
+    Grid grid{domain.low, {}, {}, {}};
+    for (Axis a = 0; a < 3; ++a) {
+        const double steps = std::max(1.0, std::round(edges[a] / edges.maxCoeff() * (samples - 1)));
+        grid.counts[static_cast<std::size_t>(a)] = static_cast<int>(steps) + 1;
+        grid.spacing[a] = edges[a] / steps;
+    }
+    std::vector<Point> plane;
+    for (int i = 0; i < grid.counts[0]; ++i) {
+        plane.clear();
+        for (int j = 0; j < grid.counts[1]; ++j) {
+            for (int k = 0; k < grid.counts[2]; ++k) {
+                plane.emplace_back(grid.coordinate(0, i), grid.coordinate(1, j),
+                                   grid.coordinate(2, k));
+            }
+        }
+        const Lengths of_plane = lengths_at(space, plane);
+        grid.lengths.insert(grid.lengths.end(), of_plane.values.begin(), of_plane.values.end());
+        grid.has_tensors = grid.has_tensors || of_plane.has_tensors;
+    }
+    return grid;
+}
+
+SizeFile summary(const Grid& grid, const ControlSpace& space) {
+    return {grid.lengths.size(), grid.has_tensors,
+            usual_factor(space, [&](const Point& x) { return grid.trilinear(x); })};
+}
+
+}  // namespace
+
+SizeFile write_gmsh_structured(const std::filesystem::path& path, const ControlSpace& space,
+                               int samples) {
+    const Grid grid = sampled(space, samples);
+    OutputFile file(path);
+    file.write_raw(grid.low.data(), 3);
+    file.write_raw(grid.spacing.data(), 3);
+    file.write_raw(grid.counts.data(), 3);
+    file.write_raw(grid.lengths.data(), grid.lengths.size());
+    file.commit();
+    return summary(grid, space);
+}
+
+SizeFile write_jigsaw_grid(const std::filesystem::path& path, const ControlSpace& space,
+                           int samples) {
+    const Grid grid = sampled(space, samples);
+    OutputFile file(path);
+    file.write("# Lengths for JIGSAW: hfun_file, with hfun_scal = absolute\n");
+    file.write("MSHID=3;EUCLIDEAN-GRID\nNDIMS=3\n");
+    for (Axis a = 0; a < 3; ++a) {
+        const int count = grid.counts[static_cast<std::size_t>(a)];
+        file.print("COORD={};{}\n", a + 1, count);
+        for (int i = 0; i < count; ++i) file.print("{}\n", grid.coordinate(a, i));
+    }
+    file.print("VALUE={};1\n", grid.lengths.size());
+    for (int k = 0; k < grid.counts[2]; ++k) {  // y fastest, z slowest
+        for (int i = 0; i < grid.counts[0]; ++i) {
+            for (int j = 0; j < grid.counts[1]; ++j) {
+                file.print("{}\n", static_cast<float>(grid.lengths[grid.index(i, j, k)]));
+            }
+        }
+    }
+    file.commit();
+    return summary(grid, space);
+}
+
+}  // namespace controlspace
