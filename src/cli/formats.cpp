@@ -50,7 +50,7 @@ Sources sources_on(const SurfaceMesh& surface, const SourcesChoice& choice) {
     }
     if (found.fitted > 0 && !surface.curvatures.empty()) {
         spdlog::warn(
-            "{}: at {} of {} vertices the CAD surface gives no curvature (poles, apexes): "
+            "{}: at {} of {} vertices the CAD file gives no curvature: "
             "it is fitted to triangles",
             choice.file.string(), found.fitted, surface.vertices.size());
     }

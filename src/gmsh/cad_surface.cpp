@@ -26,7 +26,7 @@ Vector vector_at(const std::vector<double>& numbers, std::size_t i) {
 }
 
 /// From the first and second derivatives of a parametrisation; none where that is degenerate.
-/// (Gmsh's own getPrincipalCurvatures answers there what it has found before.)
+/// (Gmsh's own getPrincipalCurvatures gives no directions at poles, and does not say so.)
 std::optional<Curvature> curvature_of(const Vector& along_u, const Vector& along_v,
                                       const Vector& uu, const Vector& vv, const Vector& uv) {
     constexpr double least_angle = 1e-6;

@@ -132,7 +132,7 @@ TEST_CASE("tiles stand where the field hardly varies, voxels keep to the toleran
     // Steep at the sphere, gentle elsewhere.
     const auto at = [](const Point& x) {
         const double d = std::abs(x.norm() - 0.8);
-        return Metric::isotropic(0.02 + std::min(d, 0.03 + 0.03 * d));
+        return Metric::isotropic(0.02 + std::min(d, 0.03 + 0.002 * d));
     };
     const VdbOptions every_voxel{.voxel = 1.0 / 32, .tolerance = 0};
     const VdbReport all = write_vdb(path, FormulaField(at), two_cube, every_voxel);
