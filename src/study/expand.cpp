@@ -83,18 +83,18 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
     cases.front().structure = entry.id;
     for (const CaseParameter& p : parameters) {
         if (p.role != Role::structure || !p.same_as.empty()) continue;
+        // Without adaptation trees do not follow a field.
+        const bool is_default_target =
+            p.key == "target_delta" && has_field(setting.sources) && run.find(p.key) == nullptr;
+        const Values values =
+            is_default_target ? Values{nonconformity_of_factor(default_within)} : run.values(p);
         std::vector<Case> product;
         for (const Case& c : cases) {
             std::vector<Case> made{c};
-            if (!p.fits || p.fits(entry, c)) multiply(made, p, run.values(p));
+            if (!p.fits || p.fits(entry, c)) multiply(made, p, values);
             product.insert(product.end(), made.begin(), made.end());
         }
         cases = std::move(product);
-    }
-    // Without adaptation trees do not follow a field.
-    if (has_field(setting.sources) && entry.has<SourceLeaves>() &&
-        run.find("target_delta") == nullptr) {
-        for (Case& c : cases) c.target_delta = nonconformity_of_factor(default_within);
     }
     return cases;
 }

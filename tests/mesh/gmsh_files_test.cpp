@@ -109,8 +109,7 @@ TEST_CASE("data of the elements of a mesh by Gmsh are sources at their centres")
             Point sum = Point::Zero();
             for (std::size_t k = 0; k < each; ++k) {
                 std::vector<double> x, unused;
-                int dimension = 0, entity = 0;
-                gmsh::model::mesh::getNode(nodes[each * i + k], x, unused, dimension, entity);
+                gmsh::model::mesh::getNode(nodes[each * i + k], x, unused);
                 sum += Point(x.data());
             }
             rows.push_back(row_of(sum / static_cast<double>(each), sizes));

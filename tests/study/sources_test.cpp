@@ -126,7 +126,6 @@ TEST_CASE("primitives define the domain where there is nothing else") {
 TEST_CASE("points and primitives together are the smallest of their closed forms") {
     Study study = with_sources("a.vtu," + ball + "," + segment);
     study.runs[0] = {{"structures", {"K_oV", "K_L", "direct", "uniform-trilinear"}},
-                     {"splits", {"s_L"}},
                      {"g_r", {1.5}}};
     study.domain = Box{Point::Zero(), Point::Ones()};
     const std::vector<PointSource> points{{{0.9, 0.1, 0.5}, Metric::isotropic(0.04)},
