@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 
 #include "controlspace/geometry/extent.h"
@@ -37,6 +38,7 @@ public:
     }
     /// Of the first `count` boxes.
     void weigh(std::size_t count) {
+        constexpr double least = std::numeric_limits<double>::min();
         for (std::size_t a = 0; a < 3; ++a) {
             for (std::size_t i = 0; i < count; ++i) {
                 const double low = low_[a][i];
@@ -44,8 +46,9 @@ public:
                 double x = place_[a][i];
                 x = x > low ? x : low;
                 x = x < high ? x : high;
+                // Of a flat box 0, by the smallest divisor.
                 const double edge = high - low;
-                place_[a][i] = (x - low) / (edge > 0 ? edge : 1);
+                place_[a][i] = (x - low) / (edge > least ? edge : least);
             }
         }
         for (std::size_t i = 0; i < count; ++i) {
