@@ -159,7 +159,10 @@ def cross_validation(sampled):
 
 def slice_figures(sampled):
     about, exact, structures = sampled
-    x0, x1, y0, y1 = about["domain"][:4]
+    sides = [about["domain"][i:i + 2] for i in (0, 2, 4)]
+    across = next((a for a in range(3) if sides[a][0] == sides[a][1]), 2)  # of a plane, or z
+    (x0, x1), (y0, y1) = (side for a, side in enumerate(sides) if a != across)
+    x_name, y_name = ("xyz"[a] for a in range(3) if a != across)
     measures = [("h_mean [length]", mean_length)]
     if np.nanmax(anisotropy(exact.slice)) > VISIBLE_ANISOTROPY:
         measures.append(("anisotropy", anisotropy))
@@ -171,7 +174,7 @@ def slice_figures(sampled):
         if outlines is not None:
             corners = outlines[:, [[0, 3], [0, 1], [2, 1]]]  # left and lower sides
             ax.add_collection(LineCollection(corners, colors="white", linewidths=0.3, alpha=0.5))
-        ax.set(xlabel="x [length]", ylabel="y [length]", xlim=(x0, x1), ylim=(y0, y1))
+        ax.set(xlabel=f"{x_name} [length]", ylabel=f"{y_name} [length]", xlim=(x0, x1), ylim=(y0, y1))
         ax.set_title(title, fontsize=9)
         ax.grid(False)
         colour_bar(image, ax)
@@ -191,7 +194,7 @@ def slice_figures(sampled):
             delta = np.maximum(nonconformity(sample.slice, exact.slice), SMALLEST_ERROR)
             panel(axes[0][2], delta, "error: δ", delta_norm, "inferno_r")
         yield Spec("slice", {
-            "z": about["z"], "label": sample.label, "group": sample.row.group,
+            "axis": "xyz"[across], "z": about["z"], "label": sample.label, "group": sample.row.group,
             "shown": "Mean length" + (" (anisotropy below it)" if len(measures) > 1 else ""),
             "cells": "with its cells" if sample.outlines is not None
             else "whose cells are too many to be drawn"},
