@@ -17,7 +17,8 @@ constexpr double g = 1.25;
 constexpr double tolerance = 1e-2;  // of nodes graded by the sources
 
 Work any_work() {
-    return GENERATE(isotropic_sphere(), anisotropic_sphere(), anisotropic_oblong_box());
+    return GENERATE(isotropic_sphere(), anisotropic_sphere(), anisotropic_oblong_box(),
+                    anisotropic_flat_box());
 }
 
 bool holds_metrics(const Structure& structure) { return structure.entry->has<MetricNodes>(); }

@@ -75,7 +75,7 @@ void check_parts_across(const Topology<Node>& tree) {
                 continue;
             }
             // It holds all places across the face.
-            std::set<int> children;
+            std::set<std::size_t> children;
             for (int i = 0; i < 16; ++i) {
                 Point y = corner(inside, i);
                 if (i >= 8) {
