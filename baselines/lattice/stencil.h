@@ -7,7 +7,7 @@
 #include <span>
 
 #include "baselines/lattice/voxels.h"
-#include "controlspace/geometry/box.h"
+#include "controlspace/geometry/extent.h"
 #include "controlspace/gradation/node_graph.h"
 #include "controlspace/metric/blend.h"
 
@@ -31,7 +31,11 @@ struct CellBatch {
 class CellsOfBox {
 public:
     CellsOfBox(const Box& domain, const Vector& cells)
-        : domain_(domain), cells_(cells), per_length_(cells.cwiseQuotient(domain.edges())) {}
+        : domain_(domain),
+          cells_(cells),
+          per_length_(cells.cwiseQuotient(divisible_edges(domain))),
+          high_corner_{domain.low.x() < domain.high.x(), domain.low.y() < domain.high.y(),
+                       domain.low.z() < domain.high.z()} {}
 
     const Box& domain() const { return domain_; }
     const Vector& cells() const { return cells_; }
@@ -75,9 +79,13 @@ protected:
     std::uint32_t cell_of(double t, Axis a) const {
         return static_cast<std::uint32_t>(t < cells_[a] ? t : cells_[a] - 1);
     }
+    /// How many nodes corner `corner` of a cell is from its low one along axis `a`: 0 or 1.
+    std::uint32_t step_to(std::size_t corner, std::size_t a) const {
+        return static_cast<std::uint32_t>(corner >> a & 1) * high_corner_[a];
+    }
     Lattice lattice_from(double first, Interpolation interpolation) const {
         const Vector spacing = domain_.edges().cwiseQuotient(cells_);
-        const Vector nodes = lattice_nodes(cells_, interpolation);
+        const Vector nodes = lattice_nodes(domain_, cells_, interpolation);
         return {domain_.low + first * spacing,
                 spacing,
                 {static_cast<std::uint32_t>(nodes.x()), static_cast<std::uint32_t>(nodes.y()),
@@ -93,6 +101,7 @@ private:
     Box domain_;
     Vector cells_;
     Vector per_length_;
+    std::array<std::uint32_t, 3> high_corner_;  // 0 where the domain is flat
 };
 
 /// Weights of a cell's corners for a place that is by `high`, 0 to 1 along each axis, off the low
@@ -179,10 +188,9 @@ private:
         return trilinear_weights({high(0), high(1), high(2)});
     }
     template <class Visit>
-    static decltype(auto) at_corner(const CellBatch& batch, std::size_t corner, Visit&& visit) {
+    decltype(auto) at_corner(const CellBatch& batch, std::size_t corner, Visit&& visit) const {
         const auto along = [&](std::size_t a) {
-            return static_cast<std::uint32_t>(batch.cell[a][0]) +
-                   static_cast<std::uint32_t>(corner >> a & 1);
+            return static_cast<std::uint32_t>(batch.cell[a][0]) + step_to(corner, a);
         };
         return visit(along(0), along(1), along(2));
     }

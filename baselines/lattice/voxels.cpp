@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "controlspace/geometry/extent.h"
 #include "controlspace/gradation/node_graph.h"
 #include "controlspace/input_errors.h"
 
@@ -32,8 +33,11 @@ std::string name_of_bytes(double bytes) {
 
 }  // namespace
 
-Vector lattice_nodes(const Vector& cells, Interpolation interpolation) {
-    return interpolation == Interpolation::nearest ? cells : Vector(cells.array() + 1);
+Vector lattice_nodes(const Box& domain, const Vector& cells, Interpolation interpolation) {
+    if (interpolation == Interpolation::nearest) return cells;
+    Vector nodes = cells.array() + 1;
+    if (const auto flat = flat_axis(domain)) nodes[*flat] = 1;
+    return nodes;
 }
 
 Vector whole_cells(const Vector& cells) { return (cells.array() * (1 - 1e-12)).ceil().max(1); }
@@ -53,11 +57,11 @@ Voxels choose_voxels(const SpaceOptions& options, Interpolation interpolation,
                      const std::function<double(const Vector& nodes)>& bytes_of) {
     require_valid(options);
     const auto bytes_needed = [&](const Vector& cells) {
-        const Vector nodes = lattice_nodes(cells, interpolation);
+        const Vector nodes = lattice_nodes(options.domain, cells, interpolation);
         return bytes_of(nodes) + nodes.prod() * gradation_bytes_per_node;
     };
     const auto fits = [&](const Vector& cells) {
-        return lattice_nodes(cells, interpolation).prod() < node_limit &&
+        return lattice_nodes(options.domain, cells, interpolation).prod() < node_limit &&
                bytes_needed(cells) <= static_cast<double>(options.max_bytes);
     };
 

@@ -20,8 +20,8 @@ struct Voxels {
     std::string remark;  ///< what the memory cap has cost, or nothing (see Footprint::remark)
 };
 
-/// Number of control nodes along x, y and z of a grid of `cells`.
-Vector lattice_nodes(const Vector& cells, Interpolation interpolation);
+/// Number of control nodes along x, y and z of a grid of `cells`: one layer in a flat domain.
+Vector lattice_nodes(const Box& domain, const Vector& cells, Interpolation interpolation);
 
 /// `cells` rounded up, at least 1; 2 / 0.02 gives 100, whichever way the quotient is rounded.
 Vector whole_cells(const Vector& cells);

@@ -6,16 +6,29 @@
 
 #include "baselines/lattice/voxels.h"
 #include "controlspace/error.h"
+#include "controlspace/geometry/extent.h"
 
 namespace controlspace {
 
+namespace {
+
+Vector finest_cells(const Box& domain, const Vector& coarsest_cells, int levels) {
+    Vector cells = coarsest_cells * static_cast<double>(1 << (levels - 1));
+    if (const auto flat = flat_axis(domain)) cells[*flat] = 1;
+    return cells;
+}
+
+}  // namespace
+
 LevelCells::LevelCells(const Box& domain, const Vector& coarsest_cells, int levels)
-    : CellsOfBox(domain, coarsest_cells * static_cast<double>(1 << (levels - 1))),
+    : CellsOfBox(domain, finest_cells(domain, coarsest_cells, levels)),
       levels_(levels),
       spacing_(domain.edges().cwiseQuotient(cells())) {}
 
 LevelCells::Coord LevelCells::cells_of(int level) const {
-    const auto along = [&](Axis a) { return static_cast<openvdb::Int32>(cells()[a]) >> level; };
+    const auto along = [&](Axis a) {
+        return std::max(static_cast<openvdb::Int32>(cells()[a]) >> level, 1);
+    };
     return {along(0), along(1), along(2)};
 }
 

@@ -179,13 +179,13 @@ private:
         for (; level > 0 && is_longer(level, source.metric, options_.l_min); --level) {
             split(stack, at, level, finest >> static_cast<std::size_t>(level));
         }
-        Values::lower(at, level, finest >> static_cast<std::size_t>(level), source.metric);
+        Values::lower(at, cells_, level, finest >> static_cast<std::size_t>(level), source.metric);
     }
 
     void split(LevelStack& stack, LevelWriter& at, int level, const Coord& c) {
         if (stack.voxels >= next_look_) require_memory();
-        Values::split(at, level, c);
-        stack.voxels += 7;
+        Values::split(at, cells_, level, c);
+        stack.voxels += static_cast<std::size_t>(cells_.places(2).asVec3i().product()) - 1;
     }
 
     // Stops a structure that outgrows the cap, long before the system stops the program.
@@ -210,9 +210,10 @@ private:
             const VdbLevelTree& tree = field_.trees[static_cast<std::size_t>(level)];
             for (auto voxel = tree.cbeginValueOn(); voxel; ++voxel) {
                 bool longer = false;
-                Values::for_each_metric(at, level, voxel.getCoord(), [&](const Metric& metric) {
-                    longer = longer || is_longer(level, metric, options_.voxel_factor);
-                });
+                Values::for_each_metric(
+                    at, cells_, level, voxel.getCoord(), [&](const Metric& metric) {
+                        longer = longer || is_longer(level, metric, options_.voxel_factor);
+                    });
                 if (longer) found.emplace_back(level, voxel.getCoord());
             }
         }

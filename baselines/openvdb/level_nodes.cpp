@@ -204,7 +204,8 @@ NodeIndex LevelNodes::nearest_across(const NumberReader& numbers, int level, con
                                      int face) const {
     const int parts = 1 << level;  // of the finest level, along an edge of c
     Coord finest;
-    for (int a = 0; a < 3; ++a) finest[a] = c[a] * parts + (parts - 1) / 2;
+    const Coord is_cut = cells_.step(7);
+    for (int a = 0; a < 3; ++a) finest[a] = c[a] * parts + is_cut[a] * ((parts - 1) / 2);
     const int a = face / 2;
     finest[a] = face % 2 == 1 ? (c[a] + 1) * parts : c[a] * parts - 1;
     return node_at(numbers, finest, level).first;
@@ -241,7 +242,7 @@ NodeGraph LevelNodes::graph_of_vertices(Neighbourhood neighbourhood) const {
                          int level, const Coord& c) {
             Corners corners;
             for (std::size_t i = 0; i < 8; ++i) {
-                corners[i] = node(numbers[level].getValue(c + corner_step(i)));
+                corners[i] = node(numbers[level].getValue(c + cells_.step(i)));
             }
             for_each_pair(corners, neighbourhood,
                           [&](NodeIndex a, NodeIndex b) { found.emplace_back(a, b); });

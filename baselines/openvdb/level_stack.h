@@ -89,15 +89,17 @@ void for_each_held(Trees& trees, Visit&& visit) {
 /// Calls visit(level, c) for the cells of all levels that hold the active ones or are active,
 /// depth first, down from each for which it returns true.
 template <class Visit>
-void descend(int level, const openvdb::Coord& c, Visit& visit) {
+void descend(const LevelCells& cells, int level, const openvdb::Coord& c, Visit& visit) {
     if (!visit(level, c)) return;
-    for (std::size_t i = 0; i < 8; ++i) descend(level - 1, (c << 1) + corner_step(i), visit);
+    for (std::size_t i = 0; i < 8; ++i) {
+        if (cells.has_part(i)) descend(cells, level - 1, (c << 1) + cells.step(i), visit);
+    }
 }
 template <class Visit>
 void descend(const LevelCells& cells, Visit&& visit) {
     const openvdb::Coord n = cells.cells_of(cells.top());
     for (openvdb::CoordBBox::Iterator<true> c({{}, n.offsetBy(-1)}); c; ++c) {
-        descend(cells.top(), *c, visit);
+        descend(cells, cells.top(), *c, visit);
     }
 }
 

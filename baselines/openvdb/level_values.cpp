@@ -60,17 +60,18 @@ void LevelMetrics<corner_count>::fill(LevelWriter& at, const LevelCells& cells,
                                       const Metric& metric) {
     auto& nodes = at[cells.top()];
     const Coord n = cells.cells_of(cells.top());
-    for (auto c = places(n.offsetBy(corners == 1 ? 0 : 1)); c; ++c) {
+    for (auto c = places(corners == 1 ? n : n + cells.step(7)); c; ++c) {
         nodes.setValueOnly(*c, VdbMetric(metric));
     }
     for (auto c = places(n); c; ++c) nodes.setActiveState(*c, true);
 }
 
 template <std::size_t corner_count>
-void LevelMetrics<corner_count>::split(LevelWriter& at, int level, const Coord& c) {
+void LevelMetrics<corner_count>::split(LevelWriter& at, const LevelCells& cells, int level,
+                                       const Coord& c) {
     std::array<Metric, corners> own;
-    for (std::size_t i = 0; i < corners; ++i) own[i] = at.metric(level, c + corner_step(i));
-    for (auto place = places(Coord(corners == 1 ? 2 : 3)); place; ++place) {
+    for (std::size_t i = 0; i < corners; ++i) own[i] = at.metric(level, c + cells.step(i));
+    for (auto place = places(cells.places(corners == 1 ? 2 : 3)); place; ++place) {
         const Coord step = *place, part = (c << 1) + step;
         Metric metric = own[0];
         if constexpr (corners > 1) {
@@ -87,19 +88,20 @@ void LevelMetrics<corner_count>::split(LevelWriter& at, int level, const Coord& 
     }
     at[level].setActiveState(c, false);
     for (std::size_t i = 0; i < 8; ++i) {
-        at[level - 1].setActiveState((c << 1) + corner_step(i), true);
+        at[level - 1].setActiveState((c << 1) + cells.step(i), true);
     }
     for (std::size_t i = 0; i < corners; ++i) {
-        const Coord node = c + corner_step(i);
+        const Coord node = c + cells.step(i);
         if (!is_needed<corners>(at, level, node)) at[level].setValueOnly(node, no_metric);
     }
 }
 
 template <std::size_t corner_count>
-void LevelMetrics<corner_count>::lower(LevelWriter& at, int level, const Coord& c,
-                                       const Metric& metric) {
+void LevelMetrics<corner_count>::lower(LevelWriter& at, const LevelCells& cells, int level,
+                                       const Coord& c, const Metric& metric) {
     for (std::size_t i = 0; i < corners; ++i) {
-        const Coord node = c + corner_step(i);
+        if (!cells.has_part(i)) continue;
+        const Coord node = c + cells.step(i);
         set_copies(at, level, node, intersection(at.metric(level, node), metric));
     }
 }

@@ -73,15 +73,17 @@ struct LevelMetrics {
 
     /// visit(metric) for those that the cell blends.
     template <class Access, class Visit>
-    static void for_each_metric(const Access& at, int level, const Coord& c, Visit&& visit) {
-        for (std::size_t i = 0; i < corners; ++i) visit(at.metric(level, c + corner_step(i)));
+    static void for_each_metric(const Access& at, const LevelCells& cells, int level,
+                                const Coord& c, Visit&& visit) {
+        for (std::size_t i = 0; i < corners; ++i) visit(at.metric(level, c + cells.step(i)));
     }
     /// All cells of the coarsest level, and nothing else.
     static void fill(LevelWriter& at, const LevelCells& cells, const Metric& metric);
-    /// The cell makes way for its eight parts; the field stays as it was.
-    static void split(LevelWriter& at, int level, const Coord& c);
+    /// The cell makes way for its parts; the field stays as it was.
+    static void split(LevelWriter& at, const LevelCells& cells, int level, const Coord& c);
     /// Intersects what the cell blends with `metric`.
-    static void lower(LevelWriter& at, int level, const Coord& c, const Metric& metric);
+    static void lower(LevelWriter& at, const LevelCells& cells, int level, const Coord& c,
+                      const Metric& metric);
 };
 
 extern template struct LevelMetrics<1>;

@@ -13,10 +13,13 @@ public:
     static constexpr bool shares_field = true;
 
     explicit FlatArray(std::shared_ptr<const LatticeData> data)
-        : row_(data->lattice().nodes[0]),
-          layer_(row_ * data->lattice().nodes[1]),
-          data_(std::move(data)),
-          first_(data_->field().data()) {}
+        : data_(std::move(data)), first_(data_->field().data()) {
+        const auto [nx, ny, nz] = data_->lattice().nodes;
+        row_ = nx;
+        layer_ = row_ * ny;
+        // In a flat domain the one layer is the high side of the cells too.
+        to_high_ = {nx > 1 ? 1 : std::size_t{0}, ny > 1 ? row_ : 0, nz > 1 ? layer_ : 0};
+    }
 
     static double bytes_for(const Vector& nodes) { return nodes.prod() * sizeof(Metric); }
 
@@ -35,7 +38,8 @@ public:
         return low;
     }
     const Metric& metric(const Metric* low, std::size_t corner) const {
-        return low[(corner & 1) + (corner >> 1 & 1) * row_ + (corner >> 2) * layer_];
+        return low[(corner & 1) * to_high_[0] + (corner >> 1 & 1) * to_high_[1] +
+                   (corner >> 2) * to_high_[2]];
     }
 
     void add_to(Footprint& footprint) const {
@@ -44,6 +48,7 @@ public:
 
 private:
     std::size_t row_, layer_;
+    std::array<std::size_t, 3> to_high_;  // from a node to the next one along each axis
     std::shared_ptr<const LatticeData> data_;
     const Metric* first_;
 };

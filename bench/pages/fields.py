@@ -176,10 +176,23 @@ def pairs_table(sampled):
     return table_of("pairs", rows)
 
 
+def sides_and_axis(about):
+    """The sides of the domain, and the axis across the slice: that of a plane, or z."""
+    sides = [about["domain"][i:i + 2] for i in (0, 2, 4)]
+    return sides, next((a for a in range(3) if sides[a][0] == sides[a][1]), 2)
+
+
+def slice_place(sampled):
+    about = sampled[0]
+    return f"{'xyz'[sides_and_axis(about)[1]]} = {about['z']:.4g}"
+
+
 def slice_figures(sampled):
     """The exact field, then each structure and its error."""
     about, exact, structures = sampled
-    x0, x1, y0, y1 = about["domain"][:4]
+    sides, across = sides_and_axis(about)
+    (x0, x1), (y0, y1) = (side for a, side in enumerate(sides) if a != across)
+    x_name, y_name = ("xyz"[a] for a in range(3) if a != across)
     measures = [("h_mean [length]", mean_length)]
     if np.nanmax(anisotropy(exact.slice)) > VISIBLE_ANISOTROPY:
         measures.append(("anisotropy", anisotropy))
@@ -195,7 +208,7 @@ def slice_figures(sampled):
         if outlines is not None:
             corners = outlines[:, [[0, 3], [0, 1], [2, 1]]]  # left and lower sides
             ax.add_collection(LineCollection(corners, colors="white", linewidths=0.3, alpha=0.5))
-        ax.set(xlim=(x0, x1), ylim=(y0, y1))
+        ax.set(xlabel=f"{x_name} [length]", ylabel=f"{y_name} [length]", xlim=(x0, x1), ylim=(y0, y1))
         ax.grid(False)
         colour_bar(image, ax, label)
 

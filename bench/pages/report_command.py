@@ -185,8 +185,8 @@ def results_sections(results, styles, prefix, with_fields):
         sections.append(Section("Accuracy", accuracy_parts(sampled, prefix)))
     sections.append(Section("Times", times))
     if sampled:
-        about = f"z = {sampled[0]['z']:.4g}"
-        sections.append(Section(f"Slices at {about}", drawn(fields.slice_figures(sampled), prefix)))
+        sections.append(Section(f"Slices at {fields.slice_place(sampled)}",
+                                drawn(fields.slice_figures(sampled), prefix)))
     sections.append(Section("The paper's tables", paper_parts(evidence, styles, prefix)))
     sections.append(Section("All measures", [
         ("fold", Fold(group, [("table", table)], False))

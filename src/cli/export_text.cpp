@@ -6,6 +6,7 @@
 
 #include "cli/export.h"
 #include "controlspace/error.h"
+#include "controlspace/geometry/extent.h"
 #include "controlspace/io/read_sources.h"
 #include "io/text/medit.h"
 #include "io/text/pos.h"
@@ -41,7 +42,8 @@ std::string write_view(const Export& e) {
             "BAMG, or write a .sol",
             e.output.string());
     }
-    return written(e, fmt::format("{} hexahedra", cells.count));
+    const bool is_flat = flat_axis(e.filled.space->domain()).has_value();
+    return written(e, fmt::format("{} {}", cells.count, is_flat ? "quadrilaterals" : "hexahedra"));
 }
 
 }  // namespace

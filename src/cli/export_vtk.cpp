@@ -5,6 +5,7 @@
 
 #include "cli/export.h"
 #include "controlspace/error.h"
+#include "controlspace/geometry/extent.h"
 #include "controlspace/io/write_vtk.h"
 #include "files/text_file.h"
 
@@ -12,7 +13,7 @@ namespace controlspace {
 namespace {
 
 struct SliceOptions {
-    std::vector<std::string> place{"z"};  ///< axis, and coordinate on it; the middle if left out
+    std::vector<std::string> place;  ///< axis, and coordinate on it; the middle if left out
 };
 
 std::string write_grid(const Export& e, bool nodes) {
@@ -26,7 +27,8 @@ std::string write_grid(const Export& e, bool nodes) {
 }
 
 Slice slice_of(const SliceOptions& options, const Box& domain, std::optional<int> samples) {
-    const std::string& name = options.place.front();
+    const std::string plain(1, "xyz"[flat_axis(domain).value_or(2)]);
+    const std::string& name = options.place.empty() ? plain : options.place.front();
     const std::size_t axis = std::string("xyz").find(name);
     if (name.size() != 1 || axis > 2) {
         throw InputError(fmt::format("--slice: {} is no axis: give x, y or z", quote(name)));
@@ -55,12 +57,11 @@ std::vector<FieldFormat> add_vtk_formats(Options& options) {
     const auto slice = std::make_shared<SliceOptions>();
     const std::string grid_group = "A .vtu file", image_group = "A .vti file";
     options.add({"--nodes", "", "Write control nodes in place of leaves", grid_group}, *nodes);
-    options.add(
-        {"--slice", "AXIS [NUMBER]",
-         "Axis across the slice (x, y or z) and coordinate on it [length]; left out: z, and "
-         "the middle of the domain",
-         image_group},
-        slice->place, 2);
+    options.add({"--slice", "AXIS [NUMBER]",
+                 "Axis across the slice (x, y or z) and coordinate on it [length]; left out: z, or "
+                 "the axis across a flat domain, and the middle of the domain",
+                 image_group},
+                slice->place, 2);
     return {{{".vtu"}, [nodes](const Export& e) { return write_grid(e, *nodes); }, {grid_group}},
             {{".vti"},
              [slice](const Export& e) { return write_image(e, *slice); },

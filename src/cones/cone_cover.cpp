@@ -101,8 +101,9 @@ bool ConeCover::complete(const Box& box, std::size_t depth) {
         return true;
     }
     if (left.sources.empty()) return true;
-    for (int part = 0; part < 8; ++part) {
-        if (!complete(octants(box).child(part), depth + 1)) return false;
+    const Subdivision parts = octants(box);
+    for (int c = 0; c < parts.children(); ++c) {
+        if (!complete(parts.child(c), depth + 1)) return false;
     }
     return true;
 }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controlspace/geometry/extent.h"
+
 namespace controlspace {
 
 double TrilinearLengths::at_place(const Point& x) const {
-    const Vector t = (x - box.low).cwiseQuotient(box.edges());
+    const Vector t = (x - box.low).cwiseQuotient(divisible_edges(box));
     double length = 0;
     for (std::size_t i = 0; i < 8; ++i) {
         double weight = 1;
@@ -24,7 +26,7 @@ double TrilinearLengths::slope() const {
             if ((i & high) == 0) most[a] = std::max(most[a], std::abs(at[i | high] - at[i]));
         }
     }
-    return most.cwiseQuotient(box.edges()).norm();
+    return most.cwiseQuotient(divisible_edges(box)).norm();
 }
 
 std::pair<TrilinearLengths, TrilinearLengths> TrilinearLengths::halves() const {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "controlspace/error.h"
+#include "controlspace/geometry/extent.h"
 
 namespace controlspace {
 
@@ -28,7 +29,9 @@ Box bounding_box(std::span<const Point> points, double margin) {
     return box;
 }
 
-const Box& require_volume(const Box& box) {
+namespace {
+
+void require_resolved(const Box& box, bool may_be_flat) {
     // With fewer places across it than this, boxes within it cannot be halved as often as needed.
     constexpr double least_places = 1e6;
     for (Axis a = 0; a < 3; ++a) {
@@ -38,11 +41,13 @@ const Box& require_volume(const Box& box) {
         };
         const double edge = box.edges()[a];
         const double farthest = std::max(std::abs(box.low[a]), std::abs(box.high[a]));
-        if (!(edge > 0)) fail("has no extent", "give low < high, finite");
+        const bool is_flat = may_be_flat && edge == 0;
+        if (!(edge > 0) && !is_flat) fail("has no extent", "give low < high, finite");
         if (farthest > largest_magnitude) {
             fail(fmt::format("goes beyond {:.0e}", largest_magnitude),
                  "give another unit of length");
         }
+        if (is_flat) continue;
         if (edge < 1 / largest_magnitude) {
             fail(fmt::format("is shorter than {:.0e}", 1 / largest_magnitude),
                  "give another unit of length");
@@ -50,6 +55,23 @@ const Box& require_volume(const Box& box) {
         if (edge < least_places * std::numeric_limits<double>::epsilon() * farthest) {
             fail("is too thin for its distance from the origin", "move the origin nearer");
         }
+    }
+}
+
+}  // namespace
+
+const Box& require_volume(const Box& box) {
+    require_resolved(box, false);
+    return box;
+}
+
+const Box& require_extent(const Box& box) {
+    require_resolved(box, true);
+    if ((box.edges().array() == 0).count() > 1) {
+        throw InputError(
+            fmt::format("domain {} has no extent along two axes or more: give low < high along two "
+                        "at least",
+                        to_string(box)));
     }
     return box;
 }

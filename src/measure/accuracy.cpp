@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "controlspace/error.h"
+#include "controlspace/geometry/extent.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/sample_parallel.h"
@@ -61,6 +62,12 @@ struct Excess {
 
 }  // namespace
 
+std::array<int, 3> cell_counts(const Box& box, int n) {
+    std::array<int, 3> counts{n, n, n};
+    if (const auto flat = flat_axis(box)) counts[static_cast<std::size_t>(*flat)] = 1;
+    return counts;
+}
+
 std::vector<Point> cell_centres(const Box& box, int n) {
     constexpr int most = 512;
     if (n < 1 || n > most) {
@@ -70,12 +77,13 @@ std::vector<Point> cell_centres(const Box& box, int n) {
         const double edge = box.high[a] - box.low[a];
         return box.low[a] + edge / (2 * n) + (k * edge) / n;
     };
+    const std::array<int, 3> counts = cell_counts(box, n);
     std::vector<Point> points;
-    points.reserve(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) *
-                   static_cast<std::size_t>(n));
-    for (int k = 0; k < n; ++k) {
-        for (int j = 0; j < n; ++j) {
-            for (int i = 0; i < n; ++i) {
+    points.reserve(static_cast<std::size_t>(counts[0]) * static_cast<std::size_t>(counts[1]) *
+                   static_cast<std::size_t>(counts[2]));
+    for (int k = 0; k < counts[2]; ++k) {
+        for (int j = 0; j < counts[1]; ++j) {
+            for (int i = 0; i < counts[0]; ++i) {
                 points.emplace_back(coordinate(0, i), coordinate(1, j), coordinate(2, k));
             }
         }

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "controlspace/geometry/extent.h"
 #include "controlspace/gradation/law.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/space/sample_parallel.h"
@@ -66,11 +67,13 @@ Steepness steepness(const ControlSpace& space, const Box& domain,
         ways[i] =
             between_on_log_scale(shortest_pair, longest_pair, fraction) * unit_vector(fraction);
     }
+    const auto flat = flat_axis(domain);
     std::vector<Metric> at_p(pairs), at_q(pairs);
     sample_parallel(space, p, at_p);
     for (std::size_t i = 0; i < pairs; ++i) {
         if (!is_positive_definite(at_p[i])) return {infinity, infinity};
         q[i] = p[i] + at_p[i].matrix() * ways[i];
+        if (flat) q[i][*flat] = p[i][*flat];
         if (q[i] != inside(q[i])) q[i] = p[i];  // no pair
     }
     sample_parallel(space, q, at_q);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "controlspace/error.h"
+#include "controlspace/geometry/extent.h"
 #include "controlspace/gradation/grade.h"
 #include "gradation/require_known.h"
 #include "space/depth_limits.h"
@@ -34,7 +35,7 @@ void require_depth(const char* name, int depth, int deepest) {
 }  // namespace
 
 void require_valid(const SpaceOptions& options) {
-    require_volume(options.domain);
+    require_extent(options.domain);
     require_known("split", options.split, SplitRule::exact_golden);
     require_known("quadratic_form", options.quadratic_form, QuadraticForm::published);
     require_known("intersection", options.intersection, IntersectionRule::in_turn);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controlspace/geometry/extent.h"
 #include "measure/stopwatch.h"
 #include "study/text_table.h"
 #include "study/time_estimate.h"
@@ -48,9 +49,10 @@ Trial forecast_grid(const PreparedStudy& prepared, Case c, const Workload& workl
     const SpaceOptions options =
         space_options(prepared.study(), c, workload, prepared.rows().parameters);
     const double voxel = options.voxel > 0 ? options.voxel : options.l_min * options.finest_length;
-    const double voxels = workload.domain.edges().prod() / std::pow(voxel, 3);
+    const double dimensions = flat_axis(workload.domain) ? 2 : 3;
+    const double voxels = measure(workload.domain) / std::pow(voxel, dimensions);
     const double factor = std::max(1.0, voxels / voxels_of_trial);
-    c.voxel = voxel * std::cbrt(factor);
+    c.voxel = voxel * std::pow(factor, 1 / dimensions);
     const Trial whole = scaled(try_case(prepared, c, workload), factor);
     // Grids that outgrow the cap become coarser.
     const auto cap = static_cast<double>(options.max_bytes);

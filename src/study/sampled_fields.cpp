@@ -7,6 +7,7 @@
 #include <bit>
 #include <string>
 
+#include "controlspace/geometry/extent.h"
 #include "controlspace/space/sample_parallel.h"
 #include "files/output_file.h"
 
@@ -19,12 +20,15 @@ constexpr std::size_t most_cells = 20000;
 using Numbers = std::vector<double>;
 
 std::vector<Point> slice_places(const Box& domain, double z) {
+    const auto [u, v] = slice_axes(domain);
     const Vector cell = domain.edges() / slice_cells;
     std::vector<Point> places;
     for (int j = 0; j < slice_cells; ++j) {
         for (int i = 0; i < slice_cells; ++i) {
-            places.emplace_back(domain.low.x() + (i + 0.5) * cell.x(),
-                                domain.low.y() + (j + 0.5) * cell.y(), z);
+            Point x = Point::Constant(z);
+            x[u] = domain.low[u] + (i + 0.5) * cell[u];
+            x[v] = domain.low[v] + (j + 0.5) * cell[v];
+            places.push_back(x);
         }
     }
     return places;
@@ -65,24 +69,34 @@ void write_npy(const std::filesystem::path& path, std::span<const std::size_t> s
     file.commit();
 }
 
+std::array<Axis, 2> slice_axes(const Box& domain) {
+    const auto flat = flat_axis(domain);
+    return {flat == 0 ? 1 : 0, flat == 0 || flat == 1 ? 2 : 1};
+}
+
 std::optional<std::vector<Box>> cells_on_slice(const ControlSpace& space, double z,
                                                std::size_t most) {
     const Box domain = space.domain();
+    const auto [u, v] = slice_axes(domain);
     const Vector inside = 1e-9 * domain.edges();
     std::vector<Box> cells;
+    Point x = Point::Constant(z);
     // Rows of cells from below: none ends between one row's height and the next, so that each cell
     // is met at its lower side.
-    for (double y = domain.low.y(); y < domain.high.y() - inside.y();) {
-        double next_y = domain.high.y();
-        for (double x = domain.low.x(); x < domain.high.x() - inside.x();) {
-            const auto cell = space.cell_at({x + inside.x(), y + inside.y(), z});
+    for (double y = domain.low[v]; y < domain.high[v] - inside[v];) {
+        double next_y = domain.high[v];
+        x[v] = y + inside[v];
+        for (x[u] = domain.low[u]; x[u] < domain.high[u] - inside[u];) {
+            const double from = x[u];
+            x[u] += inside[u];
+            const auto cell = space.cell_at(x);
             if (!cell) return std::nullopt;
-            if (cell->low.y() >= y - inside.y()) cells.push_back(*cell);
+            if (cell->low[v] >= y - inside[v]) cells.push_back(*cell);
             if (cells.size() > most) return std::nullopt;
-            next_y = std::min(next_y, cell->high.y());
-            x = std::max(cell->high.x(), x + inside.x());
+            next_y = std::min(next_y, cell->high[v]);
+            x[u] = std::max(cell->high[u], from + inside[u]);
         }
-        y = std::max(next_y, y + inside.y());
+        y = std::max(next_y, y + inside[v]);
     }
     return cells;
 }
@@ -90,9 +104,12 @@ std::optional<std::vector<Box>> cells_on_slice(const ControlSpace& space, double
 FieldFiles write_sampled_fields(const std::filesystem::path& folder, const Finished& finished,
                                 bool has_exact) {
     const Box& domain = finished.workload.domain;
-    const auto n = static_cast<std::size_t>(finished.study.probe_grid);
+    const auto [x_cells, y_cells, z_cells] = cell_counts(domain, finished.study.probe_grid);
+    const auto nx = static_cast<std::size_t>(x_cells), ny = static_cast<std::size_t>(y_cells),
+               nz = static_cast<std::size_t>(z_cells);
     constexpr std::size_t m = slice_cells;
-    FieldFiles files{domain, domain.centre().z(), "", "", "", "", ""};
+    const Axis across = flat_axis(domain).value_or(2);
+    FieldFiles files{domain, domain.centre()[across], "", "", "", "", ""};
     std::filesystem::create_directories(folder / "fields");
     const auto write = [&](std::string& name, const std::string& stem, const char* what,
                            std::initializer_list<std::size_t> shape, const Numbers& numbers) {
@@ -103,11 +120,12 @@ FieldFiles write_sampled_fields(const std::filesystem::path& folder, const Finis
     const std::vector<Point>& probes = finished.probes.coarse.points;
     const std::string stem = fmt::format("{:03}", finished.index);
     write(files.slice, stem, "slice", {m, m, 6}, sampled(finished.space, slice));
-    write(files.probes, stem, "probes", {n, n, n, 6}, sampled(finished.space, probes));
+    write(files.probes, stem, "probes", {nz, ny, nx, 6}, sampled(finished.space, probes));
     if (const auto cells = cells_on_slice(finished.space, files.z, most_cells)) {
+        const auto [u, v] = slice_axes(domain);
         Numbers outlines;
         for (const Box& c : *cells) {
-            outlines.insert(outlines.end(), {c.low.x(), c.low.y(), c.high.x(), c.high.y()});
+            outlines.insert(outlines.end(), {c.low[u], c.low[v], c.high[u], c.high[v]});
         }
         write(files.outlines, stem, "outlines", {cells->size(), 4}, outlines);
     }
@@ -118,7 +136,7 @@ FieldFiles write_sampled_fields(const std::filesystem::path& folder, const Finis
         std::vector<Metric> metrics(slice.size());
         sample_parallel(*reference, slice, metrics);
         write(files.exact_slice, "exact", "slice", {m, m, 6}, numbers_of(metrics));
-        write(files.exact_probes, "exact", "probes", {n, n, n, 6},
+        write(files.exact_probes, "exact", "probes", {nz, ny, nx, 6},
               numbers_of(finished.probes.coarse.reference));
     }
     return files;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -17,8 +18,11 @@ constexpr int slice_cells = 200;
 void write_npy(const std::filesystem::path& path, std::span<const std::size_t> shape,
                std::span<const double> numbers);
 
-/// The cells of `space` that the plane at height `z` cuts, by rising y; none if they are more than
-/// `most`, or the space has no cells.
+/// The axes of slices, lower one first: x and y, or those of a flat domain.
+std::array<Axis, 2> slice_axes(const Box& domain);
+
+/// The cells of `space` that the slice at height `z` cuts, by rising y; none if they are more than
+/// `most`, or the space has no cells. In a flat domain the slice is the domain.
 std::optional<std::vector<Box>> cells_on_slice(const ControlSpace& space, double z,
                                                std::size_t most);
 

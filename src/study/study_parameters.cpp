@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "controlspace/geometry/extent.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/study/study.h"
 #include "files/text_file.h"
@@ -162,7 +163,7 @@ Access<Study> domain() {
     access.set = [](Study& s, const Values& v) {
         if (v.size() != 6) throw InputError("give six numbers: x0 x1 y0 y1 z0 z1");
         const auto x = [&](std::size_t i) { return v[i].number(); };
-        s.domain = require_volume({{x(0), x(2), x(4)}, {x(1), x(3), x(5)}});
+        s.domain = require_extent({{x(0), x(2), x(4)}, {x(1), x(3), x(5)}});
     };
     access.get = [](const Study& s) -> Values {
         if (!s.domain) return {};

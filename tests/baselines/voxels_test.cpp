@@ -59,8 +59,12 @@ TEST_CASE("rounding does not add a cell") {
 }
 
 TEST_CASE("a grid has a node per cell or per vertex") {
-    CHECK(lattice_nodes(Vector(4, 5, 6), Interpolation::nearest) == Vector(4, 5, 6));
-    CHECK(lattice_nodes(Vector(4, 5, 6), Interpolation::trilinear) == Vector(5, 6, 7));
+    const Box box{Point(0, 0, 0), Point(1, 1, 1)};
+    CHECK(lattice_nodes(box, Vector(4, 5, 6), Interpolation::nearest) == Vector(4, 5, 6));
+    CHECK(lattice_nodes(box, Vector(4, 5, 6), Interpolation::trilinear) == Vector(5, 6, 7));
+    const Box flat{Point(0, 2, 0), Point(1, 2, 1)};
+    CHECK(lattice_nodes(flat, Vector(4, 1, 6), Interpolation::nearest) == Vector(4, 1, 6));
+    CHECK(lattice_nodes(flat, Vector(4, 1, 6), Interpolation::trilinear) == Vector(5, 1, 7));
 }
 
 TEST_CASE("under a memory cap the finest grid that fits is taken, and said") {
@@ -84,10 +88,10 @@ TEST_CASE("under a memory cap cells are cut along the longest edge as often as f
     const auto bytes = [&](double n) {
         const Vector edges = options.domain.edges();
         const Vector cells = (edges / edges.x() * n).array().ceil();
-        return bytes_with_gradation(lattice_nodes(cells, interpolation));
+        return bytes_with_gradation(lattice_nodes(options.domain, cells, interpolation));
     };
     const auto cap = static_cast<double>(options.max_bytes);
-    CHECK(bytes_with_gradation(lattice_nodes(voxels.cells, interpolation)) <= cap);
+    CHECK(bytes_with_gradation(lattice_nodes(options.domain, voxels.cells, interpolation)) <= cap);
     CHECK(bytes(voxels.cells.x()) <= cap);
     CHECK(bytes(voxels.cells.x() + 1) > cap);
     CHECK_THAT(voxels.remark, Catch::Contains("; 30000 x 11000 x 1000 would need 33."));

@@ -42,6 +42,24 @@ std::vector<double> sampled(const cspace* space) {
 
 }  // namespace
 
+TEST_CASE("C: a domain may be a plane, and not a line") {
+    const double plane[6] = {0, 0, 1, 2, 3, 1};
+    cspace* space = nullptr;
+    REQUIRE(cspace_create("K_oV", plane, "finest_length=0.1", &space) == CSPACE_OK);
+    const double places[6] = {1, 1, 1, 0.5, 2, 1.001};
+    const double lengths[2] = {0.1, 0.1};
+    CHECK(cspace_insert_lengths(space, 2, places, lengths) != CSPACE_OK);  // the second is off it
+    CHECK_THAT(cspace_last_error(), Contains("source 1") && Contains("outside"));
+    CHECK(cspace_grade(space, 1.25) == CSPACE_OK);
+    double size = 0;
+    CHECK(cspace_sample_lengths(space, 1, places, &size) == CSPACE_OK);
+    CHECK(size < 0.15);
+    cspace_free(space);
+    const double line[6] = {0, 0, 1, 2, 0, 1};
+    CHECK(cspace_create("K_oV", line, "", &space) != CSPACE_OK);
+    CHECK_THAT(cspace_last_error(), Contains("no extent along two axes"));
+}
+
 TEST_CASE("C: every structure answers as from C++, also after saving and loading") {
     const ScratchDirectory scratch("c");
     const std::string file = (scratch / "field.ctrl").string();

@@ -61,6 +61,29 @@ TEST_CASE("control nodes as a table are sources again") {
     CHECK_THAT(file_text(box / "cells.pos"), Contains("\nSH("));
 }
 
+TEST_CASE("a plane is exported as one, and compared") {
+    const Sandbox box("export-plane");
+    box.write("s.csv", "x,y,z,h\n0.2,0,0.3,0.1\n0.7,0,0.4,0.05\n");
+    const std::string plane = " --domain 0 1 0 0 0 1";
+    for (const std::string file : {"a.vtu", "a.vtu --nodes", "a.vti", "a.htg", "a.pos", "a.csv"}) {
+        const Outcome outcome = box.run("export s.csv -o " + file + plane);
+        INFO(file << outcome.err);
+        CHECK(outcome.status == 0);
+    }
+    CHECK_THAT(file_text(box / "a.pos"), Contains("\nSQ("));
+    CHECK_THAT(file_text(box / "a.vti"), Contains("WholeExtent=\"0 511 0 0 0 511\""));
+    const Outcome compared = box.run(
+        "compare --sources s.csv --output r --access-points 100 --structures "
+        "K_L,K_V,K_oLi,K_oV,K_oLA,uniform-trilinear,openvdb-levels-trilinear" +
+        plane);
+    INFO(compared.err);
+    CHECK(compared.status == 0);
+    CHECK_THAT(box.run("export s.csv -o a.vtu --domain 0 1 1 1 0 1").err,
+               Contains("outside") && Contains("source 0"));
+    CHECK_THAT(box.run("export s.csv -o a.vtu --domain 0 1 0 0 0 0").err,
+               Contains("no extent along two axes"));
+}
+
 TEST_CASE("elements, nodes, octrees and slices are files for ParaView") {
     const Sandbox box("export-vtk");
     box.write("s.csv", sources_csv);

@@ -65,7 +65,7 @@ Field field_of(const Structure& structure, const Work& work, const std::vector<P
     return field;
 }
 
-Work any_isotropic_work() { return GENERATE(isotropic_sphere(), oblong_box()); }
+Work any_isotropic_work() { return GENERATE(isotropic_sphere(), oblong_box(), flat_box()); }
 
 // How far a's length may lie above b's at probe i. Both grow from the source that governs the field
 // there: b no slower than along the straight line from somewhere in the source's cell to somewhere

@@ -68,7 +68,7 @@ STRUCTURE_CASE(
 }
 
 STRUCTURE_CASE(every_structure, "sampled lengths are the smallest that the metrics request") {
-    const Work work = GENERATE(isotropic_sphere(), anisotropic_oblong_box());
+    const Work work = GENERATE(isotropic_sphere(), anisotropic_oblong_box(), flat_box());
     CAPTURE(work.name);
     const auto space = work.graded(structure);
     const Vector beyond = 0.1 * work.domain.edges();

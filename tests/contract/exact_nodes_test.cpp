@@ -19,7 +19,7 @@ constexpr double tolerance = 1e-2;  // of nodes graded by the sources
 
 Work any_work() {
     return GENERATE(isotropic_sphere(), anisotropic_sphere(), anisotropic_oblong_box(),
-                    with_own_growths(isotropic_sphere()),
+                    anisotropic_flat_box(), with_own_growths(isotropic_sphere()),
                     with_own_growths(anisotropic_oblong_box()));
 }
 

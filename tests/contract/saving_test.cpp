@@ -16,8 +16,6 @@ std::vector<Metric> answers(const ControlSpace& space) {
     return answers(space, random_points(space.domain(), 2000, 1));
 }
 
-const PointSource later{Point(0.1, -0.2, 0.3), Metric::isotropic(0.06)};
-
 // The same parts in the same memory, but for room to grow.
 void check_alike(const Footprint& loaded, const Footprint& saved) {
     CHECK(loaded.tree_nodes == saved.tree_nodes);
@@ -38,6 +36,9 @@ void check_saving(EditableSpace& space, const ScratchDirectory& scratch) {
     save_control_space(scratch / "again.ctrl", *loaded);
     CHECK(file_text(scratch / "again.ctrl") == file_text(scratch / "field.ctrl"));
 
+    const Box domain = space.domain();
+    const PointSource later{domain.low + Vector(0.55, 0.4, 0.65).cwiseProduct(domain.edges()),
+                            Metric::isotropic(0.06)};
     CHECK(loaded->insert(later) == space.insert(later));
     loaded->grade({});
     space.grade({});
@@ -51,8 +52,8 @@ void check_saving(EditableSpace& space, const ScratchDirectory& scratch) {
 STRUCTURE_CASE(every_structure,
                "saved and loaded: the same answers, and the same after more sources") {
     const ScratchDirectory scratch("saving");
-    const Work work =
-        GENERATE(isotropic_sphere(), anisotropic_sphere(), with_own_growths(isotropic_sphere()));
+    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere(), oblong_box(), flat_box(),
+                               with_own_growths(isotropic_sphere()));
     CAPTURE(work.name);
     const auto space = work.graded(structure);
     check_saving(*space, scratch);
@@ -73,7 +74,7 @@ STRUCTURE_CASE(does_not_round, "saved between a later source and the gradation t
 STRUCTURE_CASE(has_compact_form,
                "a frozen control space is frozen again after loading, with the same bits") {
     const ScratchDirectory scratch("saving");
-    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere(), flat_box());
     const Precision precision = GENERATE(Precision::doubles, Precision::floats);
     CAPTURE(work.name, static_cast<int>(precision));
     const auto frozen = work.graded(structure)->compact(precision);

@@ -119,6 +119,41 @@ inline Work oblong_box() {
     work.sources.push_back({place(3.6, 1.05, 0.03), Metric::isotropic(0.23)});
     return work;
 }
+/// A plane across the y axis, with sources along a curve in it and a few coarser ones.
+inline Work flat_box() {
+    Work work{"flat", {}, {Point(-1, 0.3, 2), Point(1.5, 0.3, 3.7)}};
+    for (int i = 0; i < 120; ++i) {
+        const double t = i / 120.0;
+        work.sources.push_back({Point(-0.8 + 2 * t, 0.3, 2.7 + 0.6 * std::sin(5 * t)),
+                                Metric::isotropic(0.04 + 0.05 * t)});
+    }
+    work.sources.push_back({Point(1.3, 0.3, 2.1), Metric::isotropic(0.17)});
+    return work;
+}
+/// The same with tensors, turned and 1:4 thin.
+inline Work anisotropic_flat_box() {
+    Work work = flat_box();
+    work.name = "anisotropic flat";
+    for (std::size_t i = 0; i < work.sources.size(); ++i) {
+        const double h = work.sources[i].metric.xx;
+        const Eigen::Matrix3d frame =
+            Eigen::AngleAxisd(0.01 * static_cast<double>(i), Vector::UnitY()).toRotationMatrix();
+        work.sources[i].metric = metric_from_frame({h, 2 * h, 4 * h}, frame);
+    }
+    return work;
+}
+/// Sources along a line through a box with these edges, away from the origin.
+inline Work thin_box(const Vector& edges) {
+    Work work{"thin", {}, {Point(3, -1, 0.5), Point(3, -1, 0.5) + edges}};
+    const double longest = edges.maxCoeff();
+    for (int i = 0; i < 40; ++i) {
+        const double t = (i + 0.5) / 40;
+        work.sources.push_back(
+            {work.domain.low + Vector(t, 0.2 + 0.5 * t * t, 0.4).cwiseProduct(edges),
+             Metric::isotropic(longest * (0.01 + 0.02 * t))});
+    }
+    return work;
+}
 /// The same with tensors, turned and up to 1:4 thin.
 inline Work anisotropic_oblong_box() {
     Work work = oblong_box();

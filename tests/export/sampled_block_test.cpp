@@ -41,6 +41,12 @@ std::size_t distinct(const SampledBlock& block) {
 
 }  // namespace
 
+TEST_CASE("a plane is one layer of voxels, whose places are on it") {
+    const VoxelLattice lattice = voxel_lattice({Point(0, 2, 1), Point(1, 2, 3)}, 0.1);
+    CHECK(lattice.counts == std::array{10, 1, 20});
+    CHECK(lattice.centre(3, 0, 4).y() == 2);
+}
+
 TEST_CASE("a block keeps within the tolerance of the field, voxel by voxel") {
     const VoxelLattice lattice = voxel_lattice(two_cube, 1.0 / 32);
     REQUIRE(lattice.counts == std::array{64, 64, 64});

@@ -22,6 +22,7 @@
 #include <catch2/catch.hpp>
 
 #include "controlspace/fields/formula_field.h"
+#include "controlspace/geometry/extent.h"
 #include "controlspace/io/read_vtk_sources.h"
 #include "controlspace/io/write_vtk.h"
 #include "controlspace/sources/riemannian.h"
@@ -40,14 +41,15 @@ namespace {
 
 const Box domain{{-1, -1, -1}, {1, 1, 2}};
 
-/// Filled with tensors whose numbers all differ.
-std::unique_ptr<EditableSpace> filled(const std::string& id) {
+/// Filled with tensors whose numbers all differ; of sources outside, the nearest places in the box.
+std::unique_ptr<EditableSpace> filled(const std::string& id, const Box& box = domain) {
     std::vector<PointSource> sources = sample_sphere({.h = 0.2, .rho = 2});
     for (PointSource& s : sources) {
+        s.position = s.position.cwiseMax(box.low).cwiseMin(box.high);
         const Point& p = s.position;
         s.metric = {0.3 + 0.1 * p.x(), 0.4 + 0.1 * p.y(), 0.5, 0.02 + 0.01 * p.x(), -0.03, 0.05};
     }
-    auto space = editable(tree_named(id).make({.domain = domain, .finest_length = 0.15}));
+    auto space = editable(tree_named(id).make({.domain = box, .finest_length = 0.15}));
     space->insert(sources);
     return space;
 }
@@ -161,16 +163,24 @@ TEST_CASE("control nodes are points that can be read as sources") {
 
 TEST_CASE("an octree is a hyper tree grid with the same leaves") {
     const ScratchDirectory folder;
-    const auto space = filled("K_oL");
+    // Of the oblong one, trees for each of which all axes are cut; the others are flat.
+    const Box box = GENERATE(
+        domain, Box{Point(-1, -1, -1), Point(9, 1, 1.5)}, Box{Point(-1, -1, 0), Point(1, 1.5, 0)},
+        Box{Point(0, -1, -1), Point(0, 1, 1)}, Box{Point(-1, 0.5, -1), Point(8, 0.5, 1)});
+    CAPTURE(to_string(box));
+    const auto space = filled("K_oL", box);
     write_octree(folder.path() / "tree.htg", *space);
     vtkNew<vtkXMLHyperTreeGridReader> reader;
     reader->SetFileName((folder.path() / "tree.htg").c_str());
     reader->Update();
     auto& grid = *vtkHyperTreeGrid::SafeDownCast(reader->GetOutputDataObject(0));
-    REQUIRE(static_cast<std::size_t>(grid.GetNumberOfLeaves()) == space->footprint().cells);
+    REQUIRE(static_cast<std::size_t>(grid.GetNumberOfLeaves()) >= space->footprint().cells);
+    if (grid.GetMaxNumberOfTrees() == 1) {
+        REQUIRE(static_cast<std::size_t>(grid.GetNumberOfLeaves()) == space->footprint().cells);
+    }
     vtkNew<vtkHyperTreeGridNonOrientedGeometryCursor> cursor;
-    grid.InitializeNonOrientedGeometryCursor(cursor, 0);
     int leaves = 0;
+    double area = 0;
     const std::function<void()> visit = [&] {
         if (!cursor->IsLeaf()) {
             for (unsigned char c = 0; c < cursor->GetNumberOfChildren(); ++c) {
@@ -183,15 +193,63 @@ TEST_CASE("an octree is a hyper tree grid with the same leaves") {
         ++leaves;
         Point centre;
         cursor->GetPoint(centre.data());
-        REQUIRE(space->cell_at(centre).value().centre().isApprox(centre, 1e-12));
+        std::array<double, 6> sides;
+        cursor->GetBounds(sides.data());
+        const Box leaf{Point(sides[0], sides[2], sides[4]), Point(sides[1], sides[3], sides[5])};
+        area += measure(leaf);
+        const Box cell = space->cell_at(centre).value();
+        // Trees begin with cells near cubes; a leaf above these is in several.
+        if (cursor->GetLevel() > 0) REQUIRE(cell.centre().isApprox(centre, 1e-12));
+        REQUIRE((cell.low - leaf.low).maxCoeff() < 1e-12);
+        REQUIRE((leaf.high - cell.high).maxCoeff() < 1e-12);
         REQUIRE(is_riemannian_of(tensor_at(*grid.GetCellData(), cursor->GetGlobalNodeIndex()),
                                  sample_at(*space, centre)));
     };
-    visit();
+    for (vtkIdType tree = 0; tree < grid.GetMaxNumberOfTrees(); ++tree) {
+        grid.InitializeNonOrientedGeometryCursor(cursor, tree);
+        visit();
+    }
     CHECK(leaves == grid.GetNumberOfLeaves());
+    CHECK(area == Approx(measure(box)));
     CHECK_THAT(error_of([&] { write_octree(folder.path() / "kd.htg", *filled("K_L")); }),
                Contains("only an octree"));
     CHECK_FALSE(std::filesystem::exists(folder.path() / "kd.htg"));
+}
+
+TEST_CASE("on a plane, leaves are quadrilaterals, and an image is of the plane") {
+    const ScratchDirectory folder;
+    for (Axis a = 0; a < 3; ++a) {
+        Box box = domain;
+        box.low[a] = box.high[a] = 0.25;
+        const auto space = filled("K_V", box);
+        write_leaves(folder.path() / "flat.vtu", *space);
+        const auto grid = read_back<vtkXMLUnstructuredGridReader>(folder.path() / "flat.vtu");
+        REQUIRE(static_cast<std::size_t>(grid->GetNumberOfCells()) == space->footprint().cells);
+        double area = 0;
+        for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i) {
+            vtkCell& cell = *grid->GetCell(i);
+            REQUIRE(cell.GetCellType() == VTK_QUAD);
+            std::array<Point, 4> p;
+            for (int k = 0; k < 4; ++k) cell.GetPoints()->GetPoint(k, p[std::size_t(k)].data());
+            CHECK(p[0] + p[2] == p[1] + p[3]);
+            area += (p[1] - p[0]).cross(p[3] - p[0]).norm();
+        }
+        CHECK(area == Approx(measure(box)));
+        write_slice(folder.path() / "flat.vti", *space, box, {.axis = a, .at = 0.25, .samples = 9});
+        const auto image = read_back<vtkXMLImageDataReader>(folder.path() / "flat.vti");
+        CHECK(image->GetNumberOfPoints() >= 9 * 7);
+        for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i) {
+            Point x;
+            image->GetPoint(i, x.data());
+            REQUIRE(is_riemannian_of(tensor_at(*image->GetPointData(), i), sample_at(*space, x)));
+        }
+        // Across another axis a slice of a plane is a line.
+        const Axis other = (a + 1) % 3;
+        write_slice(folder.path() / "line.vti", *space, box,
+                    {.axis = other, .at = box.centre()[other], .samples = 9});
+        CHECK(read_back<vtkXMLImageDataReader>(folder.path() / "line.vti")->GetNumberOfPoints() ==
+              9);
+    }
 }
 
 TEST_CASE("a slice is an image of the field") {

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "controlspace/error.h"
+#include "controlspace/geometry/extent.h"
+#include "controlspace/geometry/subdivision.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;
@@ -34,6 +36,30 @@ TEST_CASE("a box is fit for a domain from 1e-50 to 1e50, and near enough to the 
             CHECK_THROWS_WITH(require_volume(box),
                               Contains(c.wrong) && Contains(std::string("along ") + "xyz"[a]));
         }
+    }
+}
+
+TEST_CASE("a box may be flat across one axis, where the others have extent") {
+    for (Axis a = 0; a < 3; ++a) {
+        Box flat{Point(1, 2, 3), Point(2, 4, 6)};
+        CHECK(!flat_axis(flat));
+        CHECK(measure(flat) == 6);
+        flat.high[a] = flat.low[a];
+        CHECK(flat_axis(flat) == a);
+        CHECK(require_extent(flat) == flat);
+        CHECK_THROWS_WITH(require_volume(flat), Contains("no extent"));
+        CHECK(measure(flat) == Approx(6 / Vector(1, 2, 3)[a]));
+        CHECK(divisible_edges(flat)[a] == 1);
+        CHECK(octants(flat).children() == 4);
+        Box line = flat;
+        line.high[(a + 1) % 3] = line.low[(a + 1) % 3];
+        CHECK_THROWS_WITH(require_extent(line), Contains("no extent along two axes"));
+        Box inverted = flat;
+        inverted.high[(a + 1) % 3] = inverted.low[(a + 1) % 3] - 1;
+        CHECK_THROWS_WITH(require_extent(inverted), Contains("no extent along"));
+        Box far = flat;
+        far.low[a] = far.high[a] = 1e51;
+        CHECK_THROWS_WITH(require_extent(far), Contains("beyond"));
     }
 }
 

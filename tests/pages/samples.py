@@ -129,7 +129,8 @@ def write_results(folder, json_rows, complete=True, outcomes=None, described=Tru
     return folder
 
 
-def with_fields(folder, json_rows, anisotropy=1.0, cells=20, probes=4):
+def with_fields(folder, json_rows, anisotropy=1.0, cells=20, probes=4,
+                domain=(-1, 1, -1, 1, -1, 1)):
     """Gives rows sampled fields: the exact one times 1, 1.1, 1.2 ..."""
     folder = Path(folder)
     (folder / "fields").mkdir(parents=True, exist_ok=True)
@@ -149,7 +150,7 @@ def with_fields(folder, json_rows, anisotropy=1.0, cells=20, probes=4):
              "exact_probes": saved("exact-probes", places)}
     outlines = np.array([[-1, -1, 0, 1], [0, -1, 1, 1.0]])
     return [{**row, "fields": {
-        "domain": [-1, 1, -1, 1, -1, 1], "z": 0.0, "slice": saved(f"{i:03}-slice", factor * slice_),
+        "domain": list(domain), "z": 0.0, "slice": saved(f"{i:03}-slice", factor * slice_),
         "probes": saved(f"{i:03}-probes", factor * places),
         "outlines": saved(f"{i:03}-outlines", outlines) if i == 0 else None, **exact}}
         for i, (row, factor) in enumerate(zip(json_rows, np.arange(1, 3, 0.1)))]

@@ -36,6 +36,20 @@ def exact_sizes(points, h, growth, x):
 
 
 class Fields(unittest.TestCase):
+    def test_a_box_without_thickness_is_a_plane(self):
+        points, h = sources()
+        points[:, 1] = 0.5
+        box = [(-1, 0.5, -1), (1, 0.5, 1)]
+        field = controlspace.build(points, h, box=box)
+        np.testing.assert_array_equal(field.box, box)
+        x = random.uniform(-1, 1, (500, 3)) * (1, 0, 1) + (0, 0.5, 0)
+        exact = np.minimum(exact_sizes(points, h, 1.25, x), np.sqrt(2))
+        np.testing.assert_allclose(field.size(x), exact, rtol=0.28)  # delta 0.1
+        with self.assertRaisesRegex(ValueError, r"points\[7\]"):
+            controlspace.build(points + (np.arange(50) == 7)[:, None] * 1e-6, h, box=box)
+        with self.assertRaisesRegex(ValueError, "two axes"):
+            controlspace.build(points[:1], h[:1], box=[points[0], points[0] + (0.1, 0, 0)])
+
     def test_lengths_follow_the_cones(self):
         points, h = sources()
         x = random.uniform(-1, 1, (1000, 3))

@@ -27,7 +27,7 @@ Topology<Node> random_tree() {
     std::mt19937 engine(1);
     for (int i = 0; i < 200; ++i) {
         const LeafPlace place = tree.locate(random_place(engine));
-        tree.split(place, Node::even_subdivision(place.box));
+        tree.split(place, Node::even_subdivision(domain, place.level, place.box));
     }
     return tree;
 }

@@ -28,7 +28,9 @@ Topology<Node> grown(SplitRule rule) {
         for (int level = 0; level < 6; ++level) {
             const LeafPlace place = tree.locate(x);
             if constexpr (Node::is_octant) {
-                if (level < 3) tree.split(place, octants(place.box));
+                if (level < 3) {
+                    tree.split(place, Node::even_subdivision(domain, place.level, place.box));
+                }
             } else {
                 const Subdivision halves = cut(rule, place.box, source, 1);
                 if (halves.is_proper()) tree.split(place, halves);
@@ -73,7 +75,7 @@ void check_parts_across(const Topology<Node>& tree) {
                 continue;
             }
             // It holds all places across the face.
-            std::set<int> children;
+            std::set<std::size_t> children;
             for (int i = 0; i < 16; ++i) {
                 Point y = corner(inside, i);
                 if (i >= 8) {

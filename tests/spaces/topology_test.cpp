@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 
+#include "controlspace/geometry/extent.h"
 #include "controlspace/space/split_rule.h"
 #include "controlspace/trees/detail/adjacency.h"
 #include "spaces/face_pairs.h"
@@ -31,9 +32,10 @@ struct RandomTree {
         for (int i = 0; i < splits; ++i) {
             const LeafPlace leaf = tree.locate(place());
             if constexpr (Node::arity == 8) {
-                tree.split(leaf, octants(leaf.box));
+                tree.split(leaf, Node::even_subdivision(filled, leaf.level, leaf.box));
             } else {
-                const Axis a = static_cast<Axis>(engine() % 3);
+                auto a = static_cast<Axis>(engine() % 3);
+                if (flat_axis(filled) == a) a = (a + 1) % 3;
                 const double t = 0.25 + 0.5 * uniform();
                 tree.split(leaf, halves(leaf.box, a, leaf.box.low[a] + t * leaf.box.edges()[a]));
             }
@@ -51,10 +53,14 @@ struct RandomTree {
 TEMPLATE_TEST_CASE("descents that start in the middle end at the same leaves", "", KdNode,
                    OctreeNode) {
     // In the second domain few bits are left for what lies inside; in the third axes differ much.
-    const std::array<Box, 3> domains{{domain,
+    // The others are flat.
+    const std::array<Box, 6> domains{{domain,
                                       {Point(3e9, -2, 7e8), Point(3e9 + 1.3, -1.1, 7e8 + 1)},
-                                      {Point(0, 0, 0), Point(1e-3, 0.1, 30)}}};
-    const Box filled = domains[GENERATE(0u, 1u, 2u)];
+                                      {Point(0, 0, 0), Point(1e-3, 0.1, 30)},
+                                      {Point(0, 0, 0), Point(1, 1.5, 0)},
+                                      {Point(-3, 2, 1), Point(8, 2, 2)},
+                                      {Point(5, -1, -1), Point(5, 1, 1)}}};
+    const Box filled = domains[GENERATE(range(0u, 6u))];
     RandomTree<TestType> random(200, filled);
     auto& tree = random.tree;
     std::vector<Point> x;
@@ -96,7 +102,7 @@ TEMPLATE_TEST_CASE("descents that start in the middle end at the same leaves", "
     // Later leaves are known as well, before the table is fitted again.
     for (int i = 0; i < 1000; ++i) {
         const LeafPlace leaf = tree.locate(random.place());
-        tree.split(leaf, TestType::even_subdivision(leaf.box));
+        tree.split(leaf, TestType::even_subdivision(filled, leaf.level, leaf.box));
     }
     CHECK(tree.bytes_of_jumps() == before);
     check();
@@ -110,7 +116,9 @@ TEMPLATE_TEST_CASE("leaves fill the domain, and every place finds the one that h
     RandomTree<TestType> random(60);
     const auto& tree = random.tree;
     const std::vector<Box> boxes = random.boxes();
-    CHECK(tree.leaves() == 1 + 60u * (TestType::arity - 1));
+    std::size_t leaves = 1;
+    for (const TestType& node : tree.nodes()) leaves += static_cast<std::size_t>(node.count() - 1);
+    CHECK(tree.leaves() == leaves);
     CHECK(tree.inner_nodes() == 60);
     double volume = 0;
     for (const Box& box : boxes) volume += box.edges().prod();
@@ -133,16 +141,24 @@ TEMPLATE_TEST_CASE("leaves fill the domain, and every place finds the one that h
 }
 
 TEMPLATE_TEST_CASE("face pairs are those that brute force finds", "", KdNode, OctreeNode) {
-    const RandomTree<TestType> random(40);
+    const Box filled =
+        GENERATE(domain, Box{Point(0, 0, 0), Point(1, 20, 7)}, Box{Point(1, 2, 3), Point(4, 2, 9)});
+    const RandomTree<TestType> random(40, filled);
+    // Of a flat box, faces are sides of no extent across the plane.
+    const auto shares_area = [&](const Vector& shared, Axis a) {
+        return shared[a] > 0 || flat_axis(filled) == a;
+    };
     const std::vector<Box> boxes = random.boxes();
     std::set<std::pair<LeafIndex, LeafIndex>> expected;
     for (LeafIndex i = 0; i < boxes.size(); ++i) {
         for (LeafIndex j = 0; j < boxes.size(); ++j) {
             for (Axis a = 0; a < 3; ++a) {
-                if (boxes[i].high[a] != boxes[j].low[a]) continue;
+                if (boxes[i].high[a] != boxes[j].low[a] || flat_axis(filled) == a) continue;
                 const Vector shared =
                     boxes[i].high.cwiseMin(boxes[j].high) - boxes[i].low.cwiseMax(boxes[j].low);
-                if (shared[(a + 1) % 3] > 0 && shared[(a + 2) % 3] > 0) expected.emplace(i, j);
+                if (shares_area(shared, (a + 1) % 3) && shares_area(shared, (a + 2) % 3)) {
+                    expected.emplace(i, j);
+                }
             }
         }
     }
@@ -173,6 +189,35 @@ TEMPLATE_TEST_CASE("the leaf across a face is the nearest one there", "", KdNode
             projection[a] = wall;
             CHECK(across.box.contains(projection));
         }
+    }
+}
+
+TEST_CASE("octrees halve the long axes first, until boxes are near cubes, and a flat one never") {
+    const Point low(3, -2, 0.1);
+    const std::array<Vector, 6> edges{Vector(1, 1, 1),    Vector(1.9, 1, 1.2), Vector(100, 1, 1),
+                                      Vector(1, 1e-3, 1), Vector(0, 3, 40),    Vector(7, 7, 0)};
+    for (const Vector& e : edges) {
+        const Box filled{low, low + e};
+        Box box = filled;
+        const bool is_near_cube = e.maxCoeff() < 2 * e.minCoeff();
+        for (int level = 0; level < 20; ++level) {
+            const auto axes = long_axes(filled, level);
+            const Vector before = box.edges();
+            for (Axis a = 0; a < 3; ++a) {
+                const bool is_cut = axes[static_cast<std::size_t>(a)];
+                if (is_near_cube) CHECK(is_cut);
+                if (before[a] == 0) CHECK(!is_cut);
+                if (before[a] > 0.51 * before.maxCoeff()) CHECK(is_cut);
+                if (before[a] < 0.49 * before.maxCoeff()) CHECK(!is_cut);
+            }
+            box = OctreeNode::even_subdivision(filled, level, box).child(0);
+        }
+        const auto flat = flat_axis(filled);
+        double shortest = box.edges().maxCoeff();
+        for (Axis a = 0; a < 3; ++a) {
+            if (a != flat) shortest = std::min(shortest, box.edges()[a]);
+        }
+        CHECK(box.edges().maxCoeff() < 2.001 * shortest);
     }
 }
 

@@ -162,7 +162,7 @@ TEMPLATE_TEST_CASE("with all neighbours, any two vertices of a leaf are neighbou
     for (const Point& x : places(60, 8)) {
         const LeafPlace place = tree.locate(x);
         const auto first_new = static_cast<LeafIndex>(tree.leaves());
-        const Subdivision s = TestType::even_subdivision(place.box);
+        const Subdivision s = TestType::even_subdivision(domain, place.level, place.box);
         tree.split(place, s);
         storage.split(s, place.leaf, first_new);
     }

@@ -92,4 +92,13 @@ TEST_CASE("the cells on a slice tile it") {
         tree_catalogue()[0].make({.domain = {Point::Constant(-1), Point::Constant(1)}})->build();
     CHECK(cells_on_slice(*space, 0.3, 10)->size() == 1);
     CHECK_FALSE(cells_on_slice(*space, 0.3, 0));
+    for (Axis a = 0; a < 3; ++a) {
+        Box flat{Point(0, 1, 2), Point(5, 7, 9)};
+        flat.high[a] = flat.low[a];
+        const auto cells =
+            cells_on_slice(*tree_catalogue()[0].make({.domain = flat})->build(), flat.low[a], 10);
+        CHECK(cells == std::vector{flat});
+        const auto [u, v] = slice_axes(flat);
+        CHECK((u < v && u + v + a == 3));
+    }
 }

@@ -102,7 +102,7 @@ CSPACE_API cspace_status cspace_build(const char* structure, const double* domai
  * is half of the domain's diagonal.
  *
  * @param structure  id of the data structure, "K_oV"; cspace_structure() lists them
- * @param domain     the box: x0 y0 z0 x1 y1 z1
+ * @param domain     the box: x0 y0 z0 x1 y1 z1; a plane where low and high are equal along one axis
  * @param options    "" or NULL for the defaults, or some of these, as in "tau=0.5 split=s_G":
  *                   split (split rule of kd-trees: s_L, s_G, s_Gx, s_M), tau (maximum leaf edge:
  *                   longest edge of a source's leaf, in the source's metric), epsilon (insertion

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "controlspace/error.h"
+#include "controlspace/geometry/extent.h"
 #include "controlspace/metric/nonconformity.h"
 
 namespace controlspace {
@@ -81,7 +82,7 @@ void settle(SampledBlock& block, const Cube& cube, double most) {
 VoxelLattice voxel_lattice(const Box& domain, double voxel) {
     constexpr double default_count = 128;
     constexpr double most = 4294967296.0;
-    const double longest = require_volume(domain).edges().maxCoeff();
+    const double longest = require_extent(domain).edges().maxCoeff();
     if (voxel == 0) voxel = longest / default_count;
     if (!std::isfinite(voxel) || voxel < 0) {
         throw InputError(fmt::format("a voxel of {}: give a positive edge", voxel));

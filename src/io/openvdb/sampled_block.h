@@ -10,8 +10,8 @@
 
 namespace controlspace {
 
-/// Cubic voxels that cover a box from its low corner on. The last ones may stand out of it: their
-/// places are taken as the nearest point of the box.
+/// Cubic voxels that cover a box from its low corner on, a flat one in a single layer. The last
+/// ones may stand out of it: their places are taken as the nearest point of the box.
 struct VoxelLattice {
     Box domain;
     double voxel = 0;                      ///< edge

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "controlspace/error.h"
+#include "controlspace/geometry/extent.h"
 
 namespace controlspace {
 namespace {
@@ -39,6 +40,14 @@ Box cell_of(const ControlSpace& space, const Point& x) {
 }
 
 }  // namespace
+
+std::vector<int> cell_corners(const Box& domain) {
+    const auto flat = flat_axis(domain);
+    if (!flat) return {hexahedron_corners.begin(), hexahedron_corners.end()};
+    const int one = 1 << (*flat + 1) % 3;
+    const int other = 1 << (*flat + 2) % 3;
+    return {0, one, one | other, other};
+}
 
 std::vector<Box> elements_of(const ControlSpace& space) {
     std::vector<Box> elements;

@@ -17,4 +17,8 @@ std::vector<Box> elements_of(const ControlSpace& space);
 /// goes around each face.
 inline constexpr std::array<int, 8> hexahedron_corners{0, 1, 3, 2, 4, 5, 7, 6};
 
+/// The corners of the cells of this domain, in that order: eight, or in a flat domain the four of a
+/// quadrilateral.
+std::vector<int> cell_corners(const Box& domain);
+
 }  // namespace controlspace

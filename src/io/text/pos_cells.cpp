@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "controlspace/geometry/subdivision.h"
@@ -87,7 +88,7 @@ Hexahedra hexahedra_of(const ControlSpace& space) {
                 const Subdivision cut = octants(some[i]);
                 if (halvings < most_halvings && cut.is_proper() &&
                     std::ranges::all_of(at, is_isotropic) && !is_trilinear(at)) {
-                    for (int c = 0; c < 8; ++c) parts.push_back(cut.child(c));
+                    for (int c = 0; c < cut.children(); ++c) parts.push_back(cut.child(c));
                 } else {
                     all.boxes.push_back(some[i]);
                     all.metrics.insert(all.metrics.end(), at.begin(), at.begin() + 8);
@@ -104,13 +105,16 @@ Hexahedra hexahedra_of(const ControlSpace& space) {
 PosCells write_pos_cells(const std::filesystem::path& path, const ControlSpace& space) {
     const Hexahedra all = hexahedra_of(space);
     const bool isotropic = std::ranges::all_of(all.metrics, is_isotropic);
+    const std::vector<int> corners = cell_corners(space.domain());
+    const bool is_flat = corners.size() == 4;
+    const std::string_view type = isotropic ? (is_flat ? "SQ" : "SH") : is_flat ? "TQ" : "TH";
     std::vector<double> coordinates, values;
     OutputFile file(path);
     file.write("View \"controlspace\" {\n");
     for (std::size_t i = 0; i < all.boxes.size(); ++i) {
         coordinates.clear();
         values.clear();
-        for (const int c : hexahedron_corners) {
+        for (const int c : corners) {
             const Point x = corner(all.boxes[i], c);
             coordinates.insert(coordinates.end(), x.begin(), x.end());
             const Metric& m = all.metrics[8 * i + static_cast<std::size_t>(c)];
@@ -121,7 +125,7 @@ PosCells write_pos_cells(const std::filesystem::path& path, const ControlSpace& 
                 values.insert(values.end(), numbers.begin(), numbers.end());
             }
         }
-        file.print("{}({}){{{:.10g}}};\n", isotropic ? "SH" : "TH", fmt::join(coordinates, ","),
+        file.print("{}({}){{{:.10g}}};\n", type, fmt::join(coordinates, ","),
                    fmt::join(values, ","));
     }
     file.write("};\n");

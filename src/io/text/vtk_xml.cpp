@@ -136,33 +136,46 @@ void write_vtk_image(const std::filesystem::path& path, const Point& origin, con
     xml.write(path);
 }
 
-void write_vtk_octree(const std::filesystem::path& path, const Box& domain,
-                      const std::vector<bool>& is_split, std::vector<std::int64_t> level_counts,
-                      std::span<const VtkArray> cell_data) {
-    // Bits, the first of a byte in its highest place; the last level has no children.
-    const std::size_t bits = is_split.size() - static_cast<std::size_t>(level_counts.back());
-    std::vector<std::uint8_t> descriptor((bits + 7) / 8);
-    for (std::size_t i = 0; i < bits; ++i) {
-        if (is_split[i]) descriptor[i / 8] |= static_cast<std::uint8_t>(0x80 >> i % 8);
-    }
-    std::array<std::vector<double>, 3> ends;
+void write_vtk_octrees(const std::filesystem::path& path, const Box& domain,
+                       const std::array<int, 3>& counts, std::span<const VtkTree> trees) {
     Xml xml("HyperTreeGrid");
-    xml.add(
-        "<HyperTreeGrid BranchFactor=\"2\" TransposedRootIndexing=\"0\" Dimensions=\"2 2 2\">\n"
-        "<Grid>\n");
+    std::array<std::vector<double>, 3> planes;  // those of the grid, one where it is flat
     for (std::size_t a = 0; a < 3; ++a) {
         const auto axis = static_cast<Axis>(a);
-        ends[a] = {domain.low[axis], domain.high[axis]};
-        xml.add_array(fmt::format("{}Coordinates", "XYZ"[a]), "Float64", 1, ends[a], 2);
+        planes[a].push_back(domain.low[axis]);
+        for (int i = 1; i <= counts[a] && domain.low[axis] < domain.high[axis]; ++i) {
+            const double share = static_cast<double>(i) / counts[a];
+            planes[a].push_back(std::lerp(domain.low[axis], domain.high[axis], share));
+        }
     }
-    xml.add(
-        fmt::format("</Grid>\n<Trees>\n<Tree Index=\"0\" NumberOfLevels=\"{}\" "
-                    "NumberOfVertices=\"{}\">\n",
-                    level_counts.size(), is_split.size()));
-    xml.add_array("Descriptor", "Bit", 1, descriptor, bits);
-    xml.add_array("NbVerticesByLevel", "Int64", 1, level_counts, level_counts.size());
-    xml.add_arrays("CellData", cell_data, is_split.size());
-    xml.add("</Tree>\n</Trees>\n");
+    xml.add(fmt::format(
+        "<HyperTreeGrid BranchFactor=\"2\" TransposedRootIndexing=\"0\" Dimensions=\"{} {} {}\">\n"
+        "<Grid>\n",
+        planes[0].size(), planes[1].size(), planes[2].size()));
+    for (std::size_t a = 0; a < 3; ++a) {
+        xml.add_array(fmt::format("{}Coordinates", "XYZ"[a]), "Float64", 1, planes[a],
+                      planes[a].size());
+    }
+    xml.add("</Grid>\n<Trees>\n");
+    // What the file refers to has to stay until it is written.
+    std::vector<std::vector<std::uint8_t>> descriptors;
+    descriptors.reserve(trees.size());
+    for (std::size_t i = 0; i < trees.size(); ++i) {
+        const auto& [is_split, level_counts, cell_data] = trees[i];
+        // Bits, the first of a byte in its highest place; the last level has no children.
+        const std::size_t bits = is_split.size() - static_cast<std::size_t>(level_counts.back());
+        std::vector<std::uint8_t>& descriptor = descriptors.emplace_back((bits + 7) / 8);
+        for (std::size_t k = 0; k < bits; ++k) {
+            if (is_split[k]) descriptor[k / 8] |= static_cast<std::uint8_t>(0x80 >> k % 8);
+        }
+        xml.add(fmt::format("<Tree Index=\"{}\" NumberOfLevels=\"{}\" NumberOfVertices=\"{}\">\n",
+                            i, level_counts.size(), is_split.size()));
+        xml.add_array("Descriptor", "Bit", 1, descriptor, bits);
+        xml.add_array("NbVerticesByLevel", "Int64", 1, level_counts, level_counts.size());
+        xml.add_arrays("CellData", cell_data, is_split.size());
+        xml.add("</Tree>\n");
+    }
+    xml.add("</Trees>\n");
     xml.write(path);
 }
 

@@ -33,7 +33,7 @@ std::vector<VtkArray> metric_arrays(std::span<const Metric> metrics);
 
 /// Cells of one kind.
 struct VtkCells {
-    static constexpr std::uint8_t vertex = 1, tetrahedron = 10, hexahedron = 12;
+    static constexpr std::uint8_t vertex = 1, quad = 9, tetrahedron = 10, hexahedron = 12;
 
     std::uint8_t type = vertex;
     std::size_t corners = 1;
@@ -49,11 +49,17 @@ void write_vtk_grid(const std::filesystem::path& path, std::span<const Point> po
 void write_vtk_image(const std::filesystem::path& path, const Point& origin, const Vector& spacing,
                      const std::array<int, 3>& counts, std::span<const VtkArray> point_data);
 
-/// A tree of branch factor 2 over `domain`, breadth first, x fastest among siblings:
-/// vtkHyperTreeGrid (.htg). `is_split` says of each box whether it has children, `level_counts` how
-/// many boxes each level has.
-void write_vtk_octree(const std::filesystem::path& path, const Box& domain,
-                      const std::vector<bool>& is_split, std::vector<std::int64_t> level_counts,
-                      std::span<const VtkArray> cell_data);
+/// A tree of branch factor 2, breadth first, x fastest among siblings: which boxes have children,
+/// how many boxes each level has, and the data of all boxes.
+struct VtkTree {
+    std::vector<bool> is_split;
+    std::vector<std::int64_t> level_counts;
+    std::vector<VtkArray> cell_data;
+};
+
+/// A grid of such trees over `domain`, so many along each axis, x fastest; quadtrees where the
+/// domain is flat: vtkHyperTreeGrid (.htg).
+void write_vtk_octrees(const std::filesystem::path& path, const Box& domain,
+                       const std::array<int, 3>& counts, std::span<const VtkTree> trees);
 
 }  // namespace controlspace

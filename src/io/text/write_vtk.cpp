@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -38,16 +39,80 @@ std::vector<Point> corners_of(std::span<const Box> boxes) {
     return corners;
 }
 
+/// The root boxes of the octrees that together are one whose first levels do not cut all axes, x
+/// fastest; and how many there are along each axis.
+std::vector<Box> octree_roots(const Box& domain, std::array<int, 3>& counts) {
+    constexpr std::size_t most = 1 << 16;
+    std::vector<Box> roots{domain};
+    counts = {1, 1, 1};
+    const auto all = octants(domain).cuts;
+    for (int level = 0; long_axes(domain, level) != all; ++level) {
+        const auto axes = long_axes(domain, level);
+        std::vector<Box> parts;
+        for (const Box& box : roots) {
+            const Subdivision cut{box, box.centre(), axes};
+            for (int c = 0; c < cut.children(); ++c) parts.push_back(cut.child(c));
+        }
+        if (parts.size() > most) {
+            throw InputError(fmt::format(
+                "the domain {} is too oblong for .htg, which takes more than {} octrees: name a "
+                ".vtu",
+                to_string(domain), most));
+        }
+        for (std::size_t a = 0; a < 3; ++a) counts[a] *= axes[a] ? 2 : 1;
+        roots = std::move(parts);
+    }
+    std::ranges::sort(roots, [](const Box& a, const Box& b) {
+        return std::tuple(a.low.z(), a.low.y(), a.low.x()) <
+               std::tuple(b.low.z(), b.low.y(), b.low.x());
+    });
+    return roots;
+}
+
+/// What is below one of the roots, breadth first.
+VtkTree tree_below(const ControlSpace& space, const Box& root) {
+    VtkTree tree;
+    std::vector<Box> boxes{root};
+    std::vector<Point> centres;
+    while (tree.is_split.size() < boxes.size()) {
+        const std::size_t level_end = boxes.size();
+        tree.level_counts.push_back(static_cast<std::int64_t>(level_end - tree.is_split.size()));
+        for (std::size_t i = tree.is_split.size(); i < level_end; ++i) {
+            const Box box = boxes[i];
+            centres.push_back(box.centre());
+            const Box leaf = space.cell_at(box.centre()).value_or(Box());
+            const bool is_part_of_leaf =
+                leaf == box || (i == 0 && leaf.contains(box.low) && leaf.contains(box.high));
+            tree.is_split.push_back(!is_part_of_leaf);
+            if (is_part_of_leaf) continue;
+            const Subdivision subdivision = octants(box);
+            const bool is_inside = box.contains(leaf.low) && box.contains(leaf.high);
+            if (!is_inside || !subdivision.is_proper()) {
+                throw InputError(
+                    "only an octree can be written as .htg: choose one, or name a .vtu");
+            }
+            for (int c = 0; c < subdivision.children(); ++c) {
+                boxes.push_back(subdivision.child(c));
+            }
+        }
+    }
+    std::vector<Metric> metrics(centres.size());
+    space.sample(centres, metrics);
+    tree.cell_data = metric_arrays(metrics);
+    return tree;
+}
+
 }  // namespace
 
 void write_leaves(const std::filesystem::path& path, const ControlSpace& space) {
     const std::vector<Box> leaves = elements_of(space);
     const std::vector<Point> corners = corners_of(leaves);
-    VtkCells cells{VtkCells::hexahedron, 8, {}};
+    const std::vector<int> order = cell_corners(space.domain());
+    VtkCells cells{order.size() == 8 ? VtkCells::hexahedron : VtkCells::quad, order.size(), {}};
     std::vector<Point> centres;
     for (const Box& box : leaves) {
         centres.push_back(box.centre());
-        for (const int i : hexahedron_corners) {
+        for (const int i : order) {
             const auto place =
                 std::lower_bound(corners.begin(), corners.end(), corner(box, i), precedes);
             cells.points.push_back(place - corners.begin());
@@ -65,32 +130,12 @@ void write_nodes(const std::filesystem::path& path, const ControlSpace& space) {
 }
 
 void write_octree(const std::filesystem::path& path, const ControlSpace& space) {
-    std::vector<Box> boxes{space.domain()};  // breadth first
-    std::vector<bool> is_split;
-    std::vector<std::int64_t> level_counts;
-    std::vector<Point> centres;
-    while (is_split.size() < boxes.size()) {
-        const std::size_t level_end = boxes.size();
-        level_counts.push_back(static_cast<std::int64_t>(level_end - is_split.size()));
-        for (std::size_t i = is_split.size(); i < level_end; ++i) {
-            const Box box = boxes[i];
-            centres.push_back(box.centre());
-            const Box leaf = space.cell_at(box.centre()).value_or(Box());
-            is_split.push_back(!(leaf == box));
-            if (leaf == box) continue;
-            const Subdivision subdivision = octants(box);
-            const bool is_inside = box.contains(leaf.low) && box.contains(leaf.high);
-            if (!is_inside || !subdivision.is_proper()) {
-                throw InputError(
-                    "only an octree can be written as .htg: choose one, or name a .vtu");
-            }
-            for (int c = 0; c < 8; ++c) boxes.push_back(subdivision.child(c));
-        }
+    std::array<int, 3> counts;
+    std::vector<VtkTree> trees;
+    for (const Box& root : octree_roots(space.domain(), counts)) {
+        trees.push_back(tree_below(space, root));
     }
-    std::vector<Metric> metrics(centres.size());
-    space.sample(centres, metrics);
-    write_vtk_octree(path, space.domain(), is_split, std::move(level_counts),
-                     metric_arrays(metrics));
+    write_vtk_octrees(path, space.domain(), counts, trees);
 }
 
 void write_slice(const std::filesystem::path& path, const ControlSpace& field, const Box& domain,
@@ -109,7 +154,7 @@ void write_slice(const std::filesystem::path& path, const ControlSpace& field, c
     std::array<int, 3> counts{1, 1, 1};
     Vector spacing = Vector::Ones();
     for (Axis a = 0; a < 3; ++a) {
-        if (a == slice.axis) continue;
+        if (edges[a] == 0) continue;
         const double steps =
             std::max(1.0, std::round(edges[a] / edges.maxCoeff() * (slice.samples - 1)));
         counts[static_cast<std::size_t>(a)] = static_cast<int>(steps) + 1;

@@ -190,7 +190,8 @@ def build(
     h: lengths (n,); or metrics M, (n, 6) as xx yy zz xy xz yz, or (n, 3, 3).
     structure: one of `structures()`. None: the octree K_oV; of lengths it is adapted to delta = 0.1,
     of metrics, where that takes long, only if delta is given.
-    box: lowest and highest corner, (2, 3). None: the box of the points and 5 % of its longest edge.
+    box: lowest and highest corner, (2, 3); with z0 == z1 (or x, or y) a plane that holds all points.
+    None: the box of the points and 5 % of its longest edge.
     growth: gradation ratio g_r >= 1, growth of lengths per metric length of distance: one number,
     or one for each source, (n,).
     delta: largest non-conformity to the exact field, above 0, that a tree is refined to; guaranteed

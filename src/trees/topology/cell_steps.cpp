@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 #include "vector_clones.h"
 
@@ -29,6 +30,10 @@ CellSteps::CellSteps(const std::array<Axis, 3>& axes)
         low_[a] = axes[a].low;
         per_length_[a] = axes[a].per_length * steps;
         most_[a] = (axes[a].cells - 0.5) * steps;
+        if (axes[a].cells > 1) continue;
+        // One cell holds all places, of an axis without extent too: steps end in its middle.
+        low_[a] = -std::numeric_limits<double>::infinity();
+        per_length_[a] = 1;
     }
 }
 

@@ -89,7 +89,7 @@ void for_each_faces(const Topology<Node>& tree, const CutPlanes& planes, Visit&&
                 const auto axis = static_cast<std::size_t>(a);
                 if (cut.cuts[axis]) (cut.side(c, a) == 0 ? part.high : part.low)[axis] = at[axis];
             }
-            self(self, node.children[static_cast<std::size_t>(c)], part);
+            self(self, node.children[node.slot(c)], part);
         }
     };
     Faces<Number> all;

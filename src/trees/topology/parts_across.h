@@ -48,13 +48,12 @@ public:
         }
         const Node& node = tree_.node(part.ref);
         const Subdivision cut = node.subdivision(part.box);
-        for (int c = 0; c < Node::arity; ++c) {
-            Item child{{node.children[static_cast<std::size_t>(c)], cut.child(c)}, item.across};
+        for (int c = 0; c < cut.children(); ++c) {
+            Item child{{node.children[node.slot(c)], cut.child(c)}, item.across};
             int bit = 1;
             for (Axis a = 0; a < 3; ++a) {
                 if (!cut.cuts[static_cast<std::size_t>(a)]) continue;
-                const auto sibling = static_cast<std::size_t>(c ^ bit);
-                child.across[face_of(a, cut.side(c, a) == 0)] = node.children[sibling];
+                child.across[face_of(a, cut.side(c, a) == 0)] = node.children[node.slot(c ^ bit)];
                 bit *= 2;
             }
             prefetch(child.part.ref);
@@ -85,11 +84,9 @@ private:
         std::size_t bit = 1;
         for (std::size_t i = 0; i < planes.size(); ++i, bit *= 2) {
             const Axis a = node.plane_axis(i);
-            if (a == face / 2) {
-                if (face % 2 == 0) child += bit;
-            } else if (planes[i] <= box.low[a]) {
+            if (planes[i] <= box.low[a]) {
                 child += bit;
-            } else if (planes[i] < box.high[a]) {
+            } else if (a != face / 2 && planes[i] < box.high[a]) {
                 return false;
             }
         }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "controlspace/geometry/extent.h"
 #include "controlspace/metric/blend.h"
 #include "trees/topology/parts_across.h"
 #include "trees/values/triquadratic.h"
@@ -113,12 +114,12 @@ private:
 
     Ref child_with(Ref part, const Point& y) const {
         const Node& node = tree_.node(part);
-        return node.children[static_cast<std::size_t>(node.child_with(y))];
+        return node.children[node.child_with(y)];
     }
 
     Metric value(LeafIndex leaf, const Box& box, const Point& x, const PartsAcross& across) const {
         const Vector v = x - box.centre();
-        const Vector t = 2 * v.cwiseQuotient(box.edges());
+        const Vector t = 2 * v.cwiseQuotient(divisible_edges(box));
         if (values_.form() == QuadraticForm::published) return published(leaf, t, across);
         if (values_.all_isotropic()) {
             std::array<double, 6> lengths;

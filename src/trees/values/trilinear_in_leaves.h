@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 
-#include "controlspace/geometry/box.h"
+#include "controlspace/geometry/extent.h"
 #include "controlspace/metric/blend.h"
 #include "controlspace/trees/detail/corners.h"
 #include "controlspace/trees/topology.h"
@@ -14,7 +15,7 @@ namespace controlspace {
 
 /// Place of `x` in `box`, each coordinate from 0 to 1, as the weights of its eight corners.
 inline std::array<double, 8> corner_weights(const Box& box, const Point& x) {
-    const Vector t = (x - box.low).cwiseQuotient(box.edges());
+    const Vector t = (x - box.low).cwiseQuotient(divisible_edges(box));
     const std::array<double, 2> wx{1 - t.x(), t.x()}, wy{1 - t.y(), t.y()}, wz{1 - t.z(), t.z()};
     std::array<double, 8> weights{};
     for (std::size_t i = 0; i < 8; ++i) weights[i] = wx[i & 1] * wy[i >> 1 & 1] * wz[i >> 2];
@@ -37,6 +38,7 @@ public:
     }
     /// Of the first `count` boxes.
     void weigh(std::size_t count) {
+        constexpr double least = std::numeric_limits<double>::min();
         for (std::size_t a = 0; a < 3; ++a) {
             for (std::size_t i = 0; i < count; ++i) {
                 const double low = low_[a][i];
@@ -44,7 +46,9 @@ public:
                 double x = place_[a][i];
                 x = x > low ? x : low;
                 x = x < high ? x : high;
-                place_[a][i] = (x - low) / (high - low);
+                // Of a flat box 0, by the smallest divisor.
+                const double edge = high - low;
+                place_[a][i] = (x - low) / (edge > least ? edge : least);
             }
         }
         for (std::size_t i = 0; i < count; ++i) {

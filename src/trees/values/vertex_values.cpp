@@ -7,14 +7,15 @@
 
 namespace controlspace {
 
-VertexValues::VertexValues(const SpaceOptions& options)
-    : corners_(1), metrics_(8, largest_metric(options)) {
+VertexValues::VertexValues(const SpaceOptions& options) : corners_(1), metrics_(0, Metric()) {
     for (int i = 0; i < 8; ++i) {
         const Point x = corner(options.domain, i);
-        corners_[0][static_cast<std::size_t>(i)] =
-            places_.find_or_enter(x, static_cast<NodeIndex>(i), positions_);
-        positions_.push_back(x);
+        const auto next = static_cast<NodeIndex>(positions_.size());
+        const NodeIndex node = places_.find_or_enter(x, next, positions_);
+        if (node == next) positions_.push_back(x);  // those of a flat domain coincide
+        corners_[0][static_cast<std::size_t>(i)] = node;
     }
+    metrics_ = NodeMetrics(positions_.size(), largest_metric(options));
 }
 
 // The control node at `x`, a place on the border or inside of a leaf with this box and these
@@ -76,7 +77,8 @@ void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafInd
             for (Axis a = 0; a < 3; ++a) {
                 const auto axis = static_cast<std::size_t>(a);
                 const int bit = i >> a & 1;
-                step[axis] = subdivision.cuts[axis] ? subdivision.side(c, a) + bit : 2 * bit;
+                const int high = box.low[a] < box.high[a] ? 2 : 0;
+                step[axis] = subdivision.cuts[axis] ? subdivision.side(c, a) + bit : high * bit;
             }
             corners_at[static_cast<std::size_t>(c)][static_cast<std::size_t>(i)] = enter(step);
         }

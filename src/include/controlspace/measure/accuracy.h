@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -11,7 +12,10 @@
 
 namespace controlspace {
 
-/// Centres of n x n x n equal cells of `box`, x fastest: coordinate k is
+/// Cells along x, y and z of a grid with n along each axis, and one across a flat box.
+std::array<int, 3> cell_counts(const Box& box, int n);
+
+/// Centres of n x n x n equal cells of `box`, n x n of a flat one, x fastest: coordinate k is
 /// low + edge / (2n) + k edge / n, in this order of operations (paper §5.2, n = 30).
 /// Throws InputError unless 1 <= n <= 512.
 std::vector<Point> cell_centres(const Box& box, int n);

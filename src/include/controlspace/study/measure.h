@@ -87,7 +87,7 @@ std::vector<Measure> sampled_measure(const std::string& key, const std::string& 
 /// Files of sampled fields, relative to the folder of results.
 struct FieldFiles {
     Box domain;
-    double z = 0;                                                    ///< height of the slice
+    double z = 0;  ///< height of the slice; in a flat domain, its place across its axis
     std::string slice, probes, outlines, exact_slice, exact_probes;  ///< outlines may be empty
 };
 

@@ -42,7 +42,7 @@ template <class Node>
 LeafPlace descend(std::span<const Node> nodes, Ref ref, LeafPlace place, const Point& x) {
     while (!ref.is_leaf()) {
         const std::size_t inner = ref.index();
-        const auto c = static_cast<std::size_t>(nodes[inner].descend(x, place.box));
+        const std::size_t c = nodes[inner].descend(x, place.box);
         place.slot = inner * Node::arity + c;
         ref = nodes[inner].children[c];
         ++place.level;
@@ -64,11 +64,13 @@ public:
         : domain_(domain), nodes_(std::move(nodes)), jumps_(domain) {
         if (nodes_.empty()) return;
         root_ = Ref::inner(0);
-        leaves_ = static_cast<LeafIndex>(nodes_.size() * (arity - 1) + 1);
         std::vector<int> level(nodes_.size(), 0);
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            const Node& node = nodes_[i];
             deepest_ = std::max(deepest_, level[i] + 1);
-            for (const Ref child : nodes_[i].children) {
+            leaves_ += static_cast<LeafIndex>(node.count() - 1);
+            for (int c = 0; c < node.count(); ++c) {
+                const Ref child = node.children[node.slot(c)];
                 if (!child.is_leaf()) level[child.index()] = level[i] + 1;
             }
         }
@@ -98,8 +100,10 @@ public:
     void fit_jumps() {
         const int halvings =
             std::clamp(static_cast<int>(std::bit_width(leaves_)) + 1, 0, largest_jump_table);
-        const int cuts = halvings / std::countr_zero(static_cast<unsigned>(arity));
-        if (jumps_.resize(cuts, Node::even_subdivision)) jumps_.enter_all(root_, node_of());
+        const auto halve = [&](const Box& box, int level) {
+            return Node::even_subdivision(domain_, level, box);
+        };
+        if (jumps_.resize(halvings, halve)) jumps_.enter_all(root_, node_of());
     }
     /// The same while the tree grows, now and then.
     void fit_jumps_roughly() {
@@ -163,19 +167,19 @@ public:
         const Ref inner = Ref::inner(nodes_.size());
         Node node(subdivision);
         node.set_child(0, Ref::leaf(place.leaf));
-        for (int c = 1; c < arity; ++c) node.set_child(c, Ref::leaf(leaves_++));
+        for (int c = 1; c < node.count(); ++c) node.set_child(node.slot(c), Ref::leaf(leaves_++));
         make_room(nodes_, 1);
         nodes_.push_back(node);
         deepen_to(place.level + 1);
         graft(place, inner);
     }
 
-    /// The same for many leaves at once: room for so many nodes and their leaves; all are then to
+    /// The same for many leaves at once: room for so many nodes and more leaves; all are then to
     /// be entered, on any number of threads.
-    void grow(std::size_t nodes) {
+    void grow(std::size_t nodes, std::size_t leaves) {
         make_room(nodes_, nodes);
         nodes_.resize(nodes_.size() + nodes);
-        leaves_ += static_cast<LeafIndex>(nodes * (arity - 1));
+        leaves_ += static_cast<LeafIndex>(leaves);
     }
     void enter(std::size_t inner, const Node& node) { nodes_[inner] = node; }
     /// Puts a node, with all below it, in the place of a leaf.
@@ -183,7 +187,7 @@ public:
         if (place.slot == root_slot) {
             root_ = inner;
         } else {
-            nodes_[place.slot / arity].set_child(static_cast<int>(place.slot % arity), inner);
+            nodes_[place.slot / arity].set_child(place.slot % arity, inner);
         }
         jumps_.enter(inner, place.box, node_of());
     }
@@ -203,10 +207,8 @@ public:
         return ordered;
     }
 
-    /// Whether so many more splits would outgrow the references.
-    bool is_full(std::size_t splits) const {
-        return leaves_ + splits * (arity - 1) >= Ref::max_index;
-    }
+    /// Whether so many more leaves would outgrow the references.
+    bool is_full(std::size_t leaves) const { return leaves_ + leaves >= Ref::max_index; }
 
     /// Calls visit(leaf, box) for all leaves, depth first, children in their order.
     template <class Visit>
@@ -220,13 +222,19 @@ public:
             visit(LeafIndex{part.ref.index()}, part.box);
             return;
         }
-        for (int c = 0; c < arity; ++c) for_each_leaf_in(child(part, c), visit);
+        for_each_child(part, [&](const TreePart& child) { for_each_leaf_in(child, visit); });
+    }
+    /// Calls visit(child) for the children of an inner node.
+    template <class Visit>
+    void for_each_child(const TreePart& inner, Visit&& visit) const {
+        for (int c = 0, count = node(inner.ref).count(); c < count; ++c) visit(child(inner, c));
     }
     /// Child `c` of an inner node.
     TreePart child(const TreePart& inner, int c) const {
         const Node& parent = node(inner.ref);
-        TreePart part{parent.children[static_cast<std::size_t>(c)], inner.box};
-        parent.narrow(part.box, c);
+        const std::size_t slot = parent.slot(c);
+        TreePart part{parent.children[slot], inner.box};
+        parent.narrow(part.box, slot);
         return part;
     }
 
@@ -236,7 +244,7 @@ private:
 
     Ref child_with(Ref inner, const Point& x) const {
         const Node& node = nodes_[inner.index()];
-        return node.children[static_cast<std::size_t>(node.child_with(x))];
+        return node.children[node.child_with(x)];
     }
 
     // Copies a part of another tree; its leaves get the next numbers.
@@ -248,9 +256,10 @@ private:
         const std::size_t copy = nodes_.size();
         const Node& node = other.node(part);
         nodes_.push_back(node);
-        for (int c = 0; c < arity; ++c) {
-            const Ref child = append(other, node.children[static_cast<std::size_t>(c)], former);
-            nodes_[copy].set_child(c, child);
+        for (int c = 0; c < node.count(); ++c) {
+            const std::size_t slot = node.slot(c);
+            const Ref child = append(other, node.children[slot], former);
+            nodes_[copy].set_child(slot, child);
         }
         return Ref::inner(copy);
     }

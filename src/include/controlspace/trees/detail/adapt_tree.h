@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "controlspace/geometry/extent.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/detail/goal_field.h"
@@ -193,10 +194,10 @@ private:
     void sample(std::span<const LeafBox> leaves, bool proved) {
         const double places_in_domain = std::min(5e3 / field_.target(), 1e7);
         constexpr std::uint64_t places_at_least = 16;
-        const double volume = tree_.domain().edges().prod();
+        const double whole = measure(tree_.domain());
         std::vector<std::uint64_t> first(leaves.size() + 1, places_used_);
         for (std::size_t i = 0; i < leaves.size(); ++i) {
-            const double share = leaves[i].box.edges().prod() / volume;
+            const double share = measure(leaves[i].box) / whole;
             first[i + 1] =
                 first[i] + places_at_least + static_cast<std::uint64_t>(share * places_in_domain);
         }

@@ -14,7 +14,7 @@ public:
     /// All pairs inside one part of the tree.
     void within(const TreePart& part) {
         if (part.ref.is_leaf()) return;
-        for (int c = 0; c < Node::arity; ++c) within(tree_.child(part, c));
+        tree_.for_each_child(part, [&](const TreePart& child) { within(child); });
         between_children(part);
     }
 
@@ -67,7 +67,8 @@ private:
     }
 
     // The same for octants: cross-sections are the same, or a leaf's holds the other, so boxes need
-    // not be compared. `low` and `high` may be one node whose children are meant.
+    // not be compared, and inner nodes are of one level, so that they cut the same axes. `low` and
+    // `high` may be one node whose children are meant.
     void across_octants(Ref low, Ref high, Axis a, bool siblings = false) {
         const bool low_ends = low.is_leaf();
         const bool high_ends = high.is_leaf();
@@ -75,9 +76,11 @@ private:
             visit_(LeafIndex{low.index()}, LeafIndex{high.index()});
             return;
         }
-        const unsigned side = 1u << a;
+        const unsigned axes = tree_.node(low_ends ? high : low).axes();
+        const unsigned side = axes & 1u << a;
+        if (siblings && side == 0) return;
         for (unsigned c = 0; c < 8; ++c) {
-            if ((c & side) != 0) continue;
+            if ((c & side) != 0 || (c & ~axes) != 0) continue;
             // Towards the plane: the low part's high side, and the high part's low side.
             const unsigned of_low = siblings ? c : c | side;
             const unsigned of_high = siblings ? c | side : c;

@@ -100,7 +100,8 @@ protected:
     bool split_across(const Box& box, const std::array<double, 3>& along,
                       std::vector<LeafIndex>& cut) {
         const LeafPlace place = topology_.locate(box.centre());
-        const Subdivision subdivision = Node::subdivision_across(place.box, along);
+        const Subdivision subdivision =
+            Node::subdivision_across(domain(), place.level, place.box, along);
         if (place.level >= cuts().max_depth() || !subdivision.is_proper()) return false;
         split(place, subdivision, &cut);
         return true;
@@ -110,7 +111,7 @@ protected:
     /// `watched` are TreeChanges, or none.
     void split(const LeafPlace& place, const Subdivision& subdivision, std::vector<LeafIndex>* cut,
                auto&&... watched) {
-        make_room_for(1);
+        make_room_for(Node::arity - 1);
         if (balanced_) refine_coarser_neighbours(place, cut, watched...);
         const auto first_new = static_cast<LeafIndex>(topology_.leaves());
         topology_.split(place, subdivision);
@@ -120,10 +121,10 @@ protected:
         if (cut != nullptr) cut->push_back(place.leaf);
     }
 
-    /// Throws InputError where the tree is not to have so many inner nodes more.
-    void make_room_for(std::size_t cuts) {
-        if (topology_.is_full(cuts)) fail_too_many_leaves();
-        const std::size_t leaves = topology_.leaves() + cuts * (Node::arity - 1);
+    /// Throws InputError where the tree is not to have so many leaves more.
+    void make_room_for(std::size_t more) {
+        if (topology_.is_full(more)) fail_too_many_leaves();
+        const std::size_t leaves = topology_.leaves() + more;
         if (leaves > next_check_) require_memory(leaves);
     }
 
@@ -173,7 +174,8 @@ private:
             LeafPlace neighbour;
             if (!locate_across(topology_, place.box, face, place.box.centre(), neighbour)) continue;
             if (neighbour.level >= place.level) continue;
-            split(neighbour, Node::even_subdivision(neighbour.box), cut, watched...);
+            split(neighbour, Node::even_subdivision(domain(), neighbour.level, neighbour.box), cut,
+                  watched...);
         }
     }
 

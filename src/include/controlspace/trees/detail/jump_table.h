@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -31,14 +32,17 @@ public:
         count_steps();
     }
 
-    /// As many cells as leaves of a tree of that depth that is cut evenly by `subdivide`. False if
-    /// they are so many already; otherwise nothing is entered.
+    /// As many cells as leaves of the deepest tree that is cut evenly, by `subdivide(box, level)`,
+    /// and halved no more often than that. False if they are so many already; otherwise nothing is
+    /// entered.
     template <class Subdivide>
-    bool resize(int depth, Subdivide&& subdivide) {
+    bool resize(int halvings, Subdivide&& subdivide) {
         std::array<int, 3> cells{1, 1, 1};
         Box cell = domain_;
-        for (int i = 0; i < depth; ++i) {
-            const Subdivision subdivision = subdivide(cell);
+        for (int level = 0;; ++level) {
+            const Subdivision subdivision = subdivide(cell, level);
+            halvings -= std::countr_zero(static_cast<unsigned>(subdivision.children()));
+            if (halvings < 0) break;
             cell = subdivision.child(0);
             for (Axis a = 0; a < 3; ++a) cells[index(a)] *= subdivision.cuts[index(a)] ? 2 : 1;
         }
@@ -107,7 +111,8 @@ private:
         constexpr double shortest = 0.99;  // in cells
         for (Axis a = 0; a < 3; ++a) {
             const double length = box.high[a] - box.low[a];
-            if (length * axes_[index(a)].per_length < shortest) return false;
+            const AxisCells& axis = axes_[index(a)];
+            if (axis.per_length > 0 && length * axis.per_length < shortest) return false;
         }
         return true;
     }
@@ -122,7 +127,7 @@ private:
 
         void cut(double from, double to, int cells) {
             low = from;
-            per_length = cells / (to - from);
+            per_length = to > from ? cells / (to - from) : 0;
             planes.resize(static_cast<std::size_t>(cells) + 1);
             planes.front() = from;
             planes.back() = to;
@@ -250,7 +255,7 @@ private:
                 }
             }
             if (cells.is_empty()) continue;
-            next({node.children[static_cast<std::size_t>(c)], subdivision.child(c), cells});
+            next({node.children[node.slot(c)], subdivision.child(c), cells});
         }
     }
 

@@ -37,9 +37,8 @@ void add_parts(const Topology<Node>& tree, const TreePart& part, std::size_t lev
         return;
     }
     all.above[level].push_back(part);
-    for (int c = 0; c < Node::arity; ++c) {
-        add_parts(tree, tree.child(part, c), level + 1, all);
-    }
+    tree.for_each_child(part,
+                        [&](const TreePart& child) { add_parts(tree, child, level + 1, all); });
 }
 
 /// At most 512 parts: cuts three times along each axis, or as often as that in all.

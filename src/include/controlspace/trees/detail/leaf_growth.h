@@ -49,6 +49,7 @@ public:
         metrics_ = metrics;
         const std::size_t valid = list_sources(tree, batch);
         first_cut_.assign(valid + 1, 0);
+        first_leaf_.assign(valid + 1, 0);
         shares_.resize(std::min(most_shares, growing_.size()));
         const auto border = [&](std::size_t s) { return s * growing_.size() / shares_.size(); };
         tbb::parallel_for(std::size_t{0}, shares_.size(), [&](std::size_t s) {
@@ -58,11 +59,13 @@ public:
             }
         });
         std::partial_sum(first_cut_.begin(), first_cut_.end(), first_cut_.begin());
+        std::partial_sum(first_leaf_.begin(), first_leaf_.end(), first_leaf_.begin());
         return valid;
     }
 
-    /// How many nodes `grow` has made, and how many of its sources were inserted.
+    /// How many nodes and leaves more `grow` has made, and how many of its sources were inserted.
     std::size_t cuts_made() const { return first_cut_.back(); }
+    std::size_t leaves_made() const { return first_leaf_.back(); }
     std::uint64_t inserted() const {
         return std::accumulate(
             shares_.begin(), shares_.end(), std::uint64_t{0},
@@ -77,7 +80,6 @@ public:
     }
 
 private:
-    static constexpr std::size_t new_leaves = Node::arity - 1;  // of a cut
     static constexpr std::size_t shortest = 512, longest = 65536;
     static constexpr std::size_t most_shares = 64;
     static constexpr std::uint32_t none = ~std::uint32_t{0};
@@ -93,7 +95,9 @@ private:
         std::vector<Root> roots;
         std::vector<Node> nodes;
         std::vector<std::uint32_t> numbers;  // of nodes: the source; then which of all new ones
+        std::vector<std::uint32_t> leaves;   // of nodes: the first of their new leaves
         std::vector<Metric> metrics;         // of the new leaves
+        std::vector<std::uint32_t> makers;   // their nodes
         std::uint64_t inserted = 0;
         int deepest = 0;
 
@@ -101,7 +105,9 @@ private:
             roots.clear();
             nodes.clear();
             numbers.clear();
+            leaves.clear();
             metrics.clear();
+            makers.clear();
             inserted = 0;
             deepest = 0;
         }
@@ -164,11 +170,12 @@ private:
                     part = inner;
                     share.roots.push_back({root, inner});
                 } else {
-                    share.nodes[place.slot / Node::arity].set_child(
-                        static_cast<int>(place.slot % Node::arity), inner);
+                    share.nodes[place.slot / Node::arity].set_child(place.slot % Node::arity,
+                                                                    inner);
                 }
                 place = descend(share, inner, place, source);
                 ++first_cut_[k + 1];
+                first_leaf_[k + 1] += static_cast<std::uint32_t>(cut->children() - 1);
             }
             share.deepest = std::max(share.deepest, place.level);
             Metric& own = metric(place.leaf, share);
@@ -192,42 +199,50 @@ private:
 
     // A node in place of a leaf, which goes on as its first child.
     Ref append(const Subdivision& subdivision, LeafIndex leaf, std::uint32_t source, Share& share) {
-        auto next = static_cast<LeafIndex>(leaves_before_ + share.metrics.size());
-        share.metrics.insert(share.metrics.end(), new_leaves, Metric(metric(leaf, share)));
+        const auto first = static_cast<std::uint32_t>(share.metrics.size());
+        const auto made = static_cast<std::size_t>(subdivision.children() - 1);
+        const auto number = static_cast<std::uint32_t>(share.nodes.size());
+        share.leaves.push_back(first);
+        share.metrics.insert(share.metrics.end(), made, Metric(metric(leaf, share)));
+        share.makers.insert(share.makers.end(), made, number);
+        auto next = static_cast<LeafIndex>(leaves_before_ + first);
         Node node(subdivision);
         node.set_child(0, Ref::leaf(leaf));
-        for (int c = 1; c < Node::arity; ++c) node.set_child(c, Ref::leaf(next++));
+        for (int c = 1; c < node.count(); ++c) node.set_child(node.slot(c), Ref::leaf(next++));
         share.nodes.push_back(node);
         share.numbers.push_back(source);
         return Ref::inner(share.nodes.size() - 1);
     }
 
     void enter_share(Share& share, Topology<Node>& tree, std::span<Metric> metrics) const {
+        // Of each node, by how much the numbers of its new leaves move.
+        std::vector<std::uint32_t> moves(share.nodes.size());
         std::uint32_t source = none;
+        std::uint32_t next_leaf = 0;
         for (std::size_t n = 0; n < share.nodes.size(); ++n) {
             std::uint32_t& number = share.numbers[n];
             const bool goes_on = std::exchange(source, number) == number;
+            if (!goes_on) next_leaf = first_leaf_[number];
             number = goes_on ? share.numbers[n - 1] + 1 : first_cut_[number];
+            moves[n] = next_leaf - share.leaves[n];  // modulo 2^32
+            next_leaf += static_cast<std::uint32_t>(share.nodes[n].count() - 1);
         }
-        const auto first_leaf_of = [&](std::size_t n) {
-            return leaves_before_ + new_leaves * share.numbers[n];
-        };
         const auto entered = [&](Ref ref) {
             if (!ref.is_leaf()) return Ref::inner(nodes_before_ + share.numbers[ref.index()]);
             if (ref.index() < leaves_before_) return ref;
-            const std::size_t made = ref.index() - leaves_before_;
-            return Ref::leaf(
-                static_cast<LeafIndex>(first_leaf_of(made / new_leaves) + made % new_leaves));
+            return Ref::leaf(ref.index() + moves[share.makers[ref.index() - leaves_before_]]);
         };
         for (std::size_t n = 0; n < share.nodes.size(); ++n) {
             Node node = share.nodes[n];
-            for (int c = 0; c < Node::arity; ++c) {
-                node.set_child(c, entered(node.children[static_cast<std::size_t>(c)]));
+            for (int c = 0; c < node.count(); ++c) {
+                node.set_child(node.slot(c), entered(node.children[node.slot(c)]));
             }
             tree.enter(nodes_before_ + share.numbers[n], node);
-            std::copy_n(share.metrics.begin() + static_cast<std::ptrdiff_t>(new_leaves * n),
-                        new_leaves,
-                        metrics.begin() + static_cast<std::ptrdiff_t>(first_leaf_of(n)));
+            const std::uint32_t first = share.leaves[n];
+            std::copy_n(
+                share.metrics.begin() + static_cast<std::ptrdiff_t>(first), node.count() - 1,
+                metrics.begin() +
+                    static_cast<std::ptrdiff_t>(leaves_before_ + std::uint32_t(first + moves[n])));
         }
         for (const Root& root : share.roots) tree.graft(root.place, entered(root.part));
     }
@@ -241,6 +256,7 @@ private:
     std::vector<std::uint32_t> first_;                  // source of each leaf, and
     std::vector<std::uint32_t> next_;                   // the next one in the same leaf
     std::vector<std::uint32_t> first_cut_{0};           // of each source among all of the batch
+    std::vector<std::uint32_t> first_leaf_{0};          // likewise, of the new leaves
     std::vector<Share> shares_;
 };
 

@@ -17,9 +17,8 @@ void for_each_leaf_where(const Topology<Node>& tree, const TreePart& part, const
         visit(LeafIndex{part.ref.index()}, part.box);
         return;
     }
-    for (int c = 0; c < Node::arity; ++c) {
-        for_each_leaf_where(tree, tree.child(part, c), keep, visit);
-    }
+    tree.for_each_child(
+        part, [&](const TreePart& child) { for_each_leaf_where(tree, child, keep, visit); });
 }
 
 /// Leaves that touch the place `x`.
@@ -39,7 +38,8 @@ void for_each_leaf_around(const Topology<Node>& tree, const Box& box, Neighbourh
         int overlaps = 0;
         for (Axis a = 0; a < 3; ++a) {
             if (other.low[a] > box.high[a] || other.high[a] < box.low[a]) return false;
-            overlaps += other.low[a] < box.high[a] && other.high[a] > box.low[a] ? 1 : 0;
+            const bool is_flat = box.low[a] == box.high[a];
+            overlaps += is_flat || (other.low[a] < box.high[a] && other.high[a] > box.low[a]);
         }
         return overlaps >= least;
     };

@@ -96,9 +96,9 @@ private:
             const auto batch = growth.next_batch(sources.subspan(report.sources));
             const std::size_t valid = growth.grow(topology_, metrics().field(), batch);
             if (valid == 0) require_valid(batch.front(), report.sources, Base::domain());
-            Base::make_room_for(growth.cuts_made());
-            topology_.grow(growth.cuts_made());
-            metrics().grow(growth.cuts_made() * (Node::arity - 1));
+            Base::make_room_for(growth.leaves_made());
+            topology_.grow(growth.cuts_made(), growth.leaves_made());
+            metrics().grow(growth.leaves_made());
             growth.enter(topology_, metrics().field());
             topology_.fit_jumps_roughly();
             report.sources += valid;

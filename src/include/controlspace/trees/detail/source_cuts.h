@@ -21,7 +21,7 @@ public:
     /// smallest allowed.
     std::optional<Subdivision> cut(const LeafPlace& place, const PointSource& source) const {
         if (place.level >= max_depth() || !is_too_long(source.metric, place.box)) return {};
-        const Subdivision subdivision = subdivide(place.box, source);
+        const Subdivision subdivision = subdivide(place, source);
         if (!subdivision.is_proper()) return {};
         return subdivision;
     }
@@ -35,11 +35,11 @@ public:
     }
 
 private:
-    Subdivision subdivide(const Box& box, const PointSource& source) const {
+    Subdivision subdivide(const LeafPlace& place, const PointSource& source) const {
         if constexpr (Node::is_octant) {
-            return octants(box);
+            return Node::even_subdivision(options_.domain, place.level, place.box);
         } else {
-            return controlspace::cut(options_.split, box, source, options_.l_min);
+            return controlspace::cut(options_.split, place.box, source, options_.l_min);
         }
     }
 

@@ -31,7 +31,8 @@ void save(const Topology<Node>& tree, StateWriter& state) {
 template <class Node>
 bool is_tree(std::span<const Node> nodes) {
     constexpr std::uint8_t deepest = 200;
-    const std::size_t leaves = nodes.size() * (Node::arity - 1) + 1;
+    std::size_t leaves = 1;
+    for (const Node& node : nodes) leaves += static_cast<std::size_t>(node.count() - 1);
     std::vector<std::uint8_t> level(nodes.size(), 0);
     std::vector<bool> has_leaf(leaves, false);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -39,7 +40,8 @@ bool is_tree(std::span<const Node> nodes) {
         if constexpr (requires { nodes[i].axis(); }) {
             if (nodes[i].axis() > 2) return false;
         }
-        for (const Ref child : nodes[i].children) {
+        for (int k = 0; k < nodes[i].count(); ++k) {
+            const Ref child = nodes[i].children[nodes[i].slot(k)];
             const std::size_t c = child.index();
             if (child.is_leaf()) {
                 if (c >= leaves || has_leaf[c]) return false;
@@ -55,24 +57,28 @@ bool is_tree(std::span<const Node> nodes) {
     return true;
 }
 
-/// Whether each node's planes stand inside of its box.
+/// Whether each node's planes stand inside of its box, across the axes that its level may cut.
 template <class Node>
 bool cuts_properly(const Topology<Node>& tree) {
+    struct Part {
+        Ref ref;
+        int level;
+        Box box;
+    };
     std::atomic<bool> properly = true;
-    const TreePart all{tree.root(), tree.domain()};
-    work_through(all, [&](const TreePart& part, auto&& next) {
+    work_through(Part{tree.root(), 0, tree.domain()}, [&](const Part& part, auto&& next) {
         if (part.ref.is_leaf()) return;
         const Node& node = tree.node(part.ref);
         const Subdivision subdivision = node.subdivision(part.box);
-        if (subdivision.children() != Node::arity || !subdivision.is_proper()) {
+        if (!Node::may_cut(tree.domain(), part.level, subdivision) || !subdivision.is_proper()) {
             properly = false;
             return;
         }
-        for (int c = 0; c < Node::arity; ++c) {
-            const Ref child = node.children[static_cast<std::size_t>(c)];
+        for (int c = 0; c < subdivision.children(); ++c) {
+            const Ref child = node.children[node.slot(c)];
             if (child.is_leaf()) continue;
             __builtin_prefetch(&tree.node(child));
-            next({child, subdivision.child(c)});
+            next(Part{child, part.level + 1, subdivision.child(c)});
         }
     });
     return properly;

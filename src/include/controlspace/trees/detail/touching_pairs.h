@@ -16,7 +16,7 @@ public:
 private:
     void within(const TreePart& part) {
         if (part.ref.is_leaf()) return;
-        for (int c = 0; c < Node::arity; ++c) {
+        for (int c = 0; c < tree_.node(part.ref).count(); ++c) {
             const TreePart child = tree_.child(part, c);
             within(child);
             for (int other = 0; other < c; ++other) between(tree_.child(part, other), child);
@@ -29,12 +29,10 @@ private:
             visit_(LeafIndex{a.ref.index()}, LeafIndex{b.ref.index()});
             return;
         }
-        for (int c = 0; c < Node::arity; ++c) {
-            if (a.ref.is_leaf()) {
-                between(a, tree_.child(b, c));
-            } else {
-                between(tree_.child(a, c), b);
-            }
+        if (a.ref.is_leaf()) {
+            tree_.for_each_child(b, [&](const TreePart& child) { between(a, child); });
+        } else {
+            tree_.for_each_child(a, [&](const TreePart& child) { between(child, b); });
         }
     }
 

@@ -43,7 +43,7 @@ public:
                 for (std::size_t i = 0; i < 8; ++i) {
                     if (corners[i] != node) continue;
                     for (std::size_t j = 0; j < 8; ++j) {
-                        if (j == i || !are_neighbours(i, j, neighbourhood_)) continue;
+                        if (corners[j] == node || !are_neighbours(i, j, neighbourhood_)) continue;
                         visit(corners[j], way(node, corners[j]));
                     }
                 }
