@@ -57,8 +57,11 @@ const FieldFormat& chosen_format(const ExportJob& job, const Options& options) {
                 if (!has_group(other, group)) continue;
                 endings.insert(endings.end(), other.endings.begin(), other.endings.end());
             }
-            throw InputError(fmt::format("{} is for {}: leave it out", given.front(),
-                                         fmt::join(endings, " and ")));
+            const std::string last = endings.back();
+            endings.pop_back();
+            throw InputError(fmt::format("{} is for {}{}{}: leave it out", given.front(),
+                                         fmt::join(endings, ", "), endings.empty() ? "" : " and ",
+                                         last));
         }
     }
     if (chosen == job.formats.end()) {

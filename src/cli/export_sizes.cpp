@@ -37,7 +37,8 @@ constexpr const char* finer_grid = "lengths are off by more than 1.25x: give mor
 std::string write_structured(const Export& e) {
     const int samples = e.samples.value_or(grid_samples);
     return report(e, write_gmsh_structured(e.output, *e.filled.space, samples),
-                  "nodes of a field Structured of Gmsh (TextFormat = 0, SetOutsideValue = 0)", finer_grid);
+                  "nodes of a field Structured of Gmsh (TextFormat = 0, SetOutsideValue = 0)",
+                  finer_grid);
 }
 
 std::string write_jigsaw(const Export& e) {

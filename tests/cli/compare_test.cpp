@@ -145,7 +145,6 @@ TEST_CASE("bad input ends with one line and status 2, and writes nothing") {
         {"compare no.toml", "no.toml"},
         {"compare bad.toml", "bad.toml:2: unknown key 'taus'"},
         {"compare a.toml b.toml", "b.toml"},
-        {"compare s.csv", "--sources s.csv"},
         {"comapre s.csv", "unknown command 'comapre': give one of compare, info, "},
         {"compare --sources no.csv", "no.csv"},
         {"compare --sources nan.csv", "nan.csv:3"},

@@ -64,7 +64,7 @@ TEST_CASE("an export that cannot be made ends with one line, and leaves no file"
         {"-o none/out.vdb s.csv", "none/out.vdb"},
         {"-o . s.csv", ".: name a file of one of .csv"},
         {"-o /dev/full s.csv", "/dev/full"},
-        {"-o out.vdb s.csv --samples 5", "--samples is for .vti"},
+        {"-o out.vdb s.csv --samples 5", "--samples is for .structured, .msh and .vti"},
         {"-o out.vtu s.csv --voxel 0.1", "--voxel is for .vdb"},
         {"-o /proc/out.vdb s.csv", "/proc/out.vdb"},
     }));

@@ -131,7 +131,7 @@ TEST_CASE("a pipe that cannot be answered ends with one line") {
     check_refused(box.run("query - --pipe <s.csv"), "standard input");
     check_refused(box.run("query f.ctrl"), "no POINTS");
     box.write("whole", bytes_of({{0, 0, 0}}));
-    const Outcome full = box.run("query f.ctrl --pipe <whole >/dev/full; exit $?;");
+    const Outcome full = box.run("query f.ctrl --pipe <whole >/dev/full 2>.full; exit $?;");
     CHECK(full.status == 2);
 }
 
@@ -160,7 +160,8 @@ TEST_CASE("sizes for Gmsh, JIGSAW, Netgen and TetGen") {
 TEST_CASE("sizes that mislead are warned of") {
     const Sandbox box("export-sizes-warned");
     box.write("s.csv", sources_csv);
-    box.write("thin.csv", "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n0,0,0,0.1,0.4,0.4,0,0,0\n1,1,1,1,1,1,0,0,0\n");
+    box.write("thin.csv",
+              "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n0,0,0,0.1,0.4,0.4,0,0,0\n1,1,1,1,1,1,0,0,0\n");
     const Outcome coarse = box.run("export sphere --h 0.05 -o a.msh --samples 5");
     CHECK_THAT(coarse.err, Contains("warning: a.msh: ") && Contains("more --samples"));
     const Outcome jumps = box.run("export s.csv -o a.b.ele --structures K_oL");
@@ -179,7 +180,7 @@ TEST_CASE("files of sizes that cannot be written end with one line, and leave no
     const auto [arguments, expected] = GENERATE(table<std::string, std::string>({
         {"-o part.node", "name part.b.node"},
         {"-o a.msh --samples 1", "1 samples along the longest edge: give 2 to 512"},
-        {"-o a.msz --samples 9", "--samples is for .structured and .msh and .vti"},
+        {"-o a.msz --samples 9", "--samples is for .structured, .msh and .vti"},
         {"-o no/a.structured", "cannot write"},
         {"-o no/a.b.mtr", "cannot write"},
     }));

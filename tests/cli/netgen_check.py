@@ -56,5 +56,5 @@ def main():
     sys.exit(0 if good else 1)
 
 
-LIMITS = 0.8, 1.25  # of 98 %
+LIMITS = 1 / 1.3, 1.3  # of 98 %
 main()

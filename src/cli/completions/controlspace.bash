@@ -9,7 +9,7 @@ _controlspace() {
         names+=' --help --version'
     elif [[ $word == -* ]]; then
         names=$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null |
-            grep -oE '^ +(-[a-z],)?--[a-z0-9-]+' | grep -oE -- '--[a-z0-9-]+')
+            grep -oE '^  (-[a-z],)?--[a-z0-9-]+' | grep -oE -- '--[a-z0-9-]+')
     elif [[ $before == --* ]]; then
         # The section of the option, as "Splits of kd-trees (--splits)".
         names=$("$program" list 2>/dev/null |

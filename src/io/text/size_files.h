@@ -34,8 +34,8 @@ SizeFile write_jigsaw_grid(const std::filesystem::path& path, const ControlSpace
 
 /// The background mesh of TetGen (its option -m): BASE.node, BASE.ele and BASE.mtr, where BASE is
 /// NAME.b for the input NAME. Tetrahedra as small as the cells of the structure, and smaller where
-/// its lengths are not linear within 2 %, by up to two halvings, or 2 million nodes. TetGen is
-/// linear in each. Throws InputError for a field without cells.
+/// its lengths are not linear within 2 %, by one halving, or 5 %, by two, up to 2 million nodes.
+/// TetGen is linear in each. Throws InputError for a field without cells.
 SizeFile write_tetgen_background(const std::filesystem::path& base, const ControlSpace& space);
 
 /// The local mesh sizes of Netgen (.msz, its option meshsizefilename): points at half the lengths

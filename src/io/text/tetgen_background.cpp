@@ -13,10 +13,10 @@
 namespace controlspace {
 namespace {
 
-/// Tetrahedra in which the field is not linear: at the middles of edges, or at the centre.
+/// Tetrahedra in which the field is off by more than `tolerance` of what is linear: at the middles
+/// of edges, or at the centre.
 std::vector<std::size_t> not_linear(const ControlSpace& space, const BisectedBox& mesh,
-                                    std::span<const double> lengths) {
-    constexpr double tolerance = 0.02;
+                                    std::span<const double> lengths, double tolerance) {
     constexpr std::size_t places = 7, at_once = 1 << 15;
     std::vector<std::size_t> found;
     const std::vector<std::size_t> all = mesh.leaves();
@@ -60,14 +60,16 @@ std::filesystem::path with_ending(std::filesystem::path base, const char* ending
 }  // namespace
 
 SizeFile write_tetgen_background(const std::filesystem::path& base, const ControlSpace& space) {
-    constexpr int bisections = 6;              // after those for the cells: three halve all edges
+    // Of bisections after those for the cells; three halve all edges.
+    constexpr double tolerances[] = {0.02, 0.02, 0.02, 0.05, 0.05, 0.05};
     constexpr std::size_t enough = 2'000'000;  // points
     BisectedBox mesh(space.domain());
     for (const Box& cell : elements_of(space)) mesh.refine_to(cell, cell.centre());
     mesh.close();
     Lengths lengths = lengths_at(space, mesh.points());
-    for (int i = 0; i < bisections && mesh.points().size() < enough; ++i) {
-        mesh.refine(not_linear(space, mesh, lengths.values));
+    for (const double tolerance : tolerances) {
+        if (mesh.points().size() >= enough) break;
+        mesh.refine(not_linear(space, mesh, lengths.values, tolerance));
         mesh.close();
         const auto added = mesh.points().subspan(lengths.values.size());
         const std::vector<double> there = lengths_at(space, added).values;
