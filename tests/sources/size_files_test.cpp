@@ -298,6 +298,27 @@ TEST_CASE("of tensors, files of lengths hold the smallest, and say so") {
     CHECK(first[0] == length_at(*space, domain.low));
 }
 
+TEST_CASE("files of lengths of a plane") {
+    const ScratchDirectory folder;
+    const Box plane{{0, 0, 0.5}, {2, 1, 0.5}};
+    const auto builder = find_entry(tree_catalogue(), "K_oV")->make({.domain = plane});
+    builder->insert(std::vector<PointSource>{{{0.3, 0.4, 0.5}, Metric::isotropic(0.05)}});
+    builder->grade({.ratio = 1.25});
+    const auto space = builder->build();
+    // Two layers of nodes, of the same lengths.
+    const SizeFile written = write_gmsh_structured(folder.path() / "f.structured", *space, 21);
+    CHECK(written.within.value() < 1.1);
+    const std::string bytes = read_binary_file(folder.path() / "f.structured");
+    CHECK(numbers<double>(bytes, 0, 6) == std::vector<double>{0, 0, 0.5, 0.1, 0.1, 0.1});
+    CHECK(numbers<int>(bytes, 48, 3) == std::vector<int>{21, 11, 2});
+    const auto lengths = numbers<double>(bytes, 60, written.count);
+    for (std::size_t i = 0; i < lengths.size(); i += 2) CHECK(lengths[i] == lengths[i + 1]);
+    CHECK(write_jigsaw_grid(folder.path() / "f.msh", *space, 21).within == written.within);
+    CHECK(write_netgen_sizes(folder.path() / "f.msz", *space).count > 10);
+    CHECK_THAT(error_of([&] { write_tetgen_background(folder.path() / "f.b", *space); }),
+               Contains("is a plane"));
+}
+
 TEST_CASE("files of lengths that cannot be written leave none") {
     const ScratchDirectory folder;
     const auto space = made();

@@ -59,7 +59,8 @@ Grid sampled(const ControlSpace& space, int samples) {
     for (Axis a = 0; a < 3; ++a) {
         const double steps = std::max(1.0, std::round(edges[a] / edges.maxCoeff() * (samples - 1)));
         grid.counts[static_cast<std::size_t>(a)] = static_cast<int>(steps) + 1;
-        grid.spacing[a] = edges[a] / steps;
+        // Across a plane two layers, as far apart as the nodes are along it.
+        grid.spacing[a] = (edges[a] > 0 ? edges[a] : edges.maxCoeff() / (samples - 1)) / steps;
     }
     std::vector<Point> plane;
     for (int i = 0; i < grid.counts[0]; ++i) {

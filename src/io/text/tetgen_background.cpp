@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "controlspace/error.h"
+#include "controlspace/geometry/extent.h"
 #include "files/output_file.h"
 #include "io/text/bisected_box.h"
 #include "io/text/cells.h"
@@ -63,6 +65,12 @@ SizeFile write_tetgen_background(const std::filesystem::path& base, const Contro
     // Of bisections after those for the cells; three halve all edges.
     constexpr double tolerances[] = {0.02, 0.02, 0.02, 0.05, 0.05, 0.05};
     constexpr std::size_t enough = 2'000'000;  // points
+    if (flat_axis(space.domain())) {
+        throw InputError(fmt::format(
+            "{}: TetGen's background mesh fills a volume, and the domain {} is a plane: "
+            "write another format",
+            base.string(), to_string(space.domain())));
+    }
     BisectedBox mesh(space.domain());
     for (const Box& cell : elements_of(space)) mesh.refine_to(cell, cell.centre());
     mesh.close();
