@@ -272,8 +272,8 @@ std::vector<Parameter<Study>> table() {
         {"h_min", length, "Smallest length: what is requested to be shorter, is this long",
          limit(of_sources(&Sources::h_min), 0)},
         {"h_max", length,
-         "Largest length anywhere; left out: half of the domain's diagonal, and no length of "
-         "sources is limited",
+         "Largest length anywhere (between the nodes of K_Li and K_oLi some per cent more); left "
+         "out: half of the domain's diagonal, and no length of sources is limited",
          limit(of_sources(&Sources::h_max), largest_magnitude)},
         {"centre", length, "x y z: centre of the sphere", point_of(of_sources(&Sources::centre)),
          making, sphere, paper},

@@ -127,7 +127,7 @@ std::vector<BadFile> vtk_files() {
         {"f.vtu", vtu(sizes, "0.5 -1"), "f.vtu: size 2 is -1: a length must be positive"},
         {"f.vtu", vtu("0 0 0 1", "0 1e99 0 1"), "f.vtu: point 1 has a coordinate 1e+99"},
         {"f.vtu", vtu("a:metric", "a"),
-         "f.vtu: no array of points is named :metric, there are 'a': name one"},
+         "f.vtu: no array is named :metric, there are 'a': name one"},
         {"f.vtu", vtu(tensors, "NumberOfComponents=\"6\" format=\"ascii\">1 1 1 0 0 0 1 1 1 2 0 0"),
          "f.vtu: tensor 2 (1 1 1 2 0 0) is not positive definite, 1 of 2 are not: is the order of "
          "their components XX YY ZZ XY YZ XZ?"},

@@ -129,11 +129,18 @@ TEST_CASE("data of the elements of a mesh by Gmsh are sources at their centres")
     CHECK_THAT(error_of([&] { read_msh_sources(path, "other"); }), Contains("'of cells'"));
     if (binary) return;
     const std::string text = read_text_file(path);
+    // Gmsh writes the mesh twice: before the view and with it.
     const auto error = [&](const std::string& from, const std::string& to) {
-        std::ofstream(path, std::ios::binary) << altered(text, from, to);
+        std::string all = text;
+        std::size_t at = all.find(from);
+        REQUIRE(at != std::string::npos);
+        for (; at != std::string::npos; at = all.find(from, at + to.size())) {
+            all.replace(at, from.size(), to);
+        }
+        std::ofstream(path, std::ios::binary) << all;
         return error_of([&] { read_msh_sources(path); });
     };
-    CHECK_THAT(error("$Elements", "$Pixels"), Contains("but no $Elements"));
+    CHECK_THAT(error("Elements\n", "Pixels\n"), Contains("but no $Elements"));
     const std::string block = order == 1 ? "\n3 1 4 " : "\n3 1 11 ";
     CHECK_THAT(error(block, "\n3 1 99 "), Contains("elements of the unknown type 99"));
     CHECK_THAT(error(block + std::to_string(count), block + "2000000000"),
