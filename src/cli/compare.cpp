@@ -34,9 +34,8 @@ Study study_of(const Compare& job) {
     const std::filesystem::path& input = job.input;
     const bool is_study = input.extension() == ".toml";
     Study study = is_study ? read_study(input, program_parameters()) : Study{};
-    if (!is_study && !input.empty()) set_sources(study, input);
     const GivenSettings given = given_settings(job.given);
-    apply(given, study);
+    apply_with_input(is_study ? std::filesystem::path() : input, given, study);
     const bool is_named =
         is_study || std::ranges::any_of(given, [](const auto& s) { return s.first == "name"; });
     if (!is_named && study.sources.kind == SourcesKind::file) {

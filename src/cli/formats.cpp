@@ -128,6 +128,10 @@ FileReaders file_readers() {
     readers.vdb_field = [](const FieldChoice& choice) {
         const std::string ending = lower_case_extension(choice.file);
         const bool is_vtk = ending == ".vtu" || ending == ".vti";
+        if (!is_vtk && ending != ".vdb") {
+            throw InputError(
+                fmt::format("{}: name a .vdb, .vtu or .vti as the field", choice.file.string()));
+        }
         if (is_vtk && choice.vdb.density) {
             throw InputError("field_density_sizes is for a .vdb: leave it out");
         }

@@ -54,11 +54,17 @@ void add_sources(const SourcesChoice& input, SourcesChoice& sources) {
     }
 }
 
+bool are_given(const GivenSettings& given, std::initializer_list<const char*> keys) {
+    return std::ranges::any_of(given, [&](const auto& setting) {
+        return std::ranges::find(keys, setting.first) != keys.end();
+    });
+}
+
 }  // namespace
 
 void set_sources(Study& study, const std::filesystem::path& input) {
     std::error_code none;
-    if (std::filesystem::exists(input, none)) {
+    if (std::filesystem::exists(input, none) && !std::filesystem::is_directory(input, none)) {
         study.sources.kind = SourcesKind::file;
         study.sources.file = input;
         return;
@@ -78,34 +84,36 @@ void set_sources(Study& study, const std::filesystem::path& input) {
     }
 }
 
+void apply_with_input(const std::filesystem::path& input, const GivenSettings& given,
+                      Study& study) {
+    if (!input.empty()) set_sources(study, input);
+    const SourcesChoice of_input = study.sources;
+    apply(given, study);
+    const auto is_sources = [](const auto& setting) { return setting.first == "sources"; };
+    if (!input.empty() && std::ranges::any_of(given, is_sources)) {
+        add_sources(of_input, study.sources);
+    }
+}
+
 Study study_of_input(const std::filesystem::path& input, const GivenSettings& given) {
     Study study;
     if (input.extension() == ".toml") {
         study = read_study(input, program_parameters());
+        apply(given, study);
     } else {
         study.runs.front() = one_structure();
-        if (!input.empty()) set_sources(study, input);
-    }
-    const SourcesChoice of_input = study.sources;
-    apply(given, study);
-    const auto is_sources = [](const auto& setting) { return setting.first == "sources"; };
-    if (!input.empty() && input.extension() != ".toml" && std::ranges::any_of(given, is_sources)) {
-        add_sources(of_input, study.sources);
+        apply_with_input(input, given, study);
     }
     return study;
 }
 
 DefaultTarget::DefaultTarget(const std::filesystem::path& input, const GivenSettings& given)
-    : applies_(input.extension() != ".toml") {
-    for (const char* key : {"target_delta", "within", "field", "tau", "epsilon", "law", "schedule",
-                            "neighbourhood", "reference"}) {
-        const auto is_given = [&](const auto& setting) { return setting.first == key; };
-        applies_ = applies_ && std::ranges::none_of(given, is_given);
-    }
-}
+    : is_free_(input.extension() != ".toml" && !are_given(given, {"target_delta", "within"})),
+      applies_(is_free_ && !are_given(given, {"field", "tau", "epsilon", "law", "schedule",
+                                              "neighbourhood", "reference"})) {}
 
 bool DefaultTarget::set(Case& c, std::span<const PointSource> sources) const {
-    if (applies_ && has_field(c.sources)) return c.target_delta.has_value();  // by expand
+    if (has_field(c.sources)) return is_free_ && c.target_delta.has_value();  // by expand
     const auto is_length = [](const PointSource& s) { return is_isotropic(s.metric); };
     if (!applies_ || c.structure != "K_oV" || sources.empty() ||
         !std::ranges::all_of(sources, is_length)) {
@@ -171,10 +179,22 @@ std::vector<PointSource> sources_of_input(const std::filesystem::path& input,
     set_sources(study, input);
     apply(given, study_parameters(), study);
     require_applicable(study);
+    if (!study.sources.primitives.empty()) {
+        throw InputError(fmt::format("{} is no set of points: give it to build, export or compare",
+                                     to_string(study.sources.primitives.front())));
+    }
     if (study.sources.kind == SourcesKind::file) {
         return read_source_file(study.sources, file_readers());
     }
     return make_workload(study, only_case(study).sources, file_readers()).sources;
+}
+
+std::vector<std::filesystem::path> files_named(const std::filesystem::path& input) {
+    Study study;
+    if (!input.empty() && input.extension() != ".toml") set_sources(study, input);
+    std::vector<std::filesystem::path> files = input_files_of(study.sources);
+    if (files.empty()) files.push_back(input);
+    return files;
 }
 
 }  // namespace controlspace

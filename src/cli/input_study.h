@@ -14,6 +14,13 @@ namespace controlspace {
 /// takes (sphere; a.csv,b.stl). Throws InputError for a word that is neither.
 void set_sources(Study& study, const std::filesystem::path& input);
 
+/// The same, unless `input` is empty, and the settings given; sources that these name are added to
+/// those of `input`.
+void apply_with_input(const std::filesystem::path& input, const GivenSettings& given, Study& study);
+
+/// The files that are read for `input`: sources (see set_sources), or a study file.
+std::vector<std::filesystem::path> files_named(const std::filesystem::path& input);
+
 /// The study of `input`, a study file (.toml) or sources (see set_sources), with the settings
 /// given. Without a study file: the structure K_oV, and the cut s_L for kd-trees; without an input:
 /// on the paper's sphere. Throws InputError.
@@ -29,6 +36,7 @@ public:
     bool set(Case& c, std::span<const PointSource> sources) const;
 
 private:
+    bool is_free_;  ///< whether nobody asks for a target
     bool applies_;
 };
 

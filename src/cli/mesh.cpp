@@ -169,9 +169,19 @@ GivenSettings without_settings_of_meshing(const GivenSettings& given) {
 
 /// What is filled; none for the domain.
 std::shared_ptr<const Part> part_of(const MeshSettings& settings,
-                                    const std::filesystem::path& input) {
+                                    const std::filesystem::path& input, const Study& study) {
     std::filesystem::path file = settings.part;
-    if (file.empty()) file = is_part(input) ? input : "box";
+    if (file.empty() && input.extension() != ".toml") {
+        std::vector<std::filesystem::path> parts = input_files_of(study.sources);
+        std::erase_if(parts, [](const auto& name) { return !is_part(name); });
+        if (parts.size() > 1) {
+            throw InputError(fmt::format(
+                "{} and {} are parts: name the one to mesh (--part FILE), or --part box",
+                parts[0].string(), parts[1].string()));
+        }
+        if (!parts.empty()) file = parts.front();
+    }
+    if (file.empty()) file = "box";
     if (file == "box") return nullptr;
     return std::make_shared<const Part>(read_part(file, settings.part_crease));
 }
@@ -184,7 +194,7 @@ int mesh(const MeshJob& job, const std::string& command_line) {
     if (study.name == Study{}.name) study.name = "mesh";
     MeshSettings settings;
     apply(given, mesh_parameters(), settings);
-    settings.body = part_of(settings, job.input);
+    settings.body = part_of(settings, job.input, study);
     const auto threads = limit_threads(study.threads);
     Interruption interruption;
     const auto saved = is_saved ? load_control_space(job.input, structures()) : nullptr;

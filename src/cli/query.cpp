@@ -28,13 +28,17 @@ struct Query {
 
 int answer_pipe(const Query& job) {
     if (!job.points.empty()) throw InputError("--pipe reads the points: leave out POINTS");
-    if (job.input == "/dev/stdin") {
+    const GivenSettings given = given_settings(job.given);
+    const auto files = is_control_space(job.input)
+                           ? std::vector{job.input}
+                           : files_of(study_of_input(job.input, given).sources);
+    if (std::ranges::count(files, std::filesystem::path("/dev/stdin")) > 0) {
         throw InputError("--pipe reads the points from standard input: name a file of sources");
     }
     FilledSpace filled;
     {
         StepProgress progress(job.quiet, {});
-        filled = filled_space(job.input, {}, given_settings(job.given), progress.observer());
+        filled = filled_space(job.input, {}, given, progress.observer());
     }
     const int status = report_remark(filled);
     answer_places(*filled.space);

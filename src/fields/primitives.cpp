@@ -95,8 +95,7 @@ private:
         }
         if (std::exchange(is_given(key), true)) fail(fmt::format("{} is given twice", key));
         if (key == "g") {
-            constexpr double most = 5;  // steeper, trees cannot follow within an element
-            if (!(value >= 1 && value <= most)) {
+            if (!(value >= 1 && value <= steepest_primitive)) {
                 fail(fmt::format("g is {}: give a gradation ratio from 1 to 5", value));
             }
             made_.ratio = value;

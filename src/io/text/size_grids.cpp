@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "controlspace/error.h"
+#include "controlspace/geometry/extent.h"
 #include "files/output_file.h"
 #include "io/text/lengths_at.h"
 #include "io/text/size_files.h"
@@ -99,17 +100,25 @@ SizeFile write_gmsh_structured(const std::filesystem::path& path, const ControlS
 
 SizeFile write_jigsaw_grid(const std::filesystem::path& path, const ControlSpace& space,
                            int samples) {
+    const std::optional<Axis> flat = flat_axis(space.domain());
+    if (flat && *flat != 2) {
+        throw InputError(fmt::format(
+            "{}: JIGSAW's planes lie across z, and the domain {} does not: write another format",
+            path.string(), to_string(space.domain())));
+    }
+    const int dimensions = flat ? 2 : 3;
     const Grid grid = sampled(space, samples);
     OutputFile file(path);
     file.write("# Lengths for JIGSAW: hfun_file, with hfun_scal = absolute\n");
-    file.write("MSHID=3;EUCLIDEAN-GRID\nNDIMS=3\n");
-    for (Axis a = 0; a < 3; ++a) {
+    file.print("MSHID=3;EUCLIDEAN-GRID\nNDIMS={}\n", dimensions);
+    for (Axis a = 0; a < dimensions; ++a) {
         const int count = grid.counts[static_cast<std::size_t>(a)];
         file.print("COORD={};{}\n", a + 1, count);
         for (int i = 0; i < count; ++i) file.print("{}\n", grid.coordinate(a, i));
     }
-    file.print("VALUE={};1\n", grid.lengths.size());
-    for (int k = 0; k < grid.counts[2]; ++k) {  // y fastest, z slowest
+    const int layers = flat ? 1 : grid.counts[2];
+    file.print("VALUE={};1\n", layers * grid.counts[0] * grid.counts[1]);
+    for (int k = 0; k < layers; ++k) {  // y fastest, z slowest
         for (int i = 0; i < grid.counts[0]; ++i) {
             for (int j = 0; j < grid.counts[1]; ++j) {
                 file.print("{}\n", static_cast<float>(grid.lengths[grid.index(i, j, k)]));

@@ -96,6 +96,11 @@ std::string place_of_source(const std::filesystem::path& path, std::size_t index
 void write_sources(const std::filesystem::path& path, std::span<const PointSource> sources) {
     const std::string extension = lower_case_extension(path);
     if (extension == ".csv" || path == "/dev/stdout") return write_csv_sources(path, sources);
+    const auto grows_alone = [](const PointSource& source) { return source.growth != 0; };
+    if (std::ranges::any_of(sources, grows_alone)) {
+        throw InputError(fmt::format("{}: only a .csv holds gradation ratios of sources: name one",
+                                     path.string()));
+    }
     if (extension == ".pos") return write_pos_sources(path, sources);
     if (extension == ".vtu" || extension == ".vtp") return write_vtk_sources(path, sources);
     if (extension == ".mesh" || extension == ".sol" || extension == ".meshb" ||

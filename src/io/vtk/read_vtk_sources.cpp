@@ -214,11 +214,12 @@ public:
         domain_ = {{bounds[0], bounds[2], bounds[4]}, {bounds[1], bounds[3], bounds[5]}};
         locator_->SetDataSet(data_.grid);
         locator_->BuildLocator();
+        largest_cell_ = static_cast<std::size_t>(data_.grid->GetMaxCellSize());
     }
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         const vtkNew<vtkGenericCell> cell;
-        std::vector<double> weights(static_cast<std::size_t>(data_.grid->GetMaxCellSize()));
+        std::vector<double> weights(largest_cell_);
         for (std::size_t i = 0; i < x.size(); ++i) {
             out[i] = at(x[i].cwiseMax(domain_.low).cwiseMin(domain_.high), cell, weights);
         }
@@ -247,11 +248,13 @@ private:
                    sum.xy + weight * m.xy, sum.xz + weight * m.xz, sum.yz + weight * m.yz};
             all += weight;
         }
+        if (!(all > 0)) return data_.metrics[static_cast<std::size_t>(cell->GetPointId(0))];
         return (1 / all) * sum;
     }
 
     VtkMetrics data_;
     Box domain_;
+    std::size_t largest_cell_ = 0;  ///< points of a cell, at most
     vtkNew<vtkStaticCellLocator> locator_;
 };
 

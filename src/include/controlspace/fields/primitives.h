@@ -12,6 +12,10 @@
 
 namespace controlspace {
 
+/// The largest growth of a primitive, as a gradation ratio: the steepest that trees can follow
+/// within an element.
+inline constexpr double steepest_primitive = 5;
+
 enum class Shape { box, ball, cylinder, segment, surface };
 
 /// A continuous source: a body, a segment or a surface that requests the same length in all
