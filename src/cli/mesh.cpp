@@ -89,6 +89,7 @@ private:
     void require_runnable() {
         for (const Case& c : cases_) require_set_voxels(c);
         const Reference& reference = reference_of(cases_.front());
+        if (!folder_.settings().body) require_volume(reference.workload.domain);
         for (const Case& c : cases_) {
             if (c.sources == reference.first.sources) space_options(study_, c, reference.workload);
         }
@@ -139,6 +140,7 @@ private:
 /// Meshes a control space that was saved; it is the reference too.
 void mesh_saved(const std::filesystem::path& file, const ControlSpace& space, int probe_grid,
                 MeshFolder& folder, Interruption& interruption) {
+    if (!folder.settings().body) require_volume(space.domain());
     MeshRow row;
     row.saved = file;
     row.setting.structure = recipe_of(space)->structure;

@@ -164,9 +164,10 @@ TEST_CASE("control nodes are points that can be read as sources") {
 TEST_CASE("an octree is a hyper tree grid with the same leaves") {
     const ScratchDirectory folder;
     // Of the oblong one, trees for each of which all axes are cut; the others are flat.
-    const Box box = GENERATE(
-        domain, Box{Point(-1, -1, -1), Point(9, 1, 1.5)}, Box{Point(-1, -1, 0), Point(1, 1.5, 0)},
-        Box{Point(0, -1, -1), Point(0, 1, 1)}, Box{Point(-1, 0.5, -1), Point(8, 0.5, 1)});
+    const Box box =
+        GENERATE(Box(domain), Box{Point(-1, -1, -1), Point(9, 1, 1.5)},
+                 Box{Point(-1, -1, 0), Point(1, 1.5, 0)}, Box{Point(0, -1, -1), Point(0, 1, 1)},
+                 Box{Point(-1, 0.5, -1), Point(8, 0.5, 1)});
     CAPTURE(to_string(box));
     const auto space = filled("K_oL", box);
     write_octree(folder.path() / "tree.htg", *space);
@@ -237,7 +238,7 @@ TEST_CASE("on a plane, leaves are quadrilaterals, and an image is of the plane")
         CHECK(area == Approx(measure(box)));
         write_slice(folder.path() / "flat.vti", *space, box, {.axis = a, .at = 0.25, .samples = 9});
         const auto image = read_back<vtkXMLImageDataReader>(folder.path() / "flat.vti");
-        CHECK(image->GetNumberOfPoints() >= 9 * 7);
+        CHECK(image->GetNumberOfPoints() >= 9 * 6);
         for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i) {
             Point x;
             image->GetPoint(i, x.data());

@@ -141,8 +141,8 @@ TEMPLATE_TEST_CASE("leaves fill the domain, and every place finds the one that h
 }
 
 TEMPLATE_TEST_CASE("face pairs are those that brute force finds", "", KdNode, OctreeNode) {
-    const Box filled =
-        GENERATE(domain, Box{Point(0, 0, 0), Point(1, 20, 7)}, Box{Point(1, 2, 3), Point(4, 2, 9)});
+    const Box filled = GENERATE(Box(domain), Box{Point(0, 0, 0), Point(1, 20, 7)},
+                                Box{Point(1, 2, 3), Point(4, 2, 9)});
     const RandomTree<TestType> random(40, filled);
     // Of a flat box, faces are sides of no extent across the plane.
     const auto shares_area = [&](const Vector& shared, Axis a) {

@@ -273,7 +273,8 @@ TEST_CASE("options out of range are refused by name") {
     const auto refuses = [](const SpaceOptions& options, const std::string& word) {
         CHECK_THROWS_WITH(tree_named("K_L").make(options), Catch::Contains(word));
     };
-    refuses({.domain = {Point::Zero(), Point(1, 1, 0)}}, "no extent along z");
+    refuses({.domain = {Point::Zero(), Point(1, 1, -1)}}, "no extent along z");
+    refuses({.domain = {Point::Zero(), Point(1, 0, 0)}}, "no extent along two axes");
     refuses({.domain = {Point::Zero(), Point(1, NAN, 1)}}, "no extent along y");
     refuses({.domain = domain, .l_min = 0}, "l_min");
     refuses({.domain = domain, .l_min = NAN}, "l_min");
