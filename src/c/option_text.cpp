@@ -18,6 +18,7 @@ constexpr std::pair<std::string_view, double SpaceOptions::*> numbers[] = {
     {"epsilon", &SpaceOptions::tolerance},
     {"finest_length", &SpaceOptions::finest_length},
     {"voxel", &SpaceOptions::voxel},
+    {"h_max", &SpaceOptions::h_max},
     {"g_r", &SpaceOptions::ratio}};
 
 constexpr std::pair<std::string_view, int SpaceOptions::*> counts[] = {

@@ -142,7 +142,7 @@ void add_face(int tag, const GmshNodes& nodes, SurfaceMesh& mesh) {
 }
 
 double model_diagonal() {
-    Vector low, high;
+    Vector low = Vector::Zero(), high = Vector::Zero();
     gmsh::model::getBoundingBox(-1, -1, low[0], low[1], low[2], high[0], high[1], high[2]);
     return (high - low).norm();
 }

@@ -31,7 +31,7 @@ void require_usable(std::span<const PointSource> sources, double g, const Metric
             fmt::format("{} sources for the reference: give fewer than 2^31", sources.size()));
     }
     for (std::size_t i = 0; i < sources.size(); ++i) {
-        const auto& [position, metric, growth] = sources[i];
+        const auto& [position, metric, own_growth] = sources[i];
         if (!position.allFinite()) {
             throw IndexedError(i,
                                fmt::format("source {}: its position is not finite: correct it", i));
@@ -41,6 +41,12 @@ void require_usable(std::span<const PointSource> sources, double g, const Metric
                 i, fmt::format("source {}: metric {} is not positive definite: give one "
                                "with positive lengths",
                                i, to_string(metric)));
+        }
+        if (!is_source_growth(own_growth)) {
+            throw IndexedError(
+                i, fmt::format("source {}: gradation ratio {}: give one from 1 to 1e6, or 0 for "
+                               "that of the field",
+                               i, own_growth));
         }
     }
 }

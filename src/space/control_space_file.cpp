@@ -71,7 +71,12 @@ void exchange(Self& options, State& state) {
     state("options.quadratic_form", options.quadratic_form, QuadraticForm::published);
     state("options.takes_later_sources", options.takes_later_sources);
     state("options.max_bytes", options.max_bytes);
+    state("options.intersection", options.intersection, IntersectionRule::in_turn);
+    state("options.h_max", options.h_max);
 }
+
+// There if it is true.
+constexpr std::string_view grows_apart = "sources.grow_apart";
 
 void fill(const CatalogueEntry& entry, const StateReader& state, SavedControlSpace& saved) {
     auto builder = entry.make(saved.recipe.options);
@@ -87,6 +92,7 @@ void fill(const CatalogueEntry& entry, const StateReader& state, SavedControlSpa
         given->load(state);
     }
     own->set_given(std::move(given));
+    own->set_grows_apart(state.has(grows_apart));
     saved.space = builder->build({.precision = saved.recipe.precision});
     if (!saved.recipe.precision) saved.builder = std::move(builder);
 }
@@ -139,11 +145,10 @@ void save(const std::filesystem::path& file, const Saved* saved) {
     state("written_by", "controlspace " + std::string(version()));
     state("structure", recipe.structure);
     exchange(recipe.options, state);
-    state("options.intersection", recipe.options.intersection, IntersectionRule::in_turn);
-    state("options.h_max", recipe.options.h_max);
     if (recipe.precision) state("compact.precision", *recipe.precision, Precision::floats);
     saved->save(state);
     if (saved->given()) saved->given()->save(state);
+    if (saved->grows_apart()) state(grows_apart, std::uint64_t{1});
 
     const Header header{.size = header_size + state.bytes().size() + checksum_size};
     Checksum checksum;
@@ -181,12 +186,6 @@ SavedControlSpace open_control_space(const std::filesystem::path& file,
     std::string structure;
     state("structure", structure);
     exchange(saved.recipe.options, state);
-    // Files from before there was a choice lack it.
-    saved.recipe.options.intersection = IntersectionRule::in_turn;
-    if (state.has("options.intersection")) {
-        state("options.intersection", saved.recipe.options.intersection, IntersectionRule::in_turn);
-    }
-    if (state.has("options.h_max")) state("options.h_max", saved.recipe.options.h_max);
     const CatalogueEntry* entry = find_entry(structures, structure);
     if (entry == nullptr) {
         throw InputError(fmt::format(

@@ -67,6 +67,12 @@ std::vector<PointSource> GivenSources::all() const {
     return sources;
 }
 
+double GivenSources::largest_growth(double g) const {
+    double largest = g;
+    for (std::size_t i = 0; i < size(); ++i) largest = std::max(largest, growths_[i]);
+    return largest;
+}
+
 std::size_t GivenSources::bytes() const {
     return positions_.capacity() * sizeof(Point) + lengths_.capacity() * sizeof(double) +
            metrics_.capacity() * sizeof(Metric) + growths_.bytes();
@@ -101,19 +107,19 @@ void require_alike_growth(std::span<const PointSource> sources) {
         if (sources[i].growth == 0) continue;
         throw IndexedError(
             i, fmt::format("source {} has a gradation ratio of its own, {}: insert such sources "
-                           "before the structure is adapted or its metrics are assigned, or adapt "
-                           "it anew",
+                           "before the structure is adapted, assigned or saved, or adapt it anew",
                            i, sources[i].growth));
     }
 }
 
 NodeGradation::NodeGradation(const GradationOptions& wanted, const GivenSources* given,
                              const SpaceOptions& space)
-    : options(wanted) {
+    : options(wanted), largest_ratio(wanted.ratio) {
     require_valid(options);
     if (options.schedule == GradationSchedule::sources && given != nullptr &&
         options.law == GradationLaw::cone) {
         field = std::make_unique<SourceField>(*given, options.ratio, space);
+        largest_ratio = given->largest_growth(options.ratio);
         return;
     }
     if (given != nullptr && !given->all_grow_alike()) {

@@ -65,7 +65,7 @@ struct GoalField::Remembered {
 GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
     : target_(require_valid(goal, domain).target),
       ratio_(goal.ratio),
-      largest_ratio_(largest_growth(goal.sources, goal.ratio)),
+      largest_ratio_(std::max(goal.ratio, largest_growth(goal.sources, goal.ratio))),
       sources_(goal.sources),
       continuous_(goal.continuous),
       largest_(largest_metric(domain, goal.h_max)),

@@ -35,7 +35,8 @@ std::unique_ptr<ControlSpaceBuilder> make_filled_builder(const CatalogueEntry& e
                                   .continuous = nullptr,
                                   .ratio = options.ratio,
                                   .target = *target,
-                                  .intersection = options.intersection});
+                                  .intersection = options.intersection,
+                                  .h_max = options.h_max});
     } else {
         builder->insert(sources);
         builder->grade({.ratio = options.ratio});

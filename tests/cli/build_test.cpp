@@ -186,7 +186,7 @@ TEST_CASE("info says what a saved control space is and holds") {
     CHECK_THAT(said("--structures K_V --splits s_G --tau 0.5 --frozen floats"),
                Contains("structure    K_V: kd-tree, trilinear") &&
                    Contains("compact      floats: read-only") &&
-                   Contains("saved by     controlspace ") && Contains(", format 3\n") &&
+                   Contains("saved by     controlspace ") && Contains(", format 4\n") &&
                    Contains("split s_G, tau 0.5, epsilon 0.2") && Contains(" leaves of ") &&
                    Contains(" tree nodes, at levels of up to ") && Contains("MB in the file") &&
                    Contains("lengths      0.10") && Contains("anisotropy   1 (largest)") &&

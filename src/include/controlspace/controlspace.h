@@ -65,9 +65,10 @@ typedef struct cspace_sources {
     const double* positions; /**< n points */
     const double* metrics;   /**< n metrics M, unless there are lengths */
     const double* lengths;   /**< n lengths, of isotropic sources */
-    const double* growths;   /**< NULL, or n gradation ratios of the sources' own, 1 or more; 0: that
-                                  of the field. They grade by the exact field alone: they are refused
-                                  once the space was adapted. */
+    const double* growths; /**< NULL, or n gradation ratios of the sources' own, 1 or more; 0: that
+                                of the field. They need the exact field: structures that hold
+                                metrics refuse them once they were adapted, or loaded without
+                                takes_later_sources. */
 } cspace_sources;
 
 /** Options of cspace_build(). Members that are 0 have their defaults; later versions may add some
@@ -82,7 +83,8 @@ typedef struct cspace_options {
                              to, above 0; 0: sources are inserted and graded, which is faster and
                              less accurate */
     double max_memory;  /**< [GiB] (default: 4) */
-    const char* further; /**< others, as of cspace_create(), each option given once; may be NULL */
+    const char* further; /**< others, as of cspace_create(); may be NULL. Growth is g_r there, and
+                            is given once */
 } cspace_options;
 
 /** Builds the field of sources in one step: creates a control space, and inserts and grades the
@@ -108,8 +110,8 @@ CSPACE_API cspace_status cspace_build(const char* structure, const double* domai
  *                   longest edge of a source's leaf, in the source's metric), epsilon (insertion
  *                   tolerance), kd_depth, octree_depth (maximum depth; the root has depth 0),
  *                   finest_length (smallest length of the sources [length]: grids choose their
- *                   voxels by it), voxel (longest edge of a grid's voxels [length]), g_r (gradation
- *                   ratio), takes_later_sources (1: sources may
+ *                   voxels by it), voxel (longest edge of a grid's voxels [length]), h_max (largest
+ *                   length anywhere), g_r (gradation ratio), takes_later_sources (1: sources may
  *                   be inserted after gradation), max_memory [GiB]
  * @param space      receives the control space; NULL after a failure */
 CSPACE_API cspace_status cspace_create(const char* structure, const double* domain,

@@ -197,8 +197,8 @@ def build(
     delta: largest non-conformity to the exact field, above 0, that a tree is refined to; guaranteed
     for lengths (not in K_Li and K_oLi), sampled for metrics; a UserWarning says that it was missed.
     None with a structure: sources are inserted and graded, which is faster and less accurate.
-    h_min, h_max: limits of the requested lengths, in all directions. Far from all sources lengths
-    still grow, up to half of the box's diagonal.
+    h_min, h_max: limits of lengths, in all directions; without h_max lengths far from all sources
+    grow up to half of the box's diagonal.
     options: further ones of cspace_create (controlspace.h): tau=0.5, split="s_G", max_memory=1.
 
     ValueError for what cannot be used; it names the source by its index.
@@ -212,6 +212,8 @@ def build(
         if delta is None and h.ndim == 1:
             delta = 0.1
     given = {"g_r": ratio, "finest_length": finest, **options}
+    if h_max is not None:
+        given["h_max"] = _arrays.length("h_max", h_max)
     handle = ctypes.c_void_p()
     call(
         "create",

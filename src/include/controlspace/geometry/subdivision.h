@@ -53,12 +53,12 @@ inline Subdivision octants(const Box& box) {
 }
 
 /// Which axes of boxes of this level are halved, the root being level 0, so that they get near
-/// cubes: those of more than half of the longest edge. From the extents of the domain alone, so
-/// that rounding of the boxes does not count.
+/// cubes: those of more than half of the longest edge, beyond rounding. From the extents of the
+/// domain alone, so that rounding of the boxes does not count.
 inline std::array<bool, 3> long_axes(const Box& domain, int level) {
     Vector e = domain.edges();
     while (true) {
-        const double half = 0.5 * e.maxCoeff();
+        const double half = 0.5 * (1 + 1e-9) * e.maxCoeff();
         const std::array<bool, 3> axes{e.x() > half, e.y() > half, e.z() > half};
         if (level-- == 0 || (axes[0] && axes[1] && axes[2])) return axes;
         for (Axis a = 0; a < 3; ++a) e[a] *= axes[static_cast<std::size_t>(a)] ? 0.5 : 1;

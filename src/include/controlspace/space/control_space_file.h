@@ -22,7 +22,7 @@ namespace controlspace {
 //   64 bits    checksum of all bytes before: XXH3
 
 /// Version of the format that is written, and the only one that is read.
-inline constexpr std::uint32_t control_space_file_version = 3;
+inline constexpr std::uint32_t control_space_file_version = 4;
 
 /// How a structure was made.
 struct Recipe {
@@ -43,7 +43,7 @@ void save_control_space(const std::filesystem::path& file, const ControlSpaceBui
 /// What a file holds.
 struct SavedControlSpace {
     Recipe recipe;
-    std::string saved_by;                          ///< "controlspace 0.1.0, format 3"
+    std::string saved_by;                          ///< "controlspace 0.1.0, format 4"
     std::unique_ptr<ControlSpaceBuilder> builder;  ///< none of a compact form
     std::unique_ptr<ControlSpace> space;
 };

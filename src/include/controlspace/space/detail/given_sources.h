@@ -27,6 +27,8 @@ public:
     std::vector<PointSource> all() const;
     /// Whether none has a gradation ratio of its own.
     bool all_grow_alike() const { return growths_.empty(); }
+    /// The largest gradation ratio of all, in a field of ratio g.
+    double largest_growth(double g) const;
     /// Bytes allocated.
     std::size_t bytes() const;
 
@@ -56,6 +58,7 @@ struct NodeGradation {
 
     GradationOptions options;  ///< `schedule` is `sources` only with a field
     std::unique_ptr<const ControlSpace> field;
+    double largest_ratio;  ///< of all cones
 };
 
 /// Sets control nodes at `x` to the field, but intersects them with it where it is more than twice

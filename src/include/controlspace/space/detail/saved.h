@@ -30,7 +30,13 @@ public:
     const std::shared_ptr<GivenSources>& given() const { return given_; }
     void set_given(std::shared_ptr<GivenSources> given) { given_ = std::move(given); }
 
+    /// Whether sources have gradation ratios of their own: where the sources are not known any
+    /// more, gradation from node to node would take the growth of such cones away.
+    bool grows_apart() const { return grows_apart_; }
+    void set_grows_apart(bool grows_apart) { grows_apart_ = grows_apart; }
+
 private:
+    bool grows_apart_ = false;
     std::optional<Recipe> recipe_;
     std::shared_ptr<GivenSources> given_;
 };

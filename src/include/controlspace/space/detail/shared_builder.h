@@ -69,12 +69,21 @@ public:
 
     using ControlSpaceBuilder::insert;
     InsertionReport insert(std::span<const PointSource> sources) override {
-        if constexpr (has_nodes) return insert_and_keep(sources);
+        if constexpr (has_nodes) {
+            const InsertionReport report = insert_and_keep(sources);
+            note_growth(sources);
+            return report;
+        }
         return edit().insert(sources);
     }
     GradationReport grade(const GradationOptions& options) override {
         if constexpr (has_nodes) {
             if (graded_by_sources_ == options) return {.visits = 0};
+            if (!this->given() && this->grows_apart()) {
+                throw InputError(
+                    "it holds sources with gradation ratios of their own, which are not known any "
+                    "more: adapt it anew, or insert and grade them in a new one");
+            }
             const NodeGradation gradation(options, this->given().get(), data_->options());
             const GradationReport report = edit().grade(gradation);
             graded_by_sources_.reset();
@@ -86,10 +95,16 @@ public:
     }
     AdaptationReport adapt(const AdaptationGoal& goal) override {
         forget_given();
+        AdaptationGoal bounded = goal;
+        if constexpr (has_nodes) {
+            this->set_grows_apart(false);
+            note_growth(goal.sources);
+            bounded.h_max = std::min(goal.h_max, data_->options().h_max);
+        }
         if constexpr (requires(Data & data) { data.adapt(goal); }) {
-            return edit().adapt(goal);
+            return edit().adapt(bounded);
         } else {
-            return Base::adapt(goal);
+            return Base::adapt(bounded);
         }
     }
     std::unique_ptr<ControlSpace> build(const BuildOptions& options) override {
@@ -112,6 +127,7 @@ public:
         if constexpr (has_nodes) {
             edit().assign(metrics);
             forget_given();
+            this->set_grows_apart(false);
         }
     }
 
@@ -141,6 +157,10 @@ private:
             throw;
         }
     }
+    void note_growth(std::span<const PointSource> sources) {
+        const auto grows = [](const PointSource& s) { return s.growth != 0; };
+        if (std::ranges::any_of(sources, grows)) this->set_grows_apart(true);
+    }
     // The field is no longer that of sources inserted.
     void forget_given() {
         this->set_given(nullptr);
@@ -151,6 +171,7 @@ private:
     std::unique_ptr<Space> described(std::unique_ptr<Space> space) const {
         auto& saved = dynamic_cast<Saved&>(*space);
         saved.set_recipe(this->recipe());
+        saved.set_grows_apart(this->grows_apart());
         if constexpr (has_nodes) {
             if (data_->options().takes_later_sources) saved.set_given(this->given());
         }

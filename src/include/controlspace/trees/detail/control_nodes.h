@@ -88,7 +88,9 @@ GradationReport grade_nodes(const Topology<Node>& tree, Storage& storage,
         LeafGraph nodes = ordered_nodes(tree, storage, neighbourhood_of(options));
         report = grade(std::move(nodes.graph), {storage.metrics().field(), nodes.order}, options);
     }
-    if constexpr (requires { storage.graded(options.ratio); }) storage.graded(options.ratio);
+    if constexpr (requires { storage.graded(options.ratio); }) {
+        storage.graded(gradation.largest_ratio);
+    }
     if constexpr (requires { storage.prepare(tree); }) storage.prepare(tree);
     return report;
 }
