@@ -64,8 +64,8 @@ public:
         if (is_graded_ && options.ratio >= storage_.ratio())
             return {.largest_ratio_left = ratio_left()};
         const double ratio = std::min(options.ratio, storage_.ratio());
-        const AdaptationGoal goal{sources, storage_.continuous(), ratio, close, storage_.rule(),
-                                  storage_.largest().xx};
+        const AdaptationGoal goal{sources, storage_.continuous(), ratio,
+                                  close,   storage_.rule(),       storage_.largest().xx};
         const GoalField field(goal, Base::domain());
         storage_.take_over(goal);
         GradationReport report;

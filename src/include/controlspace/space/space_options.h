@@ -30,7 +30,7 @@ struct SpaceOptions {
     double voxel = 0;          ///< longest edge of a grid's finest voxels; 0: l_min * finest_length
     double voxel_factor = 1;   ///< grids in levels: longest edge of a voxel, in the metric it holds
     double h_max = largest_magnitude;  ///< bounds M_max; K_Li and K_oLi overshoot it a little
-    double prune_delta = 0;    ///< δ up to which voxels of a field that is set join; 0: none do
+    double prune_delta = 0;  ///< δ up to which voxels of a field that is set join; 0: none do
     /// g_r of the gradation to come, for structures that keep sources, and for those with quadratic
     /// leaves, whose interpolation it bounds until they are graded.
     double ratio = 1.25;

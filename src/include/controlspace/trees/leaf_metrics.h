@@ -17,8 +17,7 @@ public:
     static constexpr CutBy cut_by = CutBy::corners;
     using constant_leaves = LeafMetrics;
 
-    explicit LeafMetrics(const SpaceOptions& options)
-        : metrics_(1, largest_metric(options)) {}
+    explicit LeafMetrics(const SpaceOptions& options) : metrics_(1, largest_metric(options)) {}
 
     NodeMetrics& metrics() { return metrics_; }
     const NodeMetrics& metrics() const { return metrics_; }

@@ -31,9 +31,9 @@ namespace controlspace {
 //                                        whose metric it is then. Or, for many at once,
 //   values_in(tree, leaves, x, nodes, out)
 //
-// and a constructor from SpaceOptions, for a tree of one leaf with largest_metric(options). A single
-// node of a leaf stands at its centre; for eight, corners() and positions() give those of all
-// leaves and all nodes. Constants:
+// and a constructor from SpaceOptions, for a tree of one leaf with largest_metric(options). A
+// single node of a leaf stands at its centre; for eight, corners() and positions() give those of
+// all leaves and all nodes. Constants:
 //
 //   order   of interpolation: 0 constant in a leaf, 1 linear, 2 quadratic
 //   cut_by  how the error of the interpolation depends on the place in a leaf (CutBy)
