@@ -127,6 +127,37 @@ TEST_CASE("sources that cannot be used are named in one line") {
     CHECK_FALSE(fs::exists(box / "out.ctrl"));
 }
 
+TEST_CASE("an input and --sources are joined by all commands") {
+    const Sandbox box("joined");
+    box.write("places.csv", places);
+    box.write("s.csv", "x,y,z,h\n0.1,0.9,0.2,0.02\n");
+    const std::string ball = "ball:0.7,0.3,0.5,r=0.1,h=0.03";
+    const auto expected = [](double x, double y, double z) {
+        const double from_ball = std::max(0.0, std::hypot(x - 0.7, y - 0.3, z - 0.5) - 0.1);
+        return std::min(0.02 + 0.25 * std::hypot(x - 0.1, y - 0.9, z - 0.2),
+                        0.03 + 0.25 * from_ball);
+    };
+    for (const std::string& arguments :
+         {"s.csv places.csv --sources " + ball, ball + " places.csv --sources s.csv",
+          "s.csv," + ball + " places.csv"}) {
+        CAPTURE(arguments);
+        CHECK(worst(box.run("query --structures direct " + arguments + domain), expected) <
+              1 + 1e-9);
+    }
+    const Outcome compared =
+        box.run("compare s.csv --quiet --structures direct --dry-run --sources " + ball + domain);
+    CHECK(compared.status == 0);
+    check_refused(box.run("compare s.csv --sources sphere"), "does not go with s.csv");
+    check_refused(box.run("query s.csv --pipe --sources -" + domain), "standard input");
+    check_refused(box.run("convert s.csv," + ball + " out.csv"), "is no set of points");
+    check_refused(box.run("convert s.csv,s.csv s.csv"), "name another output");
+    check_refused(box.run("info s.csv,s.csv -o s.csv"), "name another output");
+    box.write("g.csv", "x,y,z,h,g\n0.1,0.9,0.2,0.02,1.5\n");
+    check_refused(box.run("convert g.csv out.pos"), "only a .csv holds gradation ratios");
+    CHECK(box.run("convert g.csv again.csv").status == 0);
+    CHECK_FALSE(fs::exists(box / "out.csv"));
+}
+
 #ifdef CONTROLSPACE_CGAL
 TEST_CASE("lengths grow with the distance from a surface, on both sides") {
     const Sandbox box("surface-distance");

@@ -57,10 +57,10 @@ STRUCTURE_CASE(splits_in_the_middle,
     const auto loaded = load_control_space(folder / "f.ctrl", structures());
     CHECK(value_at(*loaded, far) == value_at(*graded->build(), far));
     CHECK(recipe_of(*loaded)->options.h_max == h_max);
-    if (!structure.entry->has<SourceLeaves>() && structure.entry->id != "direct") return;
+    if (structure.entry->has<VoxelSize>() || structure.entry->has<VoxelLevels>()) return;
     const auto adapted = make();
-    const AdaptationReport report = adapted->adapt(
-        {.sources = sources, .continuous = nullptr, .ratio = 1.25, .target = 0.01, .h_max = h_max});
+    const AdaptationReport report =
+        adapted->adapt({.sources = sources, .continuous = nullptr, .ratio = 1.25, .target = 0.05});
     CHECK(report.met);
-    CHECK(worst(*adapted->build(), beyond) < 1.08);
+    CHECK(worst(*adapted->build(), beyond) < 1.19);
 }

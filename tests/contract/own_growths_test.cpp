@@ -7,7 +7,9 @@
 #include "controlspace/measure/access_time.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/metric/nonconformity.h"
+#include "controlspace/space/control_space_file.h"
 #include "editable_space.h"
+#include "scratch_directory.h"
 
 using namespace controlspace;
 
@@ -85,4 +87,12 @@ TEST_CASE("gradation from node to node is refused for ratios of their own") {
     CHECK_THROWS_WITH(space->insert(work.sources),
                       Catch::Contains("source 1 has a gradation ratio"));
     space->insert(work.sources.front());
+    CHECK_THROWS_WITH(space->grade({}), Catch::Contains("not known any more"));
+
+    // A file without the sources says that there were some.
+    const ScratchDirectory scratch("own-growths");
+    const auto graded = work.graded(structure);
+    save_control_space(scratch / "f.ctrl", graded->built());
+    const auto loaded = load_editable(scratch / "f.ctrl", structures());
+    CHECK_THROWS_WITH(loaded->grade({}), Catch::Contains("not known any more"));
 }
