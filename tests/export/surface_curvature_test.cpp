@@ -65,7 +65,7 @@ Errors errors_of(const Surface& surface, const Radii& radii_at, double scale) {
     const Eigen::Affine3d map = somewhere(scale);
     Errors worst;
     int seen = 0;
-    for (const auto& [p, metric] : sources_of(transformed(surface, map), radii)) {
+    for (const auto& [p, metric, own_growth] : sources_of(transformed(surface, map), radii)) {
         const auto expected = radii_at(map.inverse() * p);
         if (expected[0] == 0) continue;
         ++seen;
@@ -126,7 +126,7 @@ TEST_CASE("lengths shrink towards an apex") {
     // Strips alone, which meet at the apex.
     const auto sources = sources_of(cone(1, 0, 2, 48, 1), {.angle = 60, .h_min = 1e-3, .h_max = 9});
     const double slant = std::hypot(1, 0.5);
-    for (const auto& [p, metric] : sources) {
+    for (const auto& [p, metric, own_growth] : sources) {
         const double r = (1 - p.z() / 2) * slant;
         if (p.z() < 1.6) CHECK(eigen_frame(metric).lengths[0] == Approx(r).epsilon(0.05));
         if (p.z() == 2) CHECK(eigen_frame(metric).lengths[0] == Approx(1e-3));
@@ -136,7 +136,7 @@ TEST_CASE("lengths shrink towards an apex") {
 TEST_CASE("a cube has no curvature, however fine its faces are") {
     const std::size_t n = GENERATE(1, 5, 20, 100);
     const Surface cube = transformed(box({0, 0, 0}, {1, 1, 1}, n), somewhere(1));
-    for (const auto& [p, metric] : sources_of(cube, {.h_max = 0.2})) {
+    for (const auto& [p, metric, own_growth] : sources_of(cube, {.h_max = 0.2})) {
         REQUIRE(eigen_frame(metric).lengths[0] == Approx(0.2));
     }
 }
@@ -148,7 +148,7 @@ TEST_CASE("a closed cylinder is curved around its axis, and its caps are flat") 
             return Point(v * std::cos(2 * pi * u), v * std::sin(2 * pi * u), z);
         });
     }
-    for (const auto& [p, metric] : sources_of(surface, {.h_max = 0.4})) {
+    for (const auto& [p, metric, own_growth] : sources_of(surface, {.h_max = 0.4})) {
         const double r = std::hypot(p.x(), p.y());
         CAPTURE(p.x(), p.y(), p.z());
         const Vector around(-p.y(), p.x(), 0);
@@ -171,7 +171,7 @@ TEST_CASE("an edge is a crease where the normal turns by more than the angle") {
     other.crease = degrees + 0.5;
     CHECK((finest(surface, other) < 0.29) == (n > 1));
     // What is flat on both sides stays so: two rows of triangles beside the edge are not.
-    for (const auto& [p, metric] : sources_of(surface, other)) {
+    for (const auto& [p, metric, own_growth] : sources_of(surface, other)) {
         if (std::abs(p.x()) > 2.0 / double(n)) CHECK(finest_length({{{p, metric}}}) == Approx(0.3));
     }
 }
@@ -186,7 +186,7 @@ TEST_CASE("a plate between fillets is flat, and so are the two halves of a fold"
         return Point(1.1, v, -1);
     });
     int flat_ones = 0;
-    for (const auto& [p, metric] : sources_of(surface, {.h_max = 0.2})) {
+    for (const auto& [p, metric, own_growth] : sources_of(surface, {.h_max = 0.2})) {
         const double shortest = eigen_frame(metric).lengths[0];
         if (p.x() > 0.01 && p.x() < 0.99) {
             CHECK(shortest > 0.15);

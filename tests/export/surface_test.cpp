@@ -79,7 +79,7 @@ TEST_CASE("lengths on a torus follow both curvatures, in all formats") {
                                               {.angle = 20, .h_min = 1e-3, .h_max = 100})
                              .sources;
     REQUIRE(sources.size() == surface.vertices.size());
-    for (const auto& [p, metric] : sources) {
+    for (const auto& [p, metric, own_growth] : sources) {
         const double r = std::hypot(p.x(), p.y());
         const Vector e_r(p.x() / r, p.y() / r, 0), around(-p.y() / r, p.x() / r, 0);
         const Vector normal = (r - 3) * e_r + p.z() * Vector::UnitZ();
@@ -99,7 +99,7 @@ TEST_CASE("bounds hold where the curvature asks for more or less") {
     // A cylinder of radius 1: flat along z.
     const Surface cylinder = cone(1, 1, 4, 40, 20);
     const auto path = scratch.file("c.off", off_text(cylinder));
-    for (const auto& [p, metric] :
+    for (const auto& [p, metric, own_growth] :
          read_surface_sources(path, {.h_min = 0.01, .h_max = 0.5}).sources) {
         CHECK(length_along(metric, Vector::UnitZ()) == Approx(0.5));
         CHECK(length_along(metric, {-p.y(), p.x(), 0}) == Approx(chord(15)).epsilon(0.04));

@@ -42,12 +42,13 @@ TEST_CASE("a fin on a plate has lengths across it, and stays long along") {
     const auto sources = sources_of(plate_with_fin(n), {.elements_across = across, .h_min = 1e-4});
     const auto fin = within(sources, {Point(0.1, 0.45, 0.25), Point(0.9, 0.55, 0.45)});
     CHECK(fin.size() > 8);
-    for (const auto& [p, metric] : fin) {
+    for (const auto& [p, metric, own_growth] : fin) {
         CHECK(along(metric, Vector::UnitY()) == Approx(0.004 / across).epsilon(0.01));
         CHECK(along(metric, Vector::UnitX()) > 0.1);
         CHECK(along(metric, Vector::UnitZ()) > 0.1);
     }
-    for (const auto& [p, metric] : within(sources, {Point(0.1, 0.1, -0.1), Point(0.9, 0.4, 0.1)})) {
+    for (const auto& [p, metric, own_growth] :
+         within(sources, {Point(0.1, 0.1, -0.1), Point(0.9, 0.4, 0.1)})) {
         CHECK(along(metric, Vector::UnitX()) > 0.1);
         CHECK(along(metric, Vector::UnitZ()) == Approx(0.2 / across).epsilon(0.01).margin(0.06));
     }
@@ -60,7 +61,7 @@ TEST_CASE("isotropic lengths are the shortest of the anisotropic ones") {
     // Every place of the fin is within two lengths of a source.
     CHECK(double(fin.size()) > 0.5 * 0.8 * 0.2 / (0.004 * 0.004));
     for (const PointSource& s : sources) REQUIRE(is_isotropic(s.metric));
-    for (const auto& [p, metric] : fin) CHECK(metric.xx == Approx(0.002).epsilon(0.01));
+    for (const auto& [p, metric, own_growth] : fin) CHECK(metric.xx == Approx(0.002).epsilon(0.01));
 }
 
 TEST_CASE("a gap has lengths across it, on both sides, whatever the orientation") {
@@ -71,7 +72,7 @@ TEST_CASE("a gap has lengths across it, on both sides, whatever the orientation"
     const Eigen::Affine3d map = somewhere(10);
     const Vector normal = map.linear().col(2).normalized();
     int seen = 0;
-    for (const auto& [q, metric] :
+    for (const auto& [q, metric, own_growth] :
          sources_of(transformed(surface, map), {.elements_across = 3, .h_min = 0.01, .h_max = 2})) {
         const Point p = map.inverse() * q;
         const bool beside_gap = std::abs(p.z() - 1 - gap / 2) < 0.501 * gap;
@@ -87,7 +88,7 @@ TEST_CASE("a gap has lengths across it, on both sides, whatever the orientation"
 TEST_CASE("a shell of two spheres has its thickness, and follows both curvatures") {
     Surface shell = sphere(48, 24);
     shell += transformed(sphere(40, 20), Eigen::Affine3d(Eigen::Scaling(0.98)));
-    for (const auto& [p, metric] : sources_of(shell, {.h_min = 1e-4})) {
+    for (const auto& [p, metric, own_growth] : sources_of(shell, {.h_min = 1e-4})) {
         if (std::abs(p.z()) > 0.7) continue;
         const Vector normal = p.normalized();
         CHECK(along(metric, normal) == Approx(0.01).epsilon(0.2));

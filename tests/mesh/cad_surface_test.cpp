@@ -189,7 +189,7 @@ TEST_CASE("a fillet has its radius all over, and the plates beside it have none"
     std::size_t inside = 0;
     bool any_flat = false;
     for (std::size_t i = 0; i < found.sources.size(); ++i) {
-        const auto& [place, metric] = found.sources[i];
+        const auto& [place, metric, own_growth] = found.sources[i];
         const Point p = part.place(place);
         const bool on_fillet = std::min(p.x(), 4 - p.x()) < radius + 1e-6 &&
                                std::min(p.y(), 3 - p.y()) < radius + 1e-6;
