@@ -173,9 +173,11 @@ std::unique_ptr<ControlSpace> Sources::finished(std::shared_ptr<const Sources> s
 }
 
 AdaptationReport Sources::adapt(const AdaptationGoal& goal) {
-    const GoalField wanted(goal, domain_);
-    ratio_ = goal.ratio;
     h_max_ = std::min(h_max_, goal.h_max);
+    AdaptationGoal bounded = goal;
+    bounded.h_max = h_max_;
+    const GoalField wanted(bounded, domain_);
+    ratio_ = goal.ratio;
     intersection_ = goal.intersection;
     sources_.assign(goal.sources.begin(), goal.sources.end());
     continuous_ = goal.continuous;

@@ -89,7 +89,7 @@ private:
     using Leaf = ConeLanes<leaf_size>;
     using Tree = ConeTree<Node, Leaf>;
 
-    void build(std::span<ConeTreeItem> items, std::span<const IsotropicCone> cones);
+    void build(std::span<ConeTreeItem> items, std::span<const PointSource> sources, double g);
     bool is_dominated(const IsotropicCone& cone) const;
     /// Of all cones below, everywhere at most `radius` away from `p`.
     Lanes lower_bounds(const Node& node, const Point& p, double radius = 0) const;

@@ -48,11 +48,17 @@ Vector normal_of(std::span<const ConeTreeItem> items, const Point& centre, doubl
     return std::abs(normal.squaredNorm() - 1) < 4 * epsilon ? normal : Vector::UnitX();
 }
 
+double slope_of(const PointSource& source, double g) { return cone_growth(source, g) - 1; }
+
+IsotropicCone cone_of(const PointSource& source, double g) {
+    return {source.position, source.metric.xx, slope_of(source, g)};
+}
+
 // For each place the item of the smallest length there, and longer ones that are less steep, in an
 // order that depends on nothing else.
 void keep_smallest_at_each_place(std::vector<ConeTreeItem>& items,
-                                 std::span<const IsotropicCone> cones) {
-    const auto slope = [&](const ConeTreeItem& item) { return cones[item.index].slope; };
+                                 std::span<const PointSource> sources, double g) {
+    const auto slope = [&](const ConeTreeItem& item) { return slope_of(sources[item.index], g); };
     tbb::parallel_sort(items.begin(), items.end(), [&](const auto& a, const auto& b) {
         return std::tuple(a.coordinates, slope(a), a.index) <
                std::tuple(b.coordinates, slope(b), b.index);
@@ -112,17 +118,15 @@ IsotropicCones::IsotropicCones(std::span<const PointSource> sources, double g, d
     // Without growth cones differ in their lengths only.
     const double weight = g > 1 ? 1 / (g - 1) : 1;
     std::vector<ConeTreeItem> items(sources.size());
-    std::vector<IsotropicCone> cones(sources.size());
     for (std::size_t i = 0; i < sources.size(); ++i) {
         const Point& q = sources[i].position;
-        const double h = sources[i].metric.xx;
-        items[i] = {{q.x(), q.y(), q.z(), weight * h}, static_cast<std::uint32_t>(i)};
-        cones[i] = {q, h, cone_growth(sources[i], g) - 1};
+        items[i] = {{q.x(), q.y(), q.z(), weight * sources[i].metric.xx},
+                    static_cast<std::uint32_t>(i)};
     }
-    keep_smallest_at_each_place(items, cones);
+    keep_smallest_at_each_place(items, sources, g);
     const std::size_t kept = build_without_dominated(
-        items, [&](std::span<ConeTreeItem> some) { build(some, cones); },
-        [&](const ConeTreeItem& item) { return is_dominated(cones[item.index]); });
+        items, [&](std::span<ConeTreeItem> some) { build(some, sources, g); },
+        [&](const ConeTreeItem& item) { return is_dominated(cone_of(sources[item.index], g)); });
     dropped_ = sources.size() - kept;
 }
 
@@ -148,10 +152,11 @@ bool IsotropicCones::is_dominated(const IsotropicCone& cone) const {
                          });
 }
 
-void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const IsotropicCone> cones) {
+void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const PointSource> sources,
+                           double g) {
     const auto make_leaf = [&](std::span<const ConeTreeItem> of_leaf, Leaf& leaf) {
         Eigen::Index lane = 0;
-        for (const ConeTreeItem& item : of_leaf) leaf.set(lane++, cones[item.index]);
+        for (const ConeTreeItem& item : of_leaf) leaf.set(lane++, cone_of(sources[item.index], g));
     };
     const auto make_node = [&](std::span<const Tree::Child> children, Node& node, std::uint32_t) {
         for (std::size_t i = 0; i < children.size(); ++i) {
@@ -167,7 +172,7 @@ void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const Isotro
                                                       : tree_.node(number).length.minCoeff();
             node.slope[lane] = infinity;
             for (const ConeTreeItem& item : of_child) {
-                node.slope[lane] = std::min(node.slope[lane], cones[item.index].slope);
+                node.slope[lane] = std::min(node.slope[lane], slope_of(sources[item.index], g));
             }
         }
     };

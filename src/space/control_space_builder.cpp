@@ -63,8 +63,7 @@ void require_valid(const PointSource& source, std::size_t index, const std::stri
 
 bool is_valid(const PointSource& source, const Box& domain) {
     const Metric& m = source.metric;
-    const bool is_metric =
-        is_isotropic(m) ? m.xx > 0 && std::isfinite(m.xx) : is_positive_definite(m);
+    const bool is_metric = (is_isotropic(m) && is_length(m.xx)) || is_positive_definite(m);
     return is_metric && is_source_growth(source.growth) && domain.contains(source.position);
 }
 

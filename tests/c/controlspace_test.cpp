@@ -176,7 +176,7 @@ TEST_CASE("C: sources with gradation ratios of their own, in a struct that may g
     sources = {offsetof(cspace_sources, growths), 2, positions, nullptr, lengths, growths};
     CHECK(cspace_insert_sources(space, &sources) == CSPACE_OK);
     CHECK(cspace_grade(space, 1.5) == CSPACE_OK);
-    CHECK(cspace_size(space, 0.3, 0.2, 0.3) == Approx(0.1 + 0.5 * 0.2).epsilon(0.02));
+    CHECK(cspace_size(space, 0.3, 0.2, 0.3) == Approx(0.1 + 0.25 * 0.2).epsilon(0.02));
     cspace_free(space);
 }
 

@@ -106,7 +106,9 @@ TEST_CASE("lengths that are shown to follow isotropic cones do so everywhere, ot
             } else if (doubt->is_certain) {
                 ++refuted;
                 CHECK(box.contains(doubt->where));
-                CHECK(scene.ratio(doubt->where) > 1 + (1 - 1e-8) * (factor - 1));
+                // Far from the origin places are rounded.
+                const double rounding = 1e-12 * box.high.cwiseAbs().maxCoeff();
+                CHECK(scene.ratio(doubt->where) > 1 + (1 - 1e-8) * (factor - 1) - rounding);
             } else {
                 ++unknown;
             }

@@ -64,9 +64,9 @@ void sign(std::string& bytes) {
 TEST_CASE("files of control spaces: what they begin with") {
     const ScratchDirectory scratch("ctrl");
     const std::string bytes = saved(scratch, "K_oL");
-    // Signature, version 2, order of bytes, size: little-endian.
+    // Signature, version 4, order of bytes, size: little-endian.
     CHECK(bytes.substr(0, 16) == std::string("\x89"
-                                             "CTRL\r\n\x1a\3\0\0\0\4\3\2\1",
+                                             "CTRL\r\n\x1a\4\0\0\0\4\3\2\1",
                                              16));
     std::string signed_again = bytes;
     sign(signed_again);

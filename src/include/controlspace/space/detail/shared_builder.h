@@ -99,6 +99,8 @@ public:
         if constexpr (has_nodes) {
             this->set_grows_apart(false);
             note_growth(goal.sources);
+        }
+        if constexpr (requires { data_->options(); }) {
             bounded.h_max = std::min(goal.h_max, data_->options().h_max);
         }
         if constexpr (requires(Data & data) { data.adapt(goal); }) {
