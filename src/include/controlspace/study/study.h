@@ -91,8 +91,8 @@ void require_applicable(const Study& study);
 /// that do not apply, for a reference that does not fit the sources, and for a study without cases.
 std::vector<Case> expand(const Study& study, const StudyRows& rows);
 
-/// The parameters that runs with the structure of `c` give another value than the defaults, and that
-/// have no effect on it: "target_delta (within)".
+/// The parameters that runs with the structure of `c` give another value than the defaults, and
+/// that have no effect on it: "target_delta (within)".
 std::vector<std::string> settings_without_effect(const Study& study, const Case& c,
                                                  const StudyRows& rows);
 
