@@ -93,6 +93,9 @@ public:
     template <class MakeLeaf, class MakeNode>
     void build(std::span<ConeTreeItem> items, std::uint64_t leaf_size, const MakeLeaf& make_leaf,
                const MakeNode& make_node) {
+        // What was built before goes first, so that both are never there.
+        nodes_ = std::vector<Node>();
+        leaves_ = std::vector<Leaf>();
         shape_ = ConeTreeShape::with_leaves_of(items.size(), leaf_size);
         sort_for_tree(shape_, items);
         const auto part = [&](std::size_t begin, std::size_t end) {
