@@ -68,6 +68,7 @@ public:
         state("sources.positions", positions(nodes.graph));
         state("sources.metrics", nodes.metrics);
         state("sources.ratio", ratio_);
+        state("sources.h_max", h_max_);
         state("sources.intersection", intersection_, IntersectionRule::in_turn);
         OwnGrowths growths;
         for (std::size_t i = 0; i < sources_.size(); ++i) growths.add(i, sources_[i].growth);
@@ -79,9 +80,9 @@ public:
         state("sources.positions", positions);
         state("sources.metrics", metrics);
         state("sources.ratio", ratio_);
-        if (state.has("sources.intersection")) {
-            state("sources.intersection", intersection_, IntersectionRule::in_turn);
-        }
+        state("sources.h_max", h_max_);
+        state.require(is_length(h_max_), "sources.h_max", "is no length");
+        state("sources.intersection", intersection_, IntersectionRule::in_turn);
         state.require(positions.size() == metrics.size(), "sources.metrics", "has another length");
         require_valid(GradationOptions{.ratio = ratio_});
         OwnGrowths growths;

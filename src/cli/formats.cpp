@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <utility>
 
@@ -81,12 +82,29 @@ constexpr SourceFormat formats[] = {
     {".brep", "gmsh", read_cad, try_cad},
 };
 
+// Whether this is a Medit mesh without a solution beside it.
+bool is_mesh_alone(std::filesystem::path file) {
+    const std::string ending = lower_case_extension(file);
+    if (ending != ".mesh" && ending != ".meshb") return false;
+    std::error_code none;
+    return std::ranges::none_of(std::array{".sol", ".solb"}, [&](const char* solution) {
+        return std::filesystem::exists(file.replace_extension(solution), none);
+    });
+}
+
 Sources read_by(const SourceFormat& format, const SourcesChoice& choice) {
     load_module(format.module);  // here, as the child's time and memory are limited
     require_readable(choice.file, [&] {
         format.try_read ? format.try_read(choice) : static_cast<void>(format.read(choice));
     });
-    return format.read(choice);
+    Sources sources = format.read(choice);
+    if (is_mesh_alone(choice.file)) {
+        spdlog::warn(
+            "{} has no solution beside it: lengths of its required edges are taken, at {} "
+            "vertices",
+            choice.file.string(), sources.size());
+    }
+    return sources;
 }
 
 const SourceFormat* format_of(const std::filesystem::path& file) {

@@ -288,8 +288,14 @@ AnalyticField primitives_field(std::span<const Primitive> primitives,
     field.finest_length = std::ranges::min(primitives, {}, &Primitive::h).h;
     std::vector<PrimitivesField::Law> laws;
     for (std::size_t i = 0; i < primitives.size(); ++i) {
-        const double slope = primitives[i].ratio.value_or(ratio) - 1;
-        laws.push_back({primitives[i].h, slope, std::move(distances[i].distance)});
+        const double g = primitives[i].ratio.value_or(ratio);
+        if (!(g >= 1 && g <= steepest_primitive)) {
+            throw InputError(
+                fmt::format("{} grows by g_r = {}: give a gradation ratio from 1 to {}",
+                            to_string(primitives[i]), g, steepest_primitive));
+        }
+        require_length("h", primitives[i].h);
+        laws.push_back({primitives[i].h, g - 1, std::move(distances[i].distance)});
         const std::vector<Point>& places = distances[i].places;
         field.places.insert(field.places.end(), places.begin(), places.end());
     }

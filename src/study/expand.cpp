@@ -106,10 +106,6 @@ void require_sensible(const Case& c) {
     if (c.sources.field.kind == FieldKind::file && c.sources.field.file.empty()) {
         throw InputError("field = \"file\" needs field_file: name a .vdb, .vtu or .vti");
     }
-    if (const double g = c.g_r; g > steepest_primitive && !c.sources.primitives.empty()) {
-        throw InputError(fmt::format("g_r is {}: primitives grow by at most {}: give g_r <= {}", g,
-                                     steepest_primitive, steepest_primitive));
-    }
     if (!(c.sources.h_min <= c.sources.h_max)) {
         throw InputError(fmt::format("h_min is {} and h_max {}: give h_min <= h_max",
                                      c.sources.h_min, c.sources.h_max));

@@ -63,4 +63,12 @@ STRUCTURE_CASE(splits_in_the_middle,
         adapted->adapt({.sources = sources, .continuous = nullptr, .ratio = 1.25, .target = 0.05});
     CHECK(report.met);
     CHECK(worst(*adapted->build(), beyond) < 1.19);
+    // A limit of the goal alone is saved too.
+    const auto limited = structure.entry->make({.domain = domain, .finest_length = 0.05});
+    limited->adapt(
+        {.sources = sources, .continuous = nullptr, .ratio = 1.25, .target = 0.05, .h_max = h_max});
+    CHECK(value_at(*limited->build(), far).xx == Approx(h_max).epsilon(1e-6));
+    save_control_space(folder / "limited.ctrl", *limited->build());
+    CHECK(value_at(*load_control_space(folder / "limited.ctrl", structures()), far) ==
+          value_at(*limited->build(), far));
 }

@@ -1,8 +1,12 @@
 #include "io/text/bisected_box.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "controlspace/error.h"
 
 namespace controlspace {
 namespace {
@@ -132,7 +136,14 @@ void BisectedBox::refine_to(const Box& cell, const Point& x) {
         }
         return ((high - low).array() > rounding * cell.edges().array()).any();
     };
+    constexpr std::size_t most_points = 20'000'000;
     while (is_large()) {
+        if (points_.size() >= most_points) {
+            throw InputError(
+                fmt::format("a mesh of tetrahedra as small as the cells has more than {} points: "
+                            "give a coarser structure, or another format",
+                            most_points));
+        }
         bisect(place.tetrahedron);
         descend(place);
     }

@@ -287,6 +287,7 @@ void AnchoredValues::save(StateWriter& state) const {
     sources_.save(state);
     anchors_.save(state);
     state("anchors.ratio", ratio_);
+    state("anchors.largest", largest_.xx);
     state("anchors.intersection", intersection_, IntersectionRule::in_turn);
     state("anchors.fits_tensors_loosely", fits_tensors_loosely_);
     state("anchors.gap", gap_);
@@ -296,11 +297,13 @@ void AnchoredValues::load(std::size_t leaves, const StateReader& state) {
     sources_.load(state);
     anchors_.load(state, leaves, sources_.size());
     state("anchors.ratio", ratio_);
-    if (state.has("anchors.intersection")) {
-        state("anchors.intersection", intersection_, IntersectionRule::in_turn);
-    }
+    double largest = 0;
+    state("anchors.largest", largest);
+    state.require(is_length(largest), "anchors.largest", "is no length");
+    largest_ = Metric::isotropic(largest);
+    state("anchors.intersection", intersection_, IntersectionRule::in_turn);
     state("anchors.fits_tensors_loosely", fits_tensors_loosely_);
-    if (state.has("anchors.gap")) state("anchors.gap", gap_);
+    state("anchors.gap", gap_);
     state.require(gap_ >= 1e-10 && gap_ <= 1, "anchors.gap", "is out of range");
 }
 
