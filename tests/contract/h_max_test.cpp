@@ -67,7 +67,7 @@ STRUCTURE_CASE(splits_in_the_middle,
     const auto limited = structure.entry->make({.domain = domain, .finest_length = 0.05});
     limited->adapt(
         {.sources = sources, .continuous = nullptr, .ratio = 1.25, .target = 0.05, .h_max = h_max});
-    CHECK(value_at(*limited->build(), far).xx == Approx(h_max).epsilon(1e-6));
+    CHECK(value_at(*limited->build(), far).xx <= h_max * beyond);
     save_control_space(folder / "limited.ctrl", *limited->build());
     CHECK(value_at(*load_control_space(folder / "limited.ctrl", structures()), far) ==
           value_at(*limited->build(), far));
