@@ -32,9 +32,13 @@ AnchoredValues::AnchoredValues(const SpaceOptions& options)
 Metric AnchoredValues::cones_at(const Point& x, std::span<const SourceIndex> anchors) const {
     if (sources_.all_isotropic()) {
         double h = largest_.xx;
-        for (const SourceIndex s : anchors) {
-            h = std::min(h, sources_.metric(s).xx + (sources_.growth(s, ratio_) - 1) *
-                                                        (x - sources_.position(s)).norm());
+        const auto shorten = [&](SourceIndex s, double slope) {
+            h = std::min(h, sources_.metric(s).xx + slope * (x - sources_.position(s)).norm());
+        };
+        if (sources_.all_grow_alike()) {
+            for (const SourceIndex s : anchors) shorten(s, ratio_ - 1);
+        } else {
+            for (const SourceIndex s : anchors) shorten(s, sources_.growth(s, ratio_) - 1);
         }
         return Metric::isotropic(h);
     }
