@@ -50,6 +50,18 @@ std::vector<Metric> by_definition(const std::vector<PointSource>& sources,
     return out;
 }
 
+// To the definition.
+double largest_difference(const ConeField& field, const std::vector<PointSource>& sources,
+                          const std::vector<Point>& points) {
+    const auto now = evaluated(field, points);
+    const auto wanted = by_definition(sources, points);
+    double worst = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        worst = std::max(worst, difference(now[i], wanted[i]));
+    }
+    return worst;
+}
+
 }  // namespace
 
 TEST_CASE("Isotropic sources that another's cone reaches are dropped, and no others") {
@@ -105,13 +117,7 @@ TEST_CASE("Tensors with ratios of their own: the cones in turn") {
     const ConeField field(sources, g, wide, 0, in_turn);
     CHECK(field.dropped() > 20);
     const auto points = places(draw, 300);
-    const auto now = evaluated(field, points);
-    const auto wanted = by_definition(sources, points);
-    double worst = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        worst = std::max(worst, difference(now[i], wanted[i]));
-    }
-    CHECK(worst < 1e-12);
+    CHECK(largest_difference(field, sources, points) < 1e-12);
 }
 
 TEST_CASE("Sources that are there twice are dropped once") {
@@ -137,13 +143,7 @@ TEST_CASE("Anisotropic sources that cannot matter are dropped, and the field sta
         const ConeField field(sources, g, wide, 0, in_turn);
         Draw draw(3);
         const auto points = places(draw, 100);
-        const auto now = evaluated(field, points);
-        const auto wanted = by_definition(sources, points);
-        double worst = 0;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            worst = std::max(worst, difference(now[i], wanted[i]));
-        }
-        CHECK(worst < 1e-12);
+        CHECK(largest_difference(field, sources, points) < 1e-12);
         return field.dropped() == 1;
     };
     CHECK(dropped(governs));
@@ -166,13 +166,7 @@ TEST_CASE("Dropping anisotropic sources of many sizes leaves the field as it is"
     auto sources = scattered(draw, 400, anisotropy);
     const auto points = places(draw, 200);
     const ConeField field(sources, g, wide, 0, in_turn);
-    const auto now = evaluated(field, points);
-    const auto wanted = by_definition(sources, points);
-    double worst = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        worst = std::max(worst, difference(now[i], wanted[i]));
-    }
-    CHECK(worst < 1e-12);
+    CHECK(largest_difference(field, sources, points) < 1e-12);
     if (anisotropy < 1.1) CHECK(field.dropped() > 40);
 }
 

@@ -52,7 +52,7 @@ public:
     double target() const { return target_; }
     /// Of sources that have none of their own.
     double ratio() const { return ratio_; }
-    /// Of all sources.
+    /// The largest of all sources' and that one.
     double largest_ratio() const { return largest_ratio_; }
 
 private:
