@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "case_of_each.h"
@@ -79,6 +80,17 @@ CASE_OF_EACH(tree, trees(),
         const auto floats = space->compact(Precision::floats);
         const std::vector<Metric> expected = answers(*space, x);
         CHECK(checksum(answers(*doubles, x)) == checksum(expected));
+        if (s_n == 1) {
+            for (const ControlSpace* answering : {&space->built(), doubles.get()}) {
+                std::vector<double> lengths(x.size());
+                answering->sample_lengths(x, lengths);
+                for (std::size_t i = 0; i < x.size(); ++i) REQUIRE(lengths[i] == expected[i].xx);
+            }
+            std::vector<double> lengths(x.size());
+            floats->sample_lengths(x, lengths);
+            const std::vector<Metric> metrics = answers(*floats, x);
+            for (std::size_t i = 0; i < x.size(); ++i) REQUIRE(lengths[i] == metrics[i].xx);
+        }
         double most = 0;
         const std::vector<Metric> rounded = answers(*floats, x);
         for (std::size_t i = 0; i < x.size(); ++i) {
@@ -122,7 +134,9 @@ CASE_OF_EACH(tree, trees(), "frozen trees have the same control nodes and links 
 
 CASE_OF_EACH(tree, trees(),
              "frozen trees are small, and their footprint is what they have allocated") {
-    const std::vector<PointSource> sources = sphere(1);
+    // Isotropic metrics are stored as lengths.
+    const auto [s_n, numbers] = GENERATE(std::pair(1.0, 1), std::pair(0.2, 6));
+    const std::vector<PointSource> sources = sphere(s_n);
     const auto space = tree.graded(sources);
     const Footprint full = space->footprint();
     for (const Precision precision : {Precision::doubles, Precision::floats}) {
@@ -137,9 +151,29 @@ CASE_OF_EACH(tree, trees(),
         CHECK(footprint.depth == full.depth);
         CHECK(footprint.control_nodes == full.control_nodes);
         CHECK(footprint.bytes_payload ==
-              footprint.control_nodes * (precision == Precision::floats ? 24 : 48));
+              footprint.control_nodes * static_cast<std::size_t>(numbers) *
+                  (precision == Precision::floats ? sizeof(float) : sizeof(double)));
         CHECK(footprint.bytes_auxiliary <= full.bytes_auxiliary);
     }
+}
+
+CASE_OF_EACH(tree, trees(), "lengths of a tree that meets its first tensor are those of tensors") {
+    std::vector<PointSource> sources = sphere(1);
+    const auto space = tree.graded(sources);
+    const std::vector<Point> x = places();
+    std::vector<double> before(x.size()), after(x.size());
+    space->built().sample_lengths(x, before);
+    sources[0].metric = {0.01, 0.02, 0.03, 0.002, 0.003, 0.004};
+    space->insert({sources.data(), 1});
+    space->grade({});
+    space->built().sample_lengths(x, after);
+    CHECK(after != before);
+    const std::vector<Metric> metrics = answers(*space, x);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        REQUIRE(after[i] == Approx(eigen_frame(metrics[i]).lengths[0]).epsilon(1e-12));
+    }
+    CHECK(space->compact(Precision::doubles)->footprint().bytes_payload >=
+          48 * space->footprint().control_nodes);
 }
 
 CASE_OF_EACH(entry, tree_catalogue(), "a tree of one leaf is frozen like any other") {

@@ -19,7 +19,7 @@ namespace controlspace {
 namespace {
 
 // Throws InputError if `rounded` is too far from `m`.
-void require_close(const StoredMetric<float>& rounded, const Metric& m) {
+void require_close(const Metric& rounded, const Metric& m) {
     constexpr double most = 1e-6;  // a length is off by 0.1 %
     const bool in_range =
         std::min({rounded.xx, rounded.yy, rounded.zz}) > std::numeric_limits<float>::min() &&
@@ -33,13 +33,13 @@ void require_close(const StoredMetric<float>& rounded, const Metric& m) {
 
 }  // namespace
 
-template <class Number>
-std::vector<StoredMetric<Number>> stored_metrics(std::span<const Metric> metrics,
-                                                 std::span<const NodeIndex> numbers) {
-    std::vector<StoredMetric<Number>> result;
+template <class M>
+std::vector<M> stored_metrics(std::span<const Metric> metrics, std::span<const NodeIndex> numbers) {
+    std::vector<M> result;
     result.reserve(numbers.size());
     for (const NodeIndex i : numbers) result.emplace_back(metrics[i]);
-    if constexpr (std::is_same_v<Number, float>) {
+    if constexpr (std::is_same_v<M, StoredMetric<float>> ||
+                  std::is_same_v<M, StoredLength<float>>) {
         // In a loop of its own: GCC 12 takes what is rounded and widened at once for unrounded.
         for (std::size_t k = 0; k < result.size(); ++k) {
             require_close(result[k], metrics[numbers[k]]);
@@ -51,6 +51,10 @@ std::vector<StoredMetric<Number>> stored_metrics(std::span<const Metric> metrics
 template std::vector<StoredMetric<float>> stored_metrics(std::span<const Metric>,
                                                          std::span<const NodeIndex>);
 template std::vector<StoredMetric<double>> stored_metrics(std::span<const Metric>,
+                                                          std::span<const NodeIndex>);
+template std::vector<StoredLength<float>> stored_metrics(std::span<const Metric>,
+                                                         std::span<const NodeIndex>);
+template std::vector<StoredLength<double>> stored_metrics(std::span<const Metric>,
                                                           std::span<const NodeIndex>);
 
 namespace {
@@ -75,10 +79,10 @@ std::unique_ptr<ControlSpace> freeze_quadratic(const Topology<Node>& tree,
     std::vector<LeafIndex> order;
     Topology<Node> ordered = tree.depth_first(order);
     CutPlanes planes(ordered);
-    return with_number(precision, [&]<class Number>(Number) {
+    return with_stored<true>(precision, metrics, [&]<class M>(std::type_identity<M>) {
         return with_plane(planes, [&]<class Plane>(Plane) {
-            FrozenQuadratic<Number, Plane> values(ordered, std::move(planes),
-                                                  stored_metrics<Number>(metrics, order), rule);
+            FrozenQuadratic<M, Plane> values(ordered, std::move(planes),
+                                             stored_metrics<M>(metrics, order), rule);
             return frozen(std::move(ordered), std::move(values));
         });
     });
@@ -111,10 +115,10 @@ std::unique_ptr<ControlSpace> freeze_vertices(const Topology<Node>& tree,
         ordered_corners.push_back(renumbered);
     }
     CutPlanes planes(ordered);
-    return with_number(precision, [&]<class Number>(Number) {
+    return with_stored<true>(precision, metrics, [&]<class M>(std::type_identity<M>) {
         return with_plane(planes, [&]<class Plane>(Plane) {
-            FrozenVertices<Number, Plane> values(ordered, std::move(planes), ordered_corners,
-                                                 stored_metrics<Number>(metrics, vertices));
+            FrozenVertices<M, Plane> values(ordered, std::move(planes), ordered_corners,
+                                            stored_metrics<M>(metrics, vertices));
             return frozen(std::move(ordered), std::move(values));
         });
     });

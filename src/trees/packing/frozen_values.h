@@ -18,21 +18,23 @@
 namespace controlspace {
 
 // What the leaves of compact forms hold (PackedTree), and save(state): as the storage does whose
-// compact form it is. `Number` is the type of the numbers in metrics, `Plane` that of the numbers
-// of planes.
+// compact form it is. `M` is what metrics are stored as, `Plane` the type of the numbers of
+// planes.
 
 /// Metrics of nodes, and leaves, of which each has its `faces` as numbers of planes.
-template <class Number, class Leaf>
+template <class M, class Leaf>
 class FrozenLeaves {
 public:
-    FrozenLeaves(CutPlanes planes, std::vector<StoredMetric<Number>> metrics)
+    static constexpr bool are_lengths = is_stored_length<M>;
+
+    FrozenLeaves(CutPlanes planes, std::vector<M> metrics)
         : planes_(std::move(planes)), metrics_(std::move(metrics)) {}
 
     void prefetch(LeafIndex leaf) const { __builtin_prefetch(&leaves_[leaf]); }
     Box box(LeafIndex leaf) const { return leaves_[leaf].faces.box(planes_); }
     void describe(Footprint& footprint) const {
         footprint.control_nodes = metrics_.size();
-        footprint.bytes_payload = metrics_.capacity() * sizeof(StoredMetric<Number>);
+        footprint.bytes_payload = metrics_.capacity() * sizeof(M);
         footprint.bytes_topology += leaves_.capacity() * sizeof(Leaf) + planes_.bytes();
     }
 
@@ -42,7 +44,7 @@ protected:
     }
 
     CutPlanes planes_;
-    std::vector<StoredMetric<Number>> metrics_;
+    std::vector<M> metrics_;
     std::vector<Leaf> leaves_;
 };
 
@@ -53,15 +55,15 @@ struct QuadraticLeaf {
 };
 
 /// One metric a leaf, interpolated with those of the neighbours.
-template <class Number, class Plane>
-class FrozenQuadratic : public FrozenLeaves<Number, QuadraticLeaf<Plane>> {
-    using Base = FrozenLeaves<Number, QuadraticLeaf<Plane>>;
+template <class M, class Plane>
+class FrozenQuadratic : public FrozenLeaves<M, QuadraticLeaf<Plane>> {
+    using Base = FrozenLeaves<M, QuadraticLeaf<Plane>>;
     using Base::planes_, Base::metrics_, Base::leaves_;
 
 public:
     template <class Node>
-    FrozenQuadratic(const Topology<Node>& tree, CutPlanes planes,
-                    std::vector<StoredMetric<Number>> metrics, const QuadraticRule& rule)
+    FrozenQuadratic(const Topology<Node>& tree, CutPlanes planes, std::vector<M> metrics,
+                    const QuadraticRule& rule)
         : Base(std::move(planes), std::move(metrics)), rule_(rule) {
         leaves_.reserve(tree.leaves());
         for_each_faces<Plane>(tree, planes_, [&](LeafIndex, const Faces<Plane>& faces) {
@@ -71,12 +73,12 @@ public:
             leaves_[leaf].across = across;
         });
         isotropic_ = std::ranges::all_of(
-            metrics_, [](const StoredMetric<Number>& m) { return is_isotropic(m); });
+            metrics_, [](const M& m) { return is_stored_length<M> || is_isotropic(m); });
     }
 
-    template <class Node>
+    template <class Node, class Value>
     void values_in(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
-                   std::span<const Point> x, std::span<Metric> out) const {
+                   std::span<const Point> x, std::span<Value> out) const {
         QuadraticInLeaves(tree, *this).interpolate(leaves, x, out);
     }
 
@@ -85,7 +87,7 @@ public:
     }
     Metric metric(LeafIndex leaf) const { return metrics_[leaf]; }
     void prefetch_metric(LeafIndex leaf) const { __builtin_prefetch(&metrics_[leaf]); }
-    double length(LeafIndex leaf) const { return metrics_[leaf].xx; }
+    double length(LeafIndex leaf) const { return length_of(metrics_[leaf]); }
     bool all_isotropic() const { return isotropic_; }
     double slope() const { return rule_.slope; }
     QuadraticForm form() const { return rule_.form; }
@@ -112,16 +114,16 @@ struct VertexLeaf {
 
 /// A metric at each vertex, trilinear between the eight of a leaf; vertices numbered as the leaves
 /// come to them.
-template <class Number, class Plane>
-class FrozenVertices : public FrozenLeaves<Number, VertexLeaf<Plane>> {
-    using Base = FrozenLeaves<Number, VertexLeaf<Plane>>;
+template <class M, class Plane>
+class FrozenVertices : public FrozenLeaves<M, VertexLeaf<Plane>> {
+    using Base = FrozenLeaves<M, VertexLeaf<Plane>>;
     using Base::planes_, Base::metrics_, Base::leaves_;
 
 public:
     /// `corners` are those of the tree's leaves, whose numbers point into `metrics`.
     template <class Node>
     FrozenVertices(const Topology<Node>& tree, CutPlanes planes,
-                   const std::vector<Corners>& corners, std::vector<StoredMetric<Number>> metrics)
+                   const std::vector<Corners>& corners, std::vector<M> metrics)
         : Base(std::move(planes), std::move(metrics)) {
         leaves_.reserve(tree.leaves());
         for_each_faces<Plane>(tree, planes_, [&](LeafIndex leaf, const Faces<Plane>& faces) {
@@ -129,13 +131,13 @@ public:
         });
     }
 
-    template <class Node>
+    template <class Node, class Value>
     void values_in(const Topology<Node>&, std::span<const LeafIndex> leaves,
-                   std::span<const Point> x, std::span<Metric> out) const {
+                   std::span<const Point> x, std::span<Value> out) const {
         trilinear_in_leaves(*this, leaves, x, out);
     }
     const Corners& corners(LeafIndex leaf) const { return leaves_[leaf].corners; }
-    std::span<const StoredMetric<Number>> metrics() const { return metrics_; }
+    std::span<const M> metrics() const { return metrics_; }
 
     template <class Node>
     ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {

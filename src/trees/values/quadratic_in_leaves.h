@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "controlspace/geometry/extent.h"
 #include "controlspace/metric/blend.h"
@@ -31,10 +32,12 @@ public:
     QuadraticInLeaves(const Topology<Node>& tree, const Values& values)
         : tree_(tree), values_(values) {}
 
+    /// As metrics; or, where all are known to be isotropic, as lengths.
+    template <class Value>
     void interpolate(std::span<const LeafIndex> leaves, std::span<const Point> x,
-                     std::span<Metric> out) const {
+                     std::span<Value> out) const {
         if (x.size() == 1) {
-            out.front() = one(leaves.front(), x.front());
+            out.front() = one<Value>(leaves.front(), x.front());
             return;
         }
         for (std::size_t first = 0; first < x.size(); first += at_a_time) {
@@ -46,7 +49,8 @@ public:
 private:
     static constexpr std::size_t at_a_time = 16;
 
-    Metric one(LeafIndex leaf, const Point& place) const {
+    template <class Value>
+    Value one(LeafIndex leaf, const Point& place) const {
         const Box& box = values_.box(leaf);
         const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
         PartsAcross across = values_.parts_across(leaf, x);
@@ -57,12 +61,13 @@ private:
             do part = child_with(part, y);
             while (!part.is_leaf());
         }
-        return value(leaf, box, x, across);
+        return value<Value>(leaf, box, x, across);
     }
 
     // Descents to neighbours go side by side: while one waits for memory, others compare.
+    template <class Value>
     void some(std::span<const LeafIndex> leaves, std::span<const Point> places,
-              std::span<Metric> out) const {
+              std::span<Value> out) const {
         std::array<Point, at_a_time> low, high, x;
         std::array<PartsAcross, at_a_time> across;
         std::array<std::uint8_t, 6 * at_a_time> going;
@@ -100,7 +105,7 @@ private:
             for (const Ref neighbour : across[i]) values_.prefetch_metric(neighbour.index());
         }
         for (std::size_t i = 0; i < places.size(); ++i) {
-            out[i] = value(leaves[i], {low[i], high[i]}, x[i], across[i]);
+            out[i] = value<Value>(leaves[i], {low[i], high[i]}, x[i], across[i]);
         }
     }
 
@@ -117,28 +122,38 @@ private:
         return node.children[node.child_with(y)];
     }
 
-    Metric value(LeafIndex leaf, const Box& box, const Point& x, const PartsAcross& across) const {
+    template <class Value>
+    Value value(LeafIndex leaf, const Box& box, const Point& x, const PartsAcross& across) const {
         const Vector v = x - box.centre();
         const Vector t = 2 * v.cwiseQuotient(divisible_edges(box));
-        if (values_.form() == QuadraticForm::published) return published(leaf, t, across);
-        if (values_.all_isotropic()) {
+        if (values_.form() == QuadraticForm::published) {
+            return published<Value>(leaf, t, across);
+        }
+        if (std::is_same_v<Value, double> || values_.all_isotropic()) {
             std::array<double, 6> lengths;
             for (std::size_t i = 0; i < 6; ++i) lengths[i] = values_.length(across[i].index());
             const double own = values_.length(leaf);
-            return Metric::isotropic(triquadratic(own, lengths, t, v, values_.slope()));
+            return isotropic_value<Value>(triquadratic(own, lengths, t, v, values_.slope()));
         }
         std::array<Metric, 6> metrics;
         for (std::size_t i = 0; i < 6; ++i) metrics[i] = values_.metric(across[i].index());
         const Metric own = values_.metric(leaf);
-        return triquadratic(own, metrics, t, 1 + values_.slope() * metric_length(own, v));
+        const Metric m = triquadratic(own, metrics, t, 1 + values_.slope() * metric_length(own, v));
+        if constexpr (std::is_same_v<Value, double>) {
+            return length_of(m);
+        } else {
+            return m;
+        }
     }
 
     // Not inlined: the other form takes a fifth longer beside it.
-    [[gnu::noinline]] Metric published(LeafIndex leaf, const Vector& t,
-                                       const PartsAcross& across) const {
-        return blend_lengths(published_triquadratic_weights(t), [&](std::size_t i) -> Metric {
-            return values_.metric(i < 6 ? across[i].index() : leaf);
-        });
+    template <class Value>
+    [[gnu::noinline]] Value published(LeafIndex leaf, const Vector& t,
+                                      const PartsAcross& across) const {
+        const auto weights = published_triquadratic_weights(t);
+        return blend<Value>(
+            weights.size(), [&](std::size_t i) { return weights[i]; },
+            [&](std::size_t i) { return values_.metric(i < 6 ? across[i].index() : leaf); });
     }
 
     const Topology<Node>& tree_;

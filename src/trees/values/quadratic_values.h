@@ -38,10 +38,10 @@ public:
         __builtin_prefetch(&boxes_[leaf]);
         if (!across_.empty()) __builtin_prefetch(&across_[leaf]);
     }
-    template <class Node>
+    template <class Node, class Value>
     void values_in(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
                    std::span<const Point> x, const NodeView<Metric>& nodes,
-                   std::span<Metric> out) const {
+                   std::span<Value> out) const {
         const double slope = nodes.are_requested ? requested_slope_ : slope_;
         const Values<Node> values{tree, *this, nodes, slope};
         QuadraticInLeaves(tree, values).interpolate(leaves, x, out);

@@ -73,13 +73,13 @@ private:
     std::array<Numbers, 8> weights_;
 };
 
-/// Metrics at `x`, trilinear between the corners of the leaves that hold them, for some places at a
-/// time, so that metrics are prefetched while weights are computed. `values` provides
-/// box(leaf), prefetch_box(leaf), if it is worth it, corners(leaf), and metrics(), which these
-/// number.
-template <std::size_t at_a_time, class Values>
+/// Metrics at `x`, or lengths where all are known to be isotropic, trilinear between the corners of
+/// the leaves that hold them, for some places at a time, so that metrics are prefetched while
+/// weights are computed. `values` provides box(leaf), prefetch_box(leaf), if it is worth it,
+/// corners(leaf), and metrics(), which these number.
+template <std::size_t at_a_time, class Values, class Value>
 void trilinear_in_leaves(const Values& values, std::span<const LeafIndex> leaves,
-                         std::span<const Point> x, std::span<Metric> out) {
+                         std::span<const Point> x, std::span<Value> out) {
     WeightsInBoxes<at_a_time> weights;
     const auto metrics = values.metrics();
     for (std::size_t first = 0; first < x.size(); first += at_a_time) {
@@ -95,16 +95,16 @@ void trilinear_in_leaves(const Values& values, std::span<const LeafIndex> leaves
         weights.weigh(count);
         for (std::size_t i = 0; i < count; ++i) {
             const Corners& corners = values.corners(leaves[first + i]);
-            out[first + i] = blend_lengths(
+            out[first + i] = blend<Value>(
                 8, [&](std::size_t c) { return weights(i, c); },
                 [&](std::size_t c) -> auto& { return metrics[corners[c]]; });
         }
     }
 }
 
-template <class Values>
+template <class Values, class Value>
 void trilinear_in_leaves(const Values& values, std::span<const LeafIndex> leaves,
-                         std::span<const Point> x, std::span<Metric> out) {
+                         std::span<const Point> x, std::span<Value> out) {
     constexpr std::size_t most = 32;  // what they read fits into the nearest cache
     if (x.size() == 1) {
         trilinear_in_leaves<1>(values, leaves, x, out);

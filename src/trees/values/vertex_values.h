@@ -35,10 +35,10 @@ public:
 
     explicit VertexValues(const SpaceOptions& options);
 
-    template <class Node>
+    template <class Node, class Value>
     void values_in(const Topology<Node>&, std::span<const LeafIndex> leaves,
                    std::span<const Point> x, const NodeView<Metric>& nodes,
-                   std::span<Metric> out) const {
+                   std::span<Value> out) const {
         trilinear_in_leaves(Field{*this, nodes.metrics}, leaves, x, out);
     }
     void prefetch(LeafIndex leaf) const { __builtin_prefetch(&corners_[leaf]); }

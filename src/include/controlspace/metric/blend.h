@@ -3,8 +3,10 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <span>
+#include <type_traits>
 
 #include "controlspace/metric/metric.h"
+#include "controlspace/metric/stored_metric.h"
 
 namespace controlspace {
 
@@ -48,6 +50,27 @@ template <class MetricAt>
 Metric blend_lengths(std::span<const double> weights, MetricAt&& metric_at) {
     return blend_lengths(
         weights.size(), [&](std::size_t i) { return weights[i]; }, metric_at);
+}
+
+/// The same for metrics known to be isotropic, as their lengths: StoredLengths too.
+template <class WeightAt, class MetricAt>
+[[gnu::always_inline]] inline double blend_isotropic(std::size_t count, WeightAt&& weight_at,
+                                                     MetricAt&& metric_at) {
+    double sum = 0;
+    for (std::size_t i = 0; i < count; ++i) sum += weight_at(i) * length_of(metric_at(i));
+    return sum;
+}
+
+/// The weighted mean as a Metric; or, where all are known to be isotropic, as its length.
+template <class Value, class WeightAt, class MetricAt>
+[[gnu::always_inline]] inline Value blend(std::size_t count, WeightAt&& weight_at,
+                                          MetricAt&& metric_at) {
+    using M = std::remove_cvref_t<decltype(metric_at(0))>;
+    if constexpr (std::is_same_v<Value, double> || is_stored_length<M>) {
+        return isotropic_value<Value>(blend_isotropic(count, weight_at, metric_at));
+    } else {
+        return blend_lengths(count, weight_at, metric_at);
+    }
 }
 
 }  // namespace controlspace

@@ -18,7 +18,8 @@
 namespace controlspace {
 
 struct BuildOptions {
-    /// The compact form, for a CatalogueEntry that has CompactForm: answers alike in less memory.
+    /// The compact form, for a CatalogueEntry that has CompactForm: answers alike in less memory;
+    /// isotropic metrics are kept as lengths.
     /// With doubles it answers the same bits; floats round the metrics by 6e-8.
     std::optional<Precision> precision = {};
 };

@@ -27,8 +27,8 @@ public:
         metrics_.repeat(leaf, static_cast<std::size_t>(subdivision.children() - 1));
     }
     template <class Node, class M>
-    Metric value_in(const Topology<Node>&, LeafIndex leaf, const Point&,
-                    const NodeView<M>& nodes) const {
+    M value_in(const Topology<Node>&, LeafIndex leaf, const Point&,
+               const NodeView<M>& nodes) const {
         return nodes[leaf];
     }
 

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "controlspace/metric/stored_metric.h"
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/space_options.h"
 #include "controlspace/trees/cut.h"
@@ -30,6 +31,9 @@ namespace controlspace {
 //                                        holds x, or the point of the domain that is nearest to x,
 //                                        whose metric it is then. Or, for many at once,
 //   values_in(tree, leaves, x, nodes, out)
+//                                        Where value_in returns what `nodes` hold, or values_in
+//                                        writes to numbers too, lengths are asked for without
+//                                        tensors (AnswersLengths).
 //
 // and a constructor from SpaceOptions, for a tree of one leaf with largest_metric(options). A
 // single node of a leaf stands at its centre; for eight, corners() and positions() give those of
@@ -97,6 +101,19 @@ concept HasConstantLeaves = std::is_same_v<typename Storage::constant_leaves, St
 /// Whether lengths in a leaf are trilinear between its nodes'. Not inherited either.
 template <class Storage>
 concept HasTrilinearLeaves = std::is_same_v<typename Storage::trilinear_leaves, Storage>;
+
+/// Whether a storage answers lengths where all its metrics are isotropic, of StoredLengths too:
+/// value_in returns what `nodes` hold, or values_in writes to numbers.
+template <class Storage, class Node>
+concept AnswersLengths = requires(const Storage& s, const Topology<Node>& tree,
+                                  std::span<const LeafIndex> leaves, std::span<const Point> x,
+                                  const NodeView<Metric>& nodes, std::span<double> out) {
+    s.values_in(tree, leaves, x, nodes, out);
+}
+|| requires(const Storage& s, const Topology<Node>& tree, const Point& x,
+            const NodeView<StoredLength<double>>& nodes) {
+    { s.value_in(tree, 0, x, nodes) } -> std::same_as<StoredLength<double>>;
+};
 
 template <class Storage>
 consteval bool follows_neighbours() {

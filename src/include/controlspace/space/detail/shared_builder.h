@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -26,6 +27,12 @@ public:
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         data_->sample(x, out);
     }
+    void sample_lengths(std::span<const Point> x, std::span<double> out) const override {
+        if constexpr (requires { data_->sample_lengths(x, out); }) {
+            if (has_lengths()) return data_->sample_lengths(x, out);
+        }
+        ControlSpace::sample_lengths(x, out);
+    }
     Box domain() const override { return data_->domain(); }
     Footprint footprint() const override {
         Footprint footprint = data_->footprint();
@@ -39,14 +46,27 @@ public:
     void save(StateWriter& state) const override { data_->save(state); }
 
 private:
+    enum class Known : std::uint8_t { no, lengths, tensors };
+
+    // Found when it is first asked for: finding it reads all metrics.
+    bool has_lengths() const {
+        Known known = known_.load(std::memory_order_relaxed);
+        if (known == Known::no) {
+            known = data_->has_lengths() ? Known::lengths : Known::tensors;
+            known_.store(known, std::memory_order_relaxed);
+        }
+        return known == Known::lengths;
+    }
+
     std::shared_ptr<const Data> data_;
+    mutable std::atomic<Known> known_ = Known::no;
 };
 
 /// A builder around `Data`, which can be copied, read and changed: sample, domain, footprint,
-/// cell_at, control_nodes, save; insert(sources), grade(options), adapt, load; for a NodeBuilder
-/// assign, options and grade(NodeGradation), and it may leave out adapt. With pack(precision) it
-/// has compact forms; finish() is called before it is built. With finished(shared data) it is built
-/// in another form than SharedSpace.
+/// cell_at, control_nodes, save, and, with has_lengths(), sample_lengths; insert(sources),
+/// grade(options), adapt, load; for a NodeBuilder assign, options and grade(NodeGradation), and it
+/// may leave out adapt. With pack(precision) it has compact forms; finish() is called before it is
+/// built. With finished(shared data) it is built in another form than SharedSpace.
 ///
 /// What it builds shares the data, which are copied before the next change as long as they are
 /// shared.

@@ -63,6 +63,16 @@ public:
 
     void finish() { Base::settle(); }
 
+    /// Whether all metrics are isotropic, and sample_lengths answers.
+    bool has_lengths() const {
+        return AnswersLengths<Storage, Node> &&
+               std::ranges::all_of(metrics().field(), is_isotropic);
+    }
+    void sample_lengths(std::span<const Point> x,
+                        std::span<double> out) const requires AnswersLengths<Storage, Node> {
+        sample_leaves(topology_, field_of(storage_), x, out);
+    }
+
     std::unique_ptr<ControlSpace> pack(Precision precision) const {
         return pack_tree(topology_, storage_, precision);
     }

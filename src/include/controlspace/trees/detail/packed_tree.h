@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -17,28 +19,40 @@
 namespace controlspace {
 
 // Compact forms of trees, which can only be read (BuildOptions::precision): inner nodes and leaves
-// lie depth first, and only what reading needs is kept. With doubles they answer as the tree does,
-// to the bit. They are saved as the tree is, with nodes and leaves in their order.
+// lie depth first, and only what reading needs is kept: of metrics that are all isotropic, their
+// lengths. With doubles they answer as the tree does, to the bit. They are saved as the tree is,
+// with nodes and leaves in their order.
 
 /// The metrics with these numbers, in their order. Throws InputError where floats cannot hold one.
-template <class Number>
-std::vector<StoredMetric<Number>> stored_metrics(std::span<const Metric> metrics,
-                                                 std::span<const NodeIndex> numbers);
+template <class M>
+std::vector<M> stored_metrics(std::span<const Metric> metrics, std::span<const NodeIndex> numbers);
 
-/// pack(Number()) for the type of numbers that metrics are stored in.
-template <class Pack>
-std::unique_ptr<ControlSpace> with_number(Precision precision, Pack&& pack) {
-    return precision == Precision::floats ? pack(float()) : pack(double());
+/// pack(std::type_identity<M>()) for the type that metrics are stored in, which is that of lengths
+/// where all are isotropic, if it `may_be_lengths`.
+template <bool may_be_lengths, class Pack>
+std::unique_ptr<ControlSpace> with_stored(Precision precision, std::span<const Metric> metrics,
+                                          Pack&& pack) {
+    const bool floats = precision == Precision::floats;
+    if constexpr (may_be_lengths) {
+        if (std::ranges::all_of(metrics, is_isotropic)) {
+            return floats ? pack(std::type_identity<StoredLength<float>>())
+                          : pack(std::type_identity<StoredLength<double>>());
+        }
+    }
+    return floats ? pack(std::type_identity<StoredMetric<float>>())
+                  : pack(std::type_identity<StoredMetric<double>>());
 }
 
 /// What the leaves of a compact form hold, of any storage with one node a leaf: its data, and the
-/// metrics in numbers of type `Number`.
-template <class Storage, class Number>
+/// metrics stored as `M`.
+template <class Storage, class M>
 class PackedValues {
 public:
+    static constexpr bool are_lengths = is_stored_length<M>;
+
     /// `former` are the former numbers of the leaves.
     PackedValues(const Storage& storage, std::span<const LeafIndex> former)
-        : storage_(storage), metrics_(stored_metrics<Number>(storage.metrics().field(), former)) {
+        : storage_(storage), metrics_(stored_metrics<M>(storage.metrics().field(), former)) {
         storage_.metrics() = NodeMetrics(0, Metric());
         for_each_array(storage_, [&](std::string_view, auto& array) {
             auto ordered = std::remove_cvref_t<decltype(array)>();
@@ -49,9 +63,9 @@ public:
     }
 
     void prefetch(LeafIndex leaf) const { field().prefetch(leaf); }
-    template <class Node>
+    template <class Node, class Value>
     void values_in(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
-                   std::span<const Point> x, std::span<Metric> out) const {
+                   std::span<const Point> x, std::span<Value> out) const {
         field().values_in(tree, leaves, x, out);
     }
     template <class Node>
@@ -61,17 +75,17 @@ public:
     void describe(Footprint& footprint) const {
         describe_storage(storage_, footprint);
         footprint.control_nodes = metrics_.size();
-        footprint.bytes_payload += metrics_.capacity() * sizeof(StoredMetric<Number>);
+        footprint.bytes_payload += metrics_.capacity() * sizeof(M);
     }
     void save(StateWriter& state) const {
         save_storage(storage_, NodeMetrics({metrics_.begin(), metrics_.end()}), state);
     }
 
 private:
-    NodeField<Storage, StoredMetric<Number>> field() const { return {storage_, {metrics_}}; }
+    NodeField<Storage, M> field() const { return {storage_, {metrics_}}; }
 
     Storage storage_;  // without metrics
-    std::vector<StoredMetric<Number>> metrics_;
+    std::vector<M> metrics_;
 };
 
 /// A tree whose leaves, numbered depth first, hold `Values`: see PackedValues.
@@ -83,6 +97,13 @@ public:
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         sample_leaves(topology_, values_, x, out);
+    }
+    void sample_lengths(std::span<const Point> x, std::span<double> out) const override {
+        if constexpr (Values::are_lengths) {
+            sample_leaves(topology_, values_, x, out);
+        } else {
+            ControlSpace::sample_lengths(x, out);
+        }
     }
     ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
         return values_.control_nodes(topology_, neighbourhood);
@@ -125,11 +146,13 @@ std::unique_ptr<ControlSpace> pack_tree(const Topology<Node>& tree, const Storag
                       "precision)`");
         std::vector<LeafIndex> former;
         Topology<Node> ordered = tree.depth_first(former);
-        return with_number(precision, [&]<class Number>(Number) -> std::unique_ptr<ControlSpace> {
-            using Packed = PackedValues<Storage, Number>;
-            return std::make_unique<PackedTree<Node, Packed>>(std::move(ordered),
-                                                              Packed(storage, former));
-        });
+        return with_stored<AnswersLengths<Storage, Node>>(
+            precision, storage.metrics().field(),
+            [&]<class M>(std::type_identity<M>) -> std::unique_ptr<ControlSpace> {
+                using Packed = PackedValues<Storage, M>;
+                return std::make_unique<PackedTree<Node, Packed>>(std::move(ordered),
+                                                                  Packed(storage, former));
+            });
     }
 }
 

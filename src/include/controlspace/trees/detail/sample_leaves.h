@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <type_traits>
 
+#include "controlspace/metric/stored_metric.h"
 #include "controlspace/trees/storage.h"
 #include "controlspace/trees/topology.h"
 
@@ -18,14 +20,18 @@ struct NodeField {
     [[gnu::always_inline]] void prefetch(LeafIndex leaf) const {
         if constexpr (requires { storage.prefetch(leaf); }) storage.prefetch(leaf);
     }
-    template <class Node>
+    template <class Node, class Value>
     void values_in(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
-                   std::span<const Point> x, std::span<Metric> out) const {
+                   std::span<const Point> x, std::span<Value> out) const {
         if constexpr (requires { storage.values_in(tree, leaves, x, nodes, out); }) {
             storage.values_in(tree, leaves, x, nodes, out);
         } else {
             for (std::size_t i = 0; i < x.size(); ++i) {
-                out[i] = storage.value_in(tree, leaves[i], x[i], nodes);
+                if constexpr (std::is_same_v<Value, double>) {
+                    out[i] = length_of(storage.value_in(tree, leaves[i], x[i], nodes));
+                } else {
+                    out[i] = storage.value_in(tree, leaves[i], x[i], nodes);
+                }
             }
         }
     }
@@ -46,10 +52,11 @@ NodeField<Storage, Metric> requested_of(const Storage& storage) {
     return {storage, storage.metrics().requested_values()};
 }
 
-/// Metrics at `x`: leaves are found for many points side by side, then read.
-template <class Node, class Field>
+/// Metrics at `x`, or lengths where all are known to be isotropic: leaves are found for many points
+/// side by side, then read.
+template <class Node, class Field, class Value>
 void sample_leaves(const Topology<Node>& tree, const Field& field, std::span<const Point> x,
-                   std::span<Metric> out) {
+                   std::span<Value> out) {
     std::array<LeafIndex, Topology<Node>::most_found> leaves;
     for (std::size_t first = 0; first < x.size(); first += leaves.size()) {
         const auto part = x.subspan(first, std::min(leaves.size(), x.size() - first));
@@ -66,7 +73,7 @@ void sample_leaves(const Topology<Node>& tree, const Field& field, std::span<con
 template <class Node, class Field>
 Metric value_in(const Topology<Node>& tree, const Field& field, LeafIndex leaf, const Point& x) {
     Metric m;
-    field.values_in(tree, {&leaf, 1}, {&x, 1}, {&m, 1});
+    field.values_in(tree, {&leaf, 1}, {&x, 1}, std::span(&m, 1));
     return m;
 }
 template <class Node, class Field>
