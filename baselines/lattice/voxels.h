@@ -26,7 +26,7 @@ Vector lattice_nodes(const Box& domain, const Vector& cells, Interpolation inter
 /// `cells` rounded up, at least 1; 2 / 0.02 gives 100, whichever way the quotient is rounded.
 Vector whole_cells(const Vector& cells);
 
-/// Longest edge that the finest voxels may have: `voxel`, or l_min * finest_length where that is 0.
+/// Longest edge that voxels may have: `voxel`, or l_min * finest_length where that is 0.
 /// Throws InputError where the options name neither.
 double finest_voxel(const SpaceOptions& options);
 

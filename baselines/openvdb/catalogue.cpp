@@ -10,17 +10,9 @@ std::vector<CatalogueEntry> openvdb_rows() {
             "openvdb-uniform-nearest", "OpenVDB 5-4-3 tree, dense, a metric per voxel, constant"),
         grid_row<make_openvdb_grid, Interpolation::trilinear>(
             "openvdb-uniform-trilinear",
-            "OpenVDB 5-4-3 tree, dense, a metric per voxel, trilinear"),
-        grid_row<make_openvdb_levels, Interpolation::nearest>(
-            "openvdb-levels-nearest",
-            "OpenVDB 3-3-2 trees, a stack of grids, a metric per voxel, constant"),
-        grid_row<make_openvdb_levels, Interpolation::trilinear>(
-            "openvdb-levels-trilinear",
-            "OpenVDB 3-3-2 trees, a stack of grids, a metric per voxel, trilinear")};
+            "OpenVDB 5-4-3 tree, dense, a metric per voxel, trilinear")};
     rows[0].former_id = "openvdb-nearest";
     rows[1].former_id = "openvdb-trilinear";
-    rows[2].capabilities.push_back(VoxelLevels());
-    rows[3].capabilities.push_back(VoxelLevels());
     for (CatalogueEntry& row : rows) row.capabilities.push_back(Pruning());
     rows.push_back({.id = "openvdb-vec3s-trilinear",
                     .description = "two of OpenVDB's Vec3S trees, dense, in floats, trilinear",

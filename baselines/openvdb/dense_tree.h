@@ -52,35 +52,6 @@ void fill_densely(Tree& tree, const LatticeData& data, ValueOf&& value_of) {
     });
 }
 
-/// Accessor for one thread, while no node of the tree is taken away, that the tree need not know of
-/// ("unsafe"): registering one takes a lock and an allocation.
-template <class Tree>
-using Accessor = openvdb::tree::ValueAccessor<Tree, false>;
-
-/// Where the values at the low corner of a cell and the others are, which it prefetches. `leaf` is
-/// the low corner's, null where a tile is.
-template <std::size_t corners, class Tree>
-auto find_values(const Accessor<const Tree>& nodes, const openvdb::Coord& low,
-                 const typename Tree::LeafNodeType* leaf) {
-    constexpr auto side = static_cast<int>(Tree::LeafNodeType::DIM);
-    const openvdb::Coord within = low & (side - 1);
-    const bool fits = corners == 1 || std::max({within.x(), within.y(), within.z()}) + 1 < side;
-    std::array<const typename Tree::ValueType*, corners> values;
-    if (leaf != nullptr && fits) {
-        const auto* first = leaf->buffer().data() + leaf->coordToOffset(low);
-        for (std::size_t corner = 0; corner < corners; ++corner) {
-            const openvdb::Coord step = corner_step(corner);
-            values[corner] = first + (step.x() * side + step.y()) * side + step.z();
-        }
-    } else {
-        for (std::size_t corner = 0; corner < corners; ++corner) {
-            values[corner] = &nodes.getValue(low + corner_step(corner));
-        }
-    }
-    for (const auto* value : values) prefetch(value);
-    return values;
-}
-
 /// Reads the voxels of a tree, one by one or those of many cells side by side (Stencil::sample).
 template <class Tree>
 class DenseReader {
@@ -90,18 +61,39 @@ public:
     const auto& operator()(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
         return nodes_.getValue(voxel(i, j, k));
     }
+    /// The leaf of the cell's low corner, null where a tile is.
     const auto* prepare(const Cell& cell) const {
         const auto* leaf = nodes_.probeConstLeaf({cell[0], cell[1], cell[2]});
         __builtin_prefetch(leaf);
         return leaf;
     }
+    /// Where the values at the cell's corners are, which it prefetches.
     template <std::size_t corners>
     auto find(const Cell& cell, const typename Tree::LeafNodeType* leaf) const {
-        return find_values<corners, Tree>(nodes_, {cell[0], cell[1], cell[2]}, leaf);
+        constexpr auto side = static_cast<int>(Tree::LeafNodeType::DIM);
+        const openvdb::Coord low(cell[0], cell[1], cell[2]);
+        const openvdb::Coord within = low & (side - 1);
+        const bool fits = corners == 1 || std::max({within.x(), within.y(), within.z()}) + 1 < side;
+        std::array<const typename Tree::ValueType*, corners> values;
+        if (leaf != nullptr && fits) {
+            const auto* first = leaf->buffer().data() + leaf->coordToOffset(low);
+            for (std::size_t corner = 0; corner < corners; ++corner) {
+                const openvdb::Coord step = corner_step(corner);
+                values[corner] = first + (step.x() * side + step.y()) * side + step.z();
+            }
+        } else {
+            for (std::size_t corner = 0; corner < corners; ++corner) {
+                values[corner] = &nodes_.getValue(low + corner_step(corner));
+            }
+        }
+        for (const auto* value : values) prefetch(value);
+        return values;
     }
 
 private:
-    Accessor<const Tree> nodes_;
+    /// For one thread, while no node of the tree is taken away, that the tree need not know of
+    /// ("unsafe"): registering one takes a lock and an allocation.
+    openvdb::tree::ValueAccessor<const Tree, false> nodes_;
 };
 
 /// Bytes of the values of a leaf.

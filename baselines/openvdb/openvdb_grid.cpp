@@ -17,7 +17,7 @@ public:
         fill_densely(tree_, *data, [](const Metric& m) { return VdbMetric(m); });
         const double delta = data->options().prune_delta;
         // Voxels that fill up the outermost leaves are inactive, and nobody reads them.
-        if (delta > 0) prune_metrics(tree_, {.delta = delta, .inactive_count = false});
+        if (delta > 0) prune_metrics(tree_, delta);
     }
 
     static double bytes_for(const Vector& nodes) { return dense_bytes<VdbMetricTree>(nodes); }

@@ -10,23 +10,15 @@
 
 namespace controlspace {
 
-/// Which leaves of a tree of metrics may make way for a tile, one value for all of their voxels.
-struct PruneRule {
-    double delta = 0;  ///< largest δ of a voxel to the tile
-    /// Inactive voxels hold something or mean something, so that a leaf is joined only if all of
-    /// its voxels are active; otherwise they do not count.
-    bool inactive_count = true;
-};
-
-/// Puts tiles in place of nodes that are alike: the intersection of their metrics, which requests
-/// no larger elements than any of them, where all are within the rule's δ of it; nothing, where all
-/// voxels are inactive and hold the background. Nodes above the leaves are joined where their tiles
-/// are equal, so that tolerances do not add up. openvdb::tools::prune is no way to do it: it
-/// compares tensors by their first entry and takes the median.
+/// Puts tiles in place of leaves whose active voxels are alike: the intersection of their metrics,
+/// which requests no larger elements than any of them, where all are within `delta` of it. Inactive
+/// voxels do not count. Nodes above the leaves are joined where their tiles are equal, so that
+/// tolerances do not add up. openvdb::tools::prune is no way to do it: it compares tensors by their
+/// first entry and takes the median.
 ///
 /// Works on all of TBB's threads, with the same result whatever their number.
 template <class Tree>
-void prune_metrics(Tree& tree, const PruneRule& rule);
+void prune_metrics(Tree& tree, double delta);
 
 namespace detail {
 
@@ -38,8 +30,7 @@ struct Tile {
 template <class Tree>
 class Prune {
 public:
-    Prune(const VdbMetric& background, const PruneRule& rule)
-        : background_(background), rule_(rule) {}
+    explicit Prune(double delta) : delta_(delta) {}
 
     void operator()(typename Tree::RootNodeType& root) const {
         for (auto child = root.beginChildOn(); child; ++child) {
@@ -62,18 +53,12 @@ public:
 
 private:
     std::optional<Tile> tile_for(const typename Tree::LeafNodeType& leaf) const {
-        if (leaf.isEmpty()) {
-            for (auto voxel = leaf.cbeginValueOff(); voxel; ++voxel) {
-                if (*voxel != background_) return std::nullopt;
-            }
-            return Tile{background_, false};
-        }
-        if (rule_.delta <= 0 || (rule_.inactive_count && !leaf.isDense())) return std::nullopt;
+        if (leaf.isEmpty()) return std::nullopt;
         auto voxel = leaf.cbeginValueOn();
         Metric common = (*voxel).metric;
         while (++voxel) common = intersection(common, (*voxel).metric);
         for (voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
-            if (nonconformity(common, (*voxel).metric) > rule_.delta) return std::nullopt;
+            if (nonconformity(common, (*voxel).metric) > delta_) return std::nullopt;
         }
         return Tile{VdbMetric(common), true};
     }
@@ -89,17 +74,16 @@ private:
         return first;
     }
 
-    VdbMetric background_;
-    PruneRule rule_;
+    double delta_;
 };
 
 }  // namespace detail
 
 template <class Tree>
-void prune_metrics(Tree& tree, const PruneRule& rule) {
+void prune_metrics(Tree& tree, double delta) {
     tree.clearAllAccessors();
     openvdb::tree::NodeManager<Tree, Tree::DEPTH - 2> nodes(tree);
-    nodes.foreachBottomUp(detail::Prune<Tree>(tree.background(), rule));
+    nodes.foreachBottomUp(detail::Prune<Tree>(delta));
 }
 
 }  // namespace controlspace

@@ -159,7 +159,7 @@ def read_results(folder):
             raise ValueError("not written by controlspace: give a folder of results")
         version = data["schema_version"]
         if version != 2:
-            raise ValueError(f"schema version {version} is not 2: bench/convert_results makes it of 1")
+            raise ValueError(f"schema version {version} is not 2: run the study again")
         head = {key: data[key] for key in PROVENANCE}
         defaults = dict(data["defaults"])
         rows = []

@@ -77,7 +77,7 @@ std::string options_text(const CatalogueEntry& entry, const SpaceOptions& o) {
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);
     };
     if (entry.has<SplitRules>()) add("split", name_of(o.split));
-    if (is_tree || entry.has<VoxelLevels>() || o.voxel == 0) add("tau", o.l_min);
+    if (is_tree || o.voxel == 0) add("tau", o.l_min);
     add("epsilon", o.tolerance);
     if (is_tree) add("maximum depth", entry.has<SplitRules>() ? o.kd_depth : o.octree_depth);
     if (entry.has<QuadraticLeaves>()) add("interpolation", name_of(o.quadratic_form));
@@ -86,7 +86,6 @@ std::string options_text(const CatalogueEntry& entry, const SpaceOptions& o) {
         add("g_r", o.ratio);
     }
     if (entry.has<VoxelSize>() && o.voxel > 0) add("voxel", o.voxel);
-    if (entry.has<VoxelLevels>()) add("voxel_factor", o.voxel_factor);
     if (entry.has<Pruning>()) add("prune_delta", o.prune_delta);
     if (o.takes_later_sources) text += ", accepts later sources";
     return text;

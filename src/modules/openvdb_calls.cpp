@@ -17,11 +17,6 @@ std::unique_ptr<ControlSpaceBuilder> make_openvdb_grid(const SpaceOptions& optio
     return openvdb().make_openvdb_grid(options, interpolation);
 }
 
-std::unique_ptr<ControlSpaceBuilder> make_openvdb_levels(const SpaceOptions& options,
-                                                         Interpolation interpolation) {
-    return openvdb().make_openvdb_levels(options, interpolation);
-}
-
 std::unique_ptr<ControlSpaceBuilder> make_openvdb_vec3s(const SpaceOptions& options) {
     return openvdb().make_openvdb_vec3s(options);
 }

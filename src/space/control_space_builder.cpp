@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 
 #include "controlspace/input_errors.h"
 #include "controlspace/space/detail/goal_field.h"

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
-#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <string>
@@ -65,7 +64,6 @@ void exchange(Self& options, State& state) {
     state("options.octree_depth", options.octree_depth);
     state("options.finest_length", options.finest_length);
     state("options.voxel", options.voxel);
-    state("options.voxel_factor", options.voxel_factor);
     state("options.prune_delta", options.prune_delta);
     state("options.ratio", options.ratio);
     state("options.quadratic_form", options.quadratic_form, QuadraticForm::published);

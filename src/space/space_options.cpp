@@ -43,7 +43,6 @@ void require_valid(const SpaceOptions& options) {
     require_positive("l_min (tau)", options.l_min);
     require_positive("the insertion tolerance (epsilon)", options.tolerance);
     require_not_negative("voxel", options.voxel);
-    require_positive("voxel_factor", options.voxel_factor);
     require_positive("h_max", options.h_max);
     require_not_negative("prune_delta", options.prune_delta);
     require_depth("the depth of kd-trees", options.kd_depth, deepest_kd_level);

@@ -261,29 +261,21 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
          has<SourceLeaves>,
          {},
          "target_delta"},
-        structure(
-            "equal_delta", "",
-            "Largest delta_R for which the voxels of a grid are chosen (in levels voxel_factor "
-            "too; and prune_delta, where that saves memory); 0: not chosen. For trees see "
-            "target_delta",
-            number_or_none(&Case::equal_delta), {0}, has<VoxelSize>,
-            if_given("for delta {:.4g}", &Case::equal_delta)),
+        structure("equal_delta", "",
+                  "Largest delta_R for which the voxels of a grid are chosen (and prune_delta, "
+                  "where that "
+                  "saves memory); 0: not chosen. For trees see target_delta",
+                  number_or_none(&Case::equal_delta), {0}, has<VoxelSize>,
+                  if_given("for delta {:.4g}", &Case::equal_delta)),
         structure("equal_memory", "MB",
                   "Memory of the finished grid for which its voxels are chosen; 0: not chosen",
                   number_or_none(&Case::equal_memory), {0}, has<VoxelSize>,
                   if_given("for {:.4g} MB", &Case::equal_memory)),
         structure("voxel", "length",
-                  "Longest edge of a grid's finest voxels; 0: tau times the smallest requested "
+                  "Longest edge of a grid's voxels; 0: tau times the smallest requested "
                   "length",
                   number_or_none(&Case::voxel), {0}, has<VoxelSize>,
                   if_given("voxel {:.4g}", &Case::voxel)),
-        structure("voxel_factor", "metric length in its own metric",
-                  "c of grids in levels: longest edge of a voxel", number_of(&Case::voxel_factor),
-                  {1}, has<VoxelLevels>,
-                  [](const Case& c) {
-                      const double factor = c.voxel_factor.value_or(1);
-                      return factor == 1 ? "" : fmt::format("c {:.4g}", factor);
-                  }),
         structure("neighbourhood", "",
                   "Neighbours in gradation from node to node: faces, nodes across faces (at "
                   "vertices: along edges) as in the paper; all, those across edges and corners "

@@ -37,15 +37,9 @@ struct Goal {
 /// All trials of one case, whose voxels alone vary.
 class Trials {
 public:
-    /// With `levels_unit`, voxel_factor is the voxels' length in this unit. Voxels of
-    /// `too_many_bytes` end the search.
-    Trials(const Case& c, std::optional<double> levels_unit, double too_many_bytes,
-           const std::function<Trial(const Case&)>& attempt)
-        : case_(c),
-          levels_unit_(levels_unit),
-          too_many_bytes_(too_many_bytes),
-          attempt_(attempt),
-          goal_(c) {}
+    /// Voxels of `too_many_bytes` end the search.
+    Trials(const Case& c, double too_many_bytes, const std::function<Trial(const Case&)>& attempt)
+        : case_(c), too_many_bytes_(too_many_bytes), attempt_(attempt), goal_(c) {}
 
     void halve_and_bisect(double coarsest) {
         constexpr int most_halvings = 16;
@@ -73,7 +67,6 @@ private:
     bool is_passed(double length) {
         Case setting = case_;
         setting.voxel = length;
-        if (levels_unit_) setting.voxel_factor = length / *levels_unit_;
         try {
             tried_.push_back({setting, attempt_(setting)});
         } catch (const InputError& error) {
@@ -92,7 +85,6 @@ private:
     }
 
     Case case_;
-    std::optional<double> levels_unit_;
     double too_many_bytes_;
     const std::function<Trial(const Case&)>& attempt_;
     Goal goal_;
@@ -113,14 +105,12 @@ std::string shortfall(const Goal& goal, const Trial& trial, const std::string& r
 }  // namespace
 
 EqualSetting find_equal_setting(const Case& c, const CatalogueEntry& entry, double longest_edge,
-                                double finest_length,
                                 const std::function<Trial(const Case&)>& attempt) {
     const Goal goal(c);
-    const auto levels_unit = entry.has<VoxelLevels>() ? std::optional(finest_length) : std::nullopt;
     std::optional<EqualSetting> best;
     std::string refusal;
     const auto search = [&](const Case& variant, double coarsest, double too_many_bytes) {
-        Trials trials(variant, levels_unit, too_many_bytes, attempt);
+        Trials trials(variant, too_many_bytes, attempt);
         trials.halve_and_bisect(coarsest);
         refusal = trials.refusal();
         for (EqualSetting& found : std::move(trials).tried()) {

@@ -22,16 +22,14 @@ struct EqualSetting {
 };
 
 /// The voxels with which a grid reaches `equal_delta` of the case in the least memory, or those
-/// that use `equal_memory` up, to 3 %: `voxel`; in levels `voxel_factor` in proportion, so that the
-/// finest voxels are those where `finest_length` is requested. Voxels are halved, from a quarter of
-/// `longest_edge` on, until the goal is passed; then the last interval is bisected. A grid with
-/// Pruning is also tried with half of `equal_delta` as prune_delta, where none is set.
+/// that use `equal_memory` up, to 3 %. Voxels are halved, from a quarter of `longest_edge` on,
+/// until the goal is passed; then the last interval is bisected. A grid with Pruning is also tried
+/// with half of `equal_delta` as prune_delta, where none is set.
 ///
 /// `attempt` makes and measures a grid. An InputError from it (too much memory) ends the search at
 /// the voxels before, and so do two halvings that change less than 5 %. If the first attempt
 /// throws, so does this.
 EqualSetting find_equal_setting(const Case& c, const CatalogueEntry& entry, double longest_edge,
-                                double finest_length,
                                 const std::function<Trial(const Case&)>& attempt);
 
 }  // namespace controlspace

@@ -77,8 +77,6 @@ std::vector<Case> settings_of(const Study& study, const Run& run,
 /// One structure under one setting: what it does not have does not multiply it.
 std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const Case& setting,
                               std::span<const CaseParameter> parameters) {
-    // Nothing but sources makes grids in levels finer.
-    if (entry.has<VoxelLevels>() && has_field(setting.sources)) return {};
     std::vector<Case> cases{setting};
     cases.front().structure = entry.id;
     for (const CaseParameter& p : parameters) {
@@ -114,9 +112,8 @@ void require_sensible(const Case& c) {
     if (c.equal_delta && c.equal_memory) {
         throw InputError("equal_delta and equal_memory choose the same voxels: give one of them");
     }
-    if ((c.equal_delta || c.equal_memory) && (c.voxel || c.voxel_factor.value_or(1) != 1)) {
-        throw InputError(
-            "equal_delta and equal_memory choose voxel and voxel_factor: leave those out");
+    if ((c.equal_delta || c.equal_memory) && c.voxel) {
+        throw InputError("equal_delta and equal_memory choose voxel: leave it out");
     }
 }
 
@@ -197,11 +194,7 @@ std::vector<Case> expand(const Study& study, const StudyRows& rows) {
             }
         }
     }
-    if (cases.empty()) {
-        throw InputError(
-            "the study has no cases: give at least one structure, and for a field one that is not "
-            "a grid in levels");
-    }
+    if (cases.empty()) throw InputError("the study has no cases: give at least one structure");
     return cases;
 }
 

@@ -43,7 +43,7 @@ Trial scaled(const Trial& trial, double factor) {
     return {factor * trial.seconds, factor * trial.bytes, trial.query_seconds};
 }
 
-/// A grid of one voxel size, by one with fewer voxels.
+/// A grid, by one with fewer voxels.
 Trial forecast_grid(const PreparedStudy& prepared, Case c, const Workload& workload) {
     constexpr double voxels_of_trial = 1e5;
     const SpaceOptions options =
@@ -107,7 +107,7 @@ std::vector<std::optional<Forecast>> forecast(const PreparedStudy& prepared) {
         if (!only_running_tells) {
             try {
                 const CatalogueEntry& entry = prepared.entry(c);
-                const Trial trial = entry.has<VoxelSize>() && !entry.has<VoxelLevels>()
+                const Trial trial = entry.has<VoxelSize>()
                                         ? forecast_grid(prepared, c, workload)
                                         : forecast_patches(prepared, c, workload);
                 forecast = {

@@ -14,10 +14,10 @@ struct Forecast {
     double bytes = 0;    ///< of the structure
 };
 
-/// Forecasts for all cases of a study, extrapolated from small trials: of trees and grids in levels
-/// with some thousand neighbouring sources, of grids of one voxel size with fewer voxels. Usually
-/// correct within a factor of two or three. None for cases that cannot be predicted (adaptation to
-/// a target, a search for voxels), and for those that fail. Costs some ten milliseconds a case.
+/// Forecasts for all cases of a study, extrapolated from small trials: of trees with some thousand
+/// neighbouring sources, of grids with fewer voxels. Usually correct within a factor of two or
+/// three. None for cases that cannot be predicted (adaptation to a target, a search for voxels),
+/// and for those that fail. Costs some ten milliseconds a case.
 std::vector<std::optional<Forecast>> forecast(const PreparedStudy& prepared);
 
 /// The cases, their forecasts and the sum, as a table.

@@ -1,7 +1,5 @@
 #include "controlspace/study/run.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <list>
 #include <memory>
@@ -127,8 +125,7 @@ private:
     std::string choose_voxels(Case& c, const Workload& workload, const ReferenceProbes& probes) {
         if (!c.equal_delta && !c.equal_memory) return "";
         const EqualSetting found = find_equal_setting(
-            c, prepared_.entry(c), workload.domain.edges().maxCoeff(), workload.finest_length,
-            [&](const Case& trial) {
+            c, prepared_.entry(c), workload.domain.edges().maxCoeff(), [&](const Case& trial) {
                 const auto space = make_and_fill(study_, trial, rows_, workload).build(trial);
                 return Trial{accuracy(*space, probes.coarse).max,
                              static_cast<double>(space->footprint().bytes_total())};

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <string_view>
 
 #include "controlspace/error.h"
@@ -36,7 +35,6 @@ StoredResults results_from(const Json& json, const StudyRows& rows) {
 bool is_outcome_of(const Row& row, Case c) {
     if (c.equal_delta || c.equal_memory) {
         c.voxel = row.setting.voxel;
-        c.voxel_factor = row.setting.voxel_factor;
         c.prune_delta = row.setting.prune_delta;
     }
     return row.setting == c;

@@ -235,7 +235,6 @@ SpaceOptions space_options(const Study& study, const Case& c, const Workload& wo
     if (c.split) options.split = *c.split;
     if (c.max_depth) (c.split ? options.kd_depth : options.octree_depth) = *c.max_depth;
     options.voxel = c.voxel.value_or(0);
-    if (c.voxel_factor) options.voxel_factor = *c.voxel_factor;
     options.prune_delta = c.prune_delta.value_or(0);
     if (c.interpolation) options.quadratic_form = *c.interpolation;
     options.intersection = c.intersection;

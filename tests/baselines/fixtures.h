@@ -21,8 +21,7 @@ inline std::span<const CatalogueEntry> grids() {
         std::vector<CatalogueEntry> lattices;
         std::copy_if(structures().begin(), structures().end(), std::back_inserter(lattices),
                      [](const CatalogueEntry& entry) {
-                         return entry.has<VoxelSize>() && !entry.has<VoxelLevels>() &&
-                                !is_rounding(entry);
+                         return entry.has<VoxelSize>() && !is_rounding(entry);
                      });
         return lattices;
     }();

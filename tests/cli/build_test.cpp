@@ -17,7 +17,7 @@ const std::vector<std::string> saved_structures{
     "K_oLA",
     "uniform-trilinear",
 #ifdef CONTROLSPACE_OPENVDB
-    "openvdb-levels-trilinear",
+    "openvdb-uniform-trilinear",
 #endif
 };
 const std::string places_csv = "x,y,z\n0,0,0\n0.3,0.4,0.5\n0.9,0.1,0.7\n";

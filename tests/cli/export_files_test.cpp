@@ -74,7 +74,7 @@ TEST_CASE("a plane is exported as one, and compared") {
     CHECK_THAT(file_text(box / "a.vti"), Contains("WholeExtent=\"0 511 0 0 0 511\""));
     const Outcome compared = box.run(
         "compare --sources s.csv --output r --access-points 100 --structures "
-        "K_L,K_V,K_oLi,K_oV,K_oLA,uniform-trilinear,openvdb-levels-trilinear" +
+        "K_L,K_V,K_oLi,K_oV,K_oLA,uniform-trilinear,openvdb-uniform-trilinear" +
         plane);
     INFO(compared.err);
     CHECK(compared.status == 0);

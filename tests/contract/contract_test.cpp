@@ -118,7 +118,6 @@ STRUCTURE_CASE(does_not_round,
     const Work work = isotropic_sphere();
     CAPTURE(work.name);
     SpaceOptions options = work.options(structure.split);
-    options.voxel_factor = 1000;  // no voxel is refined because its neighbours are smaller
     const auto graded = [&](Neighbourhood neighbourhood) {
         auto space = editable(structure.entry->make(options));
         space->insert(work.sources);

@@ -33,7 +33,6 @@ TEST_CASE("every grid comes to an accuracy, and the row says by which voxels") {
         REQUIRE(row.setting.voxel);
         Run again{{"structures", {row.setting.structure}}};
         again["voxel"] = {*row.setting.voxel};
-        again["voxel_factor"] = {row.setting.voxel_factor.value_or(1)};
         again["prune_delta"] = {row.setting.prune_delta.value_or(0)};
         const Row other = rows_of(again).front();
         REQUIRE(other.is_measured());

@@ -57,7 +57,7 @@ STRUCTURE_CASE(splits_in_the_middle,
     const auto loaded = load_control_space(folder / "f.ctrl", structures());
     CHECK(value_at(*loaded, far) == value_at(*graded->build(), far));
     CHECK(recipe_of(*loaded)->options.h_max == h_max);
-    if (structure.entry->has<VoxelSize>() || structure.entry->has<VoxelLevels>()) return;
+    if (structure.entry->has<VoxelSize>()) return;
     const auto adapted = make();
     const AdaptationReport report =
         adapted->adapt({.sources = sources, .continuous = nullptr, .ratio = 1.25, .target = 0.05});

@@ -18,8 +18,7 @@ namespace {
 constexpr double g = 1.25;
 
 bool adapts(const Structure& structure) {
-    return does_not_round(structure) && !structure.entry->has<VoxelSize>() &&
-           !structure.entry->has<VoxelLevels>();
+    return does_not_round(structure) && !structure.entry->has<VoxelSize>();
 }
 
 double largest_nonconformity(const ControlSpace& space, const Work& work) {

@@ -73,11 +73,11 @@ class Results(WithFolder):
                 except InputError as error:
                     self.assertIn("results.json", str(error))
 
-    def test_schema_1_is_to_be_converted(self):
+    def test_schema_1_is_not_read(self):
         write_results(self.folder, [json_row("K_oL")])
         text = (self.folder / "results.json").read_text()
         (self.folder / "results.json").write_text(text.replace('version": 2', 'version": 1'))
-        with self.assertRaisesRegex(InputError, "version 1 is not 2: bench/convert_results"):
+        with self.assertRaisesRegex(InputError, "version 1 is not 2: run the study again"):
             read_results(self.folder)
 
     def test_kept_results_are_read(self):

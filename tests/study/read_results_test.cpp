@@ -22,7 +22,6 @@ std::vector<Row> some_rows() {
     rows[1].setting.tau = 0.1 + 0.2;  // no short decimal
     rows[1].setting.sources.rho = 0.2;
     rows[1].setting.voxel = 0.01;
-    rows[1].setting.voxel_factor = 0.7;
     rows[1].setting.prune_delta = 0.05;
     rows[1].setting.target_delta = 0.1;
     rows[1].setting.interpolation = QuadraticForm::published;

@@ -243,7 +243,6 @@ TEST_CASE("rows say which settings have no effect, and these have none") {
                                                 {"equal_delta", 0.5},
                                                 {"equal_memory", 0.1},
                                                 {"voxel", 0.3},
-                                                {"voxel_factor", 0.5},
                                                 {"neighbourhood", "all", "queue"},
                                                 {"frozen", "floats"},
                                                 {"prune_delta", 0.5}}));

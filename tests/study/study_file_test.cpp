@@ -79,7 +79,6 @@ TEST_CASE("every key of a study file is read") {
         kd_depth = [10, 20]
         octree_depth = 9
         voxel = [0, 0.01]
-        voxel_factor = 0.5
         prune_delta = [0, 0.1]
         law = ["cone", "mean-length"]
         schedule = "passes"
@@ -128,7 +127,6 @@ TEST_CASE("every key of a study file is read") {
     CHECK(list("kd_depth") == "10, 20");
     CHECK(list("octree_depth") == "9");
     CHECK(list("voxel") == "0, 0.01");
-    CHECK(list("voxel_factor") == "0.5");
     CHECK(list("prune_delta") == "0, 0.1");
     CHECK(list("law") == "cone, mean-length");
     CHECK(list("schedule") == "passes");
@@ -177,7 +175,6 @@ TEST_CASE("what is wrong in a study file is named with its line") {
         {"epsilon = -1", "epsilon: -1 is not positive"},
         {"kd_depth = 1.5", "kd_depth: 1.5 is not a whole number"},
         {"voxel = -0.1", "voxel: -0.1 is out of range"},
-        {"voxel_factor = 0", "voxel_factor: 0 is not positive"},
         {"kd_depth = -1", "kd_depth: -1 is out of range"},
         {"law = 'cones'", "law: unknown value 'cones': give cone, mean-length"},
         {"splits = ['s_L', 's_X']", "splits: unknown value 's_X': give s_L, s_G, s_Gx, s_M"},

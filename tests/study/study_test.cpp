@@ -51,37 +51,26 @@ TEST_CASE("splits multiply kd-trees only, depths those that have them") {
     CHECK_FALSE(cases[9].max_depth);
 }
 
-TEST_CASE("voxels, levels and pruning multiply the grids that have them") {
+TEST_CASE("voxels and pruning multiply the grids that have them") {
     std::vector<CatalogueEntry> catalogue = catalogue_with_a_grid();
     catalogue.push_back(
         {.id = "flat", .description = "", .capabilities = {MetricNodes(), VoxelSize()}});
-    catalogue.push_back({.id = "levels",
+    catalogue.push_back({.id = "pruned",
                          .description = "",
-                         .capabilities = {MetricNodes(), VoxelSize(), VoxelLevels(), Pruning()},
-                         .former_id = "stack"});
-    Study study = study_of({"K_oL", "grid", "flat", "stack"});
+                         .capabilities = {MetricNodes(), VoxelSize(), Pruning()},
+                         .former_id = "sparse"});
+    Study study = study_of({"K_oL", "grid", "flat", "sparse"});
     study.runs[0]["voxel"] = {0, 0.5};
-    study.runs[0]["voxel_factor"] = {1, 0.5, 0.25};
     study.runs[0]["prune_delta"] = {0, 0.1};
     const auto cases = expand(study, {catalogue});
-    REQUIRE(cases.size() == 1 + 1 + 2 + 2 * 3 * 2);
-    CHECK_FALSE(cases[1].voxel_factor);
+    REQUIRE(cases.size() == 1 + 1 + 2 + 2 * 2);
     CHECK_FALSE(cases[2].voxel);
     CHECK(cases[3].voxel == 0.5);
-    CHECK_FALSE(cases[3].voxel_factor);
     CHECK(cases[3].structure == "flat");
     CHECK(structure_label(cases[3]) == "flat, voxel 0.5");
-    CHECK(structure_label(cases[4]) == "levels");
-    CHECK(cases[4].voxel_factor == 1);
+    CHECK(structure_label(cases[4]) == "pruned");
     CHECK_FALSE(cases[4].prune_delta);
-    CHECK(structure_label(cases.back()) == "levels, voxel 0.5, c 0.25, pruned at 0.1");
-
-    study.runs[0]["field"] = {"none", "ugawg-linear"};
-    study.sources.kind = SourcesKind::sphere;
-    CHECK(expand(study, {catalogue}).size() == 2 * (1 + 1 + 2) + 2 * 3 * 2);
-    study.runs[0]["field"] = {"ugawg-linear"};
-    study.runs[0]["structures"] = {"levels"};
-    CHECK_THROWS_WITH(expand(study, {catalogue}), Contains("not a grid in levels"));
+    CHECK(structure_label(cases.back()) == "pruned, voxel 0.5, pruned at 0.1");
 }
 
 TEST_CASE("interpolation multiplies trees with quadratic leaves only") {

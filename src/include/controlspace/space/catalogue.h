@@ -33,13 +33,11 @@ struct QuadraticLeaves {};
 struct CompactForm {};
 /// A grid: voxel.
 struct VoxelSize {};
-/// A grid of voxels of many sizes: voxel_factor.
-struct VoxelLevels {};
 /// Joins voxels that are alike: prune_delta.
 struct Pruning {};
 
 using Capability = std::variant<SourceLeaves, SplitRules, MetricNodes, KeptSources, QuadraticLeaves,
-                                CompactForm, VoxelSize, VoxelLevels, Pruning>;
+                                CompactForm, VoxelSize, Pruning>;
 
 /// One structure of the study.
 struct CatalogueEntry {

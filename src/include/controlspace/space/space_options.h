@@ -27,8 +27,7 @@ struct SpaceOptions {
     int kd_depth = 42;         ///< deepest level of a kd-tree, the root being 0
     int octree_depth = 14;     ///< deepest level of an octree, the root being 0
     double finest_length = 0;  ///< smallest length any source requests; grids size voxels by it
-    double voxel = 0;          ///< longest edge of a grid's finest voxels; 0: l_min * finest_length
-    double voxel_factor = 1;   ///< grids in levels: longest edge of a voxel, in the metric it holds
+    double voxel = 0;          ///< longest edge of a grid's voxels; 0: l_min * finest_length
     double h_max = largest_magnitude;  ///< bounds M_max; K_Li and K_oLi overshoot it a little
     double prune_delta = 0;  ///< δ up to which voxels of a field that is set join; 0: none do
     /// g_r of the gradation to come, for structures that keep sources, and for those with quadratic

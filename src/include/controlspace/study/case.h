@@ -44,10 +44,9 @@ struct Case {
     double tau = 1;        ///< l_min: longest edge of a source's leaf, in the source's metric
     double epsilon = 0.2;  ///< ε_δ of insertion
     double g_r = 1.25;     ///< gradation ratio
-    std::optional<int> max_depth = {};        ///< trees only
-    std::optional<double> voxel = {};         ///< grids only; none: by tau and the sources
-    std::optional<double> voxel_factor = {};  ///< grids in levels only
-    std::optional<double> prune_delta = {};   ///< OpenVDB only; none: nothing is pruned
+    std::optional<int> max_depth = {};       ///< trees only
+    std::optional<double> voxel = {};        ///< grids only; none: by tau and the sources
+    std::optional<double> prune_delta = {};  ///< OpenVDB only; none: nothing is pruned
     /// Trees only: adapted to this δ in place of insertion and gradation; none: they are not.
     std::optional<double> target_delta = {};
     /// Grids only: δ_R, or memory [MB], that voxels are chosen for.
