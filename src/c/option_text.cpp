@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "controlspace/error.h"
+#include "controlspace/space/split_words.h"
 #include "files/text_file.h"
 
 namespace controlspace {
@@ -23,11 +24,6 @@ constexpr std::pair<std::string_view, double SpaceOptions::*> numbers[] = {
 
 constexpr std::pair<std::string_view, int SpaceOptions::*> counts[] = {
     {"kd_depth", &SpaceOptions::kd_depth}, {"octree_depth", &SpaceOptions::octree_depth}};
-
-constexpr std::pair<std::string_view, SplitRule> splits[] = {{"s_L", SplitRule::middle},
-                                                             {"s_G", SplitRule::golden},
-                                                             {"s_Gx", SplitRule::exact_golden},
-                                                             {"s_M", SplitRule::metric}};
 
 /// The value of the row named `name`; null where there is none.
 template <class Rows>
@@ -52,8 +48,8 @@ void set_option(SpaceOptions& options, std::string_view name, std::string_view v
     } else if (const auto* count = find(counts, name)) {
         options.*(*count) = number_from<int>(name, value);
     } else if (name == "split") {
-        const SplitRule* split = find(splits, value);
-        if (split == nullptr) {
+        const auto split = from_name<SplitRule>(value);
+        if (!split) {
             throw InputError(
                 fmt::format("there is no split {}: give s_L, s_G, s_Gx or s_M", quote(value)));
         }

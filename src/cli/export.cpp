@@ -68,12 +68,14 @@ const FieldFormat& chosen_format(const ExportJob& job, const Options& options) {
         throw InputError(fmt::format("{}: name a file of one of {}", job.output.string(),
                                      all_endings(job.formats)));
     }
-    chosen->check_options();
     return *chosen;
 }
 
 int export_field(const ExportJob& job, const Options& options, const std::string& command_line) {
     const FieldFormat& format = chosen_format(job, options);
+    std::optional<int> samples;
+    if (!options.given_of(samples_group).empty()) samples = job.samples;
+    format.check(job.output, samples);
     std::string what;
     FilledSpace filled;
     {
@@ -81,8 +83,6 @@ int export_field(const ExportJob& job, const Options& options, const std::string
         filled =
             filled_space(job.input, job.output, given_settings(job.given), progress.observer());
         progress.started("sampling and writing");
-        std::optional<int> samples;
-        if (!options.given_of(samples_group).empty()) samples = job.samples;
         what = format.write({job.input, job.output, command_line, filled, progress, samples});
     }
     print(what);

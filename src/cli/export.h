@@ -29,8 +29,9 @@ struct FieldFormat {
     std::function<std::string(const Export&)> write;
     /// Of its options in the help; they are refused with formats that do not have the group.
     std::vector<std::string> groups = {};
-    /// Throws InputError where options that it needs are missing.
-    std::function<void()> check_options = [] {};
+    /// Throws InputError where the file or its options cannot be used, before anything is built.
+    std::function<void(const std::filesystem::path& output, std::optional<int> samples)> check =
+        [](const auto&, const auto&) {};
 };
 
 /// The group of --samples, the option of all formats that are sampled in equal steps.

@@ -63,6 +63,10 @@ std::filesystem::path background_base(const std::filesystem::path& output) {
         output.string(), base.string(), output.extension().string()));
 }
 
+void check_samples(const std::filesystem::path&, std::optional<int> samples) {
+    if (samples) require_grid_samples(*samples);
+}
+
 std::string write_tetgen(const Export& e) {
     const std::filesystem::path base = background_base(e.output);
     for (const char* ending : {".node", ".ele", ".mtr"}) {
@@ -78,10 +82,13 @@ std::string write_tetgen(const Export& e) {
 }  // namespace
 
 std::vector<FieldFormat> add_size_formats(Options&) {
-    return {{{".structured"}, write_structured, {samples_group}},
-            {{".msh"}, write_jigsaw, {samples_group}},
+    return {{{".structured"}, write_structured, {samples_group}, check_samples},
+            {{".msh"}, write_jigsaw, {samples_group}, check_samples},
             {{".msz"}, write_netgen},
-            {{".node", ".ele", ".mtr"}, write_tetgen}};
+            {{".node", ".ele", ".mtr"},
+             write_tetgen,
+             {},
+             [](const std::filesystem::path& output, const auto&) { background_base(output); }}};
 }
 
 }  // namespace controlspace

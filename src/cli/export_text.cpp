@@ -59,7 +59,7 @@ std::vector<FieldFormat> add_text_formats(Options& options) {
             {{".sol", ".solb"},
              [mesh](const Export& e) { return write_solution(e, *mesh); },
              {group},
-             [mesh] {
+             [mesh](const auto&, const auto&) {
                  if (mesh->empty()) throw InputError("name the mesh of the solution by --mesh");
              }}};
 }

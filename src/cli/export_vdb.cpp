@@ -116,7 +116,7 @@ std::vector<FieldFormat> add_vdb_formats(Options& options) {
                  return export_vdb(e, vdb->options);
              },
              {group},
-             [vdb] { compression_named(vdb->compression.front()); }}};
+             [vdb](const auto&, const auto&) { compression_named(vdb->compression.front()); }}};
 }
 
 }  // namespace controlspace

@@ -1,10 +1,12 @@
 #include "cli/formats.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -18,18 +20,19 @@
 #include "io/surface/surface_mesh.h"
 #include "io/surface/surface_sources.h"
 #include "modules/load.h"
+#include "study/file_endings.h"
 
 namespace controlspace {
 namespace {
 
 using Sources = std::vector<PointSource>;
 
-/// A format of files of sources that an external library reads. These libraries trust the contents
+/// Formats of files of sources that an external library reads. These libraries trust the contents
 /// of a file, and may crash or exhaust the memory if it is damaged; therefore it is first read in a
 /// child process. Our own readers (read_sources) check files.
 struct SourceFormat {
-    std::string_view ending;
-    const char* module;  ///< that reads it
+    std::span<const std::string_view> endings;
+    const char* module;  ///< that reads them
     Sources (*read)(const SourcesChoice& choice);
     /// The part of `read` that may crash, if the rest starts threads, which a forked process must
     /// not.
@@ -67,19 +70,10 @@ Sources read_cad(const SourcesChoice& choice) {
 void try_cad(const SourcesChoice& choice) { read_cad_surface(choice.file); }
 
 constexpr SourceFormat formats[] = {
-    {".vdb", "openvdb", read_vdb},
-    {".vtu", "vtk", read_vtk},
-    {".vtp", "vtk", read_vtk},
-    {".vti", "vtk", read_vtk},
-    {".stl", "cgal", read_surface, try_surface},
-    {".obj", "cgal", read_surface, try_surface},
-    {".ply", "cgal", read_surface, try_surface},
-    {".off", "cgal", read_surface, try_surface},
-    {".step", "gmsh", read_cad, try_cad},
-    {".stp", "gmsh", read_cad, try_cad},
-    {".iges", "gmsh", read_cad, try_cad},
-    {".igs", "gmsh", read_cad, try_cad},
-    {".brep", "gmsh", read_cad, try_cad},
+    {vdb_endings, "openvdb", read_vdb},
+    {vtk_endings, "vtk", read_vtk},
+    {triangle_endings, "cgal", read_surface, try_surface},
+    {cad_endings, "gmsh", read_cad, try_cad},
 };
 
 // Whether this is a Medit mesh without a solution beside it.
@@ -108,18 +102,25 @@ Sources read_by(const SourceFormat& format, const SourcesChoice& choice) {
 }
 
 const SourceFormat* format_of(const std::filesystem::path& file) {
-    const auto* format =
-        std::ranges::find(formats, lower_case_extension(file), &SourceFormat::ending);
+    const auto* format = std::ranges::find_if(formats, [&](const SourceFormat& known) {
+        return has_ending(known.endings, lower_case_extension(file));
+    });
     return format == std::end(formats) ? nullptr : format;
 }
 
-}  // namespace
-
-[[noreturn]] void fail_as_no_part(const std::filesystem::path& file) {
-    throw InputError(fmt::format(
-        "{} is no part: name a .stl, .obj, .ply, .off, .step, .stp, .iges, .igs or .brep",
-        file.string()));
+/// The format of a part, which can be read.
+const SourceFormat& checked_part(const std::filesystem::path& file) {
+    if (!is_part(file)) {
+        throw InputError(fmt::format("{} is no part: name a {}", file.string(),
+                                     fmt::join(part_endings(), ", ")));
+    }
+    const SourceFormat& format = *format_of(file);
+    load_module(format.module);
+    require_readable(file, [&] { format.try_read({.file = file}); });
+    return format;
 }
+
+}  // namespace
 
 bool is_part(const std::filesystem::path& file) {
     const SourceFormat* format = format_of(file);
@@ -127,11 +128,7 @@ bool is_part(const std::filesystem::path& file) {
 }
 
 Part read_part(const std::filesystem::path& file, double crease) {
-    const SourceFormat* format = format_of(file);
-    if (!is_part(file)) fail_as_no_part(file);
-    load_module(format->module);
-    require_readable(file, [&] { format->try_read({.file = file}); });
-    if (format->read == read_cad) return {.cad = file};
+    if (checked_part(file).read == read_cad) return {.cad = file};
     SurfaceMesh surface = read_surface_mesh(file);
     return {std::move(surface.vertices), std::move(surface.triangles), crease};
 }
@@ -139,9 +136,11 @@ Part read_part(const std::filesystem::path& file, double crease) {
 FileReaders file_readers() {
     FileReaders readers;
     for (const SourceFormat& format : formats) {
-        readers.sources[std::string(format.ending)] = [&format](const SourcesChoice& choice) {
-            return read_by(format, choice);
-        };
+        for (const std::string_view ending : format.endings) {
+            readers.sources[std::string(ending)] = [&format](const SourcesChoice& choice) {
+                return read_by(format, choice);
+            };
+        }
     }
     readers.vdb_field = [](const FieldChoice& choice) {
         const std::string ending = lower_case_extension(choice.file);
@@ -162,11 +161,7 @@ FileReaders file_readers() {
         return read();
     };
     readers.surface_distance = [](const std::filesystem::path& file) {
-        const SourceFormat* format = format_of(file);
-        if (!is_part(file)) fail_as_no_part(file);
-        load_module(format->module);
-        require_readable(file, [&] { format->try_read({.file = file}); });
-        const bool is_cad = format->read == read_cad;
+        const bool is_cad = checked_part(file).read == read_cad;
         const SurfaceMesh mesh = is_cad ? read_cad_surface(file) : read_surface_mesh(file);
         load_module("cgal");
         return surface_distance(mesh);
@@ -177,7 +172,7 @@ FileReaders file_readers() {
 std::string source_formats_help() {
     return "Sources: .csv; .mesh, .sol, .meshb or .solb, the other beside it; .pos; .msh; .vtu, "
            ".vtp, .vti; or a surface: .stl, .obj, .ply, .off, or in a .vdb; or CAD: .step, .iges, "
-           ".brep";
+           ".brep; several with commas; or another value of --sources (sphere, planes)";
 }
 
 }  // namespace controlspace

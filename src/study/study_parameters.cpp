@@ -6,6 +6,7 @@
 #include "controlspace/geometry/extent.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/study/study.h"
+#include "study/file_endings.h"
 #include "study/sources_access.h"
 
 namespace controlspace {
@@ -39,7 +40,7 @@ Access<Study> number_of(Place place, const Check& check = any_number) {
 }
 /// A length of which 0 means that it is not given, as does `none`, which is stored then.
 template <class Place>
-Access<Study> limit(Place place, double none) {
+Access<Study> length_or_none(Place place, double none = 0) {
     Access<Study> access;
     access.set = [=](Study& s, const Values& v) {
         const double x = v.front().number();
@@ -49,13 +50,6 @@ Access<Study> limit(Place place, double none) {
         const double x = std::invoke(place, s);
         return x == none ? Values{} : Values{x};
     };
-    return access;
-}
-/// A length of which 0 means that it is not given.
-template <class Place>
-Access<Study> length_if_given(Place place) {
-    Access<Study> access = number<Study>(place, positive, Zero::is_none);
-    access.set = number<Study>(place, positive).set;
     return access;
 }
 template <class Place>
@@ -136,11 +130,11 @@ std::function<bool(const Study&)> of_kind(SourcesKind kind) {
     return [=](const Study& s) { return s.sources.kind == kind; };
 }
 /// Whether the sources are in a file of one of the formats.
-std::function<bool(const Study&)> in_file(std::vector<std::string> endings) {
+std::function<bool(const Study&)> in_file(std::vector<std::string_view> endings) {
     return [=](const Study& s) {
         return s.sources.kind == SourcesKind::file &&
                std::ranges::any_of(files_of(s.sources), [&](const auto& file) {
-                   return std::ranges::count(endings, lower_case_extension(file)) > 0;
+                   return has_ending(endings, lower_case_extension(file));
                });
     };
 }
@@ -169,9 +163,8 @@ std::vector<Parameter<Study>> table() {
                                    [](const Study& s) { return is_sampled(s.sources); }};
     const AppliesTo<Study> arrays{".vtu, .vtp, .vti, .msh and .pos",
                                   in_file({".vtu", ".vtp", ".vti", ".msh", ".pos"})};
-    const AppliesTo<Study> surface{
-        "surfaces: .stl, .obj, .ply, .off, .step, .iges and .brep",
-        in_file({".stl", ".obj", ".ply", ".off", ".step", ".stp", ".iges", ".igs", ".brep"})};
+    const AppliesTo<Study> surface{"surfaces: .stl, .obj, .ply, .off, .step, .iges and .brep",
+                                   in_file(part_endings())};
     const AppliesTo<Study> vdb{"sources in a .vdb", in_file({".vdb"})};
     const AppliesTo<Study> field_sphere{"field = \"sphere\"", field_is({"sphere"})};
     const AppliesTo<Study> field_planes{"field = \"planes\"", field_is({"planes"})};
@@ -194,11 +187,11 @@ std::vector<Parameter<Study>> table() {
          "H + (g - 1) d at the distance d, by g_r or with g=G by G",
          sources_access()},
         {"h_min", length, "Smallest length: what is requested to be shorter, is this long",
-         limit(of_sources(&Sources::h_min), 0)},
+         length_or_none(of_sources(&Sources::h_min))},
         {"h_max", length,
          "Largest length anywhere (between the nodes of K_Li and K_oLi some per cent more); left "
          "out: half of the domain's diagonal, and no length of sources is limited",
-         limit(of_sources(&Sources::h_max), largest_magnitude)},
+         length_or_none(of_sources(&Sources::h_max), largest_magnitude)},
         {"centre", length, "x y z: centre of the sphere", point_of(of_sources(&Sources::centre)),
          making, sphere, paper},
         {"radius", length, "Radius of the sphere",
@@ -293,15 +286,15 @@ std::vector<Parameter<Study>> table() {
          flag<Study>(of_curvature(&CurvatureSizes::isotropic)), reading, surface},
         {"surface_h_min", length,
          "Sources of a surface: smallest length; left out: a thousandth of the diagonal of its box",
-         length_if_given(of_curvature(&CurvatureSizes::h_min)), reading, surface, Topic::sizes},
+         length_or_none(of_curvature(&CurvatureSizes::h_min)), reading, surface, Topic::sizes},
         {"surface_h_max", length,
          "Sources of a surface: largest length; left out: a tenth of that diagonal",
-         length_if_given(of_curvature(&CurvatureSizes::h_max)), reading, surface, Topic::sizes},
+         length_or_none(of_curvature(&CurvatureSizes::h_max)), reading, surface, Topic::sizes},
         {"vdb_size", length, "Sources of a .vdb: length at its surface",
-         length_if_given(of_vdb(&VdbSurface::h)), reading, vdb, Topic::sizes},
+         length_or_none(of_vdb(&VdbSurface::h)), reading, vdb, Topic::sizes},
         {"vdb_size_per_radius", "smaller radius of curvature",
          "Sources of a .vdb: length at its surface",
-         length_if_given(of_vdb(&VdbSurface::per_radius)), reading, vdb, Topic::sizes},
+         length_or_none(of_vdb(&VdbSurface::per_radius)), reading, vdb, Topic::sizes},
         {"vdb_grid", "",
          "Sources of a .vdb: the level set or fog; left out: the only grid of the file",
          text_of(of_vdb(&VdbSurface::grid)), reading, vdb},

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "controlspace/error.h"
@@ -14,6 +13,7 @@
 #include "controlspace/io/read_sources.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/space/control_space.h"
+#include "study/file_endings.h"
 
 namespace controlspace {
 namespace {
@@ -26,10 +26,8 @@ namespace {
 
 /// Formats that other libraries read.
 bool needs_reader(const std::string& ending) {
-    constexpr std::string_view endings[] = {".vdb",  ".vtu", ".vtp", ".vti",  ".stl",
-                                            ".obj",  ".ply", ".off", ".step", ".stp",
-                                            ".iges", ".igs", ".brep"};
-    return std::ranges::count(endings, ending) > 0;
+    return has_ending(vdb_endings, ending) || has_ending(vtk_endings, ending) ||
+           has_ending(part_endings(), ending);
 }
 
 AnalyticField field_of(const FieldChoice& choice, const FileReaders& readers) {

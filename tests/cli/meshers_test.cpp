@@ -188,6 +188,9 @@ TEST_CASE("files of sizes that cannot be written end with one line, and leave no
     CHECK(file_text(box / "part.node") == "0 3 0 0\n");
     CHECK_FALSE(fs::exists(box / "a.msh"));
     CHECK_FALSE(fs::exists(box / "a.msz"));
+    // Before anything is read or built.
+    check_refused(box.run("export none.csv -o part.node"), "name part.b.node");
+    check_refused(box.run("export none.csv -o a.structured --samples 1"), "give 2 to 512");
 }
 
 // TetGen interpolates in the background mesh at the vertices of its input, and writes what it

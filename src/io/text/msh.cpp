@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <unordered_map>
+#include <utility>
 
 #include "controlspace/error.h"
 #include "files/text_file.h"
@@ -124,16 +125,22 @@ private:
         }
     }
 
-    void read_nodes() {
+    std::uint64_t count() { return file_.number<std::uint64_t>(section_); }
+
+    /// The numbers of blocks, and of nodes or elements of `least` bytes or more, at the beginning
+    /// of a section.
+    std::pair<std::uint64_t, std::uint64_t> read_counts(std::size_t least) {
         file_.set_binary(is_binary_);
-        const auto count = [&] { return file_.number<std::uint64_t>(section_); };
-        const std::uint64_t blocks = count();
-        std::uint64_t left = count();
-        constexpr std::size_t least = 8;  // a tag and three coordinates, in text
-        file_.require_room(section_, left, least);
-        nodes_.reserve(nodes_.size() + left);
+        const std::uint64_t blocks = count(), all = count();
+        file_.require_room(section_, all, least);
         count();  // smallest tag
         count();  // largest tag
+        return {blocks, all};
+    }
+
+    void read_nodes() {
+        auto [blocks, left] = read_counts(8);  // a tag and three coordinates, in text
+        nodes_.reserve(nodes_.size() + left);
         for (std::uint64_t block = 0; block < blocks; ++block) {
             const auto dimension = file_.number<std::int32_t>("a block");
             file_.number<std::int32_t>("a block");  // the entity
@@ -158,20 +165,17 @@ private:
         if (elements_at_ == 0) file_.fail("data of elements, but no $Elements: save them too");
         file_.go_to(elements_at_);
         section_ = "Elements";
-        file_.set_binary(is_binary_);
-        const auto count = [&] { return file_.number<std::uint64_t>(section_); };
-        const std::uint64_t blocks = count();
-        const std::uint64_t all = count();
         constexpr std::size_t least = 4;  // a tag and a node, in text
-        file_.require_room(section_, all, least);
-        count();  // smallest tag
-        count();  // largest tag
+        const std::uint64_t blocks = read_counts(least).first;
         for (std::uint64_t block = 0; block < blocks; ++block) {
             file_.number<std::int32_t>("a block");  // dimension
             file_.number<std::int32_t>("a block");  // the entity
             const auto type = file_.number<std::int32_t>("a block");
             const std::size_t nodes = nodes_of_element(type);
-            if (nodes == 0) file_.fail(fmt::format("elements of the unknown type {}", type));
+            if (nodes == 0) {
+                file_.fail(
+                    fmt::format("elements of the unknown type {}: save it without them", type));
+            }
             const auto n = count();
             file_.require_room(section_, n, least);
             for (std::uint64_t i = 0; i < n; ++i) {

@@ -19,6 +19,9 @@ struct SizeFile {
     std::optional<double> within = std::nullopt;
 };
 
+/// Throws InputError for a number of samples out of range.
+void require_grid_samples(int samples);
+
 /// The grid of Gmsh's field Structured, binary (TextFormat = 0): 2 to 512 nodes along the longest
 /// edge of the domain, as many at the same distance or nearly along the others. Gmsh is trilinear
 /// between them, and constant beyond with SetOutsideValue = 0, which 4.8.4 does not set by itself.

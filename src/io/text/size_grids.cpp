@@ -49,11 +49,7 @@ struct Grid {
 };
 
 Grid sampled(const ControlSpace& space, int samples) {
-    constexpr int fewest = 2, most = 512;
-    if (samples < fewest || samples > most) {
-        throw InputError(
-            fmt::format("{} samples along the longest edge: give {} to {}", samples, fewest, most));
-    }
+    require_grid_samples(samples);
     const Box domain = space.domain();
     const Vector edges = domain.edges();
     Grid grid{domain.low, {}, {}, {}};
@@ -85,6 +81,13 @@ SizeFile summary(const Grid& grid, const ControlSpace& space) {
 }
 
 }  // namespace
+
+void require_grid_samples(int samples) {
+    constexpr int fewest = 2, most = 512;
+    if (samples >= fewest && samples <= most) return;
+    throw InputError(
+        fmt::format("{} samples along the longest edge: give {} to {}", samples, fewest, most));
+}
 
 SizeFile write_gmsh_structured(const std::filesystem::path& path, const ControlSpace& space,
                                int samples) {

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from . import _arrays, _program
 from ._arrays import Array
-from ._library import Sources, call, library, size_at
+from ._library import Options, Sources, call, library, size_at
 
 # Where xx yy zz xy xz yz go.
 _ORDERS = {
@@ -211,18 +211,10 @@ def build(
         structure = "K_oV"
         if delta is None and h.ndim == 1:
             delta = 0.1
-    given = {"g_r": ratio, "finest_length": finest, **options}
+    given = {"finest_length": finest, **options}
     if h_max is not None:
         given["h_max"] = _arrays.length("h_max", h_max)
-    handle = ctypes.c_void_p()
-    call(
-        "create",
-        _word("structure", structure),
-        corners.ctypes.data,
-        " ".join(f"{key}={value}" for key, value in given.items()).encode(),
-        ctypes.byref(handle),
-    )
-    field = _field(handle, None)
+    target = 0.0 if delta is None else _arrays.length("delta", delta)
     sources = Sources(
         struct_size=ctypes.sizeof(Sources),
         n=len(points),
@@ -231,16 +223,25 @@ def build(
         lengths=h.ctypes.data if h.ndim == 1 else None,
         growths=None if growths is None else growths.ctypes.data,
     )
-    if delta is None:
-        call("insert_sources", field._handle, sources)
-        call("grade", field._handle, ratio)
-        return field
-    target, reached = _arrays.length("delta", delta), ctypes.c_double()
-    call("adapt_sources", field._handle, sources, ratio, target, ctypes.byref(reached))
-    field._delta = reached.value
-    if reached.value > target:
+    making = Options(
+        struct_size=ctypes.sizeof(Options),
+        growth=ratio,
+        delta=target,
+        further=" ".join(f"{key}={value}" for key, value in given.items()).encode(),
+    )
+    reached, handle = ctypes.c_double(), ctypes.c_void_p()
+    call(
+        "build",
+        _word("structure", structure),
+        corners.ctypes.data,
+        sources,
+        making,
+        ctypes.byref(reached),
+        ctypes.byref(handle),
+    )
+    if reached.value > target:  # not of NaN, where nothing was adapted
         warnings.warn(f"delta {reached.value:.3g} reached, {target:.3g} requested", stacklevel=2)
-    return field
+    return _field(handle, None if delta is None else reached.value)
 
 
 def _word(name: str, value: Any) -> bytes:

@@ -26,15 +26,27 @@ class Sources(ctypes.Structure):
     )
 
 
+class Options(ctypes.Structure):
+    """cspace_options."""
+
+    _fields_ = (
+        ("struct_size", c_size_t),
+        ("growth", c_double),
+        ("delta", c_double),
+        ("max_memory", c_double),
+        ("further", c_char_p),
+    )
+
+
 _FUNCTIONS = {
     "version": (c_char_p,),
     "last_error": (c_char_p,),
     "structure": (c_char_p, c_size_t),
-    "create": (c_int, c_char_p, c_void_p, c_char_p, POINTER(c_void_p)),
+    "build": (
+        *(c_int, c_char_p, c_void_p, POINTER(Sources)),
+        *(POINTER(Options), POINTER(c_double), POINTER(c_void_p)),
+    ),
     "free": (None, c_void_p),
-    "insert_sources": (c_int, c_void_p, POINTER(Sources)),
-    "grade": (c_int, c_void_p, c_double),
-    "adapt_sources": (c_int, c_void_p, POINTER(Sources), c_double, c_double, POINTER(c_double)),
     "sample": (c_int, c_void_p, c_size_t, c_void_p, c_void_p),
     "sample_lengths": (c_int, c_void_p, c_size_t, c_void_p, c_void_p),
     "edge_lengths": (c_int, c_void_p, c_size_t, c_void_p, c_void_p, c_void_p),
