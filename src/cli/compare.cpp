@@ -1,21 +1,32 @@
 // The command `compare`: runs a study.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/formats.h"
 #include "cli/input_study.h"
 #include "cli/options.h"
 #include "cli/paper_reference.h"
-#include "cli/run_study.h"
+#include "cli/progress.h"
 #include "cli/signals.h"
 #include "cli/standard_output.h"
+#include "cli/threads.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
+#include "controlspace/study/results.h"
+#include "controlspace/study/run.h"
+#include "modules/load.h"
 #include "study/forecast.h"
+#include "study/text_table.h"
 
 namespace controlspace {
 namespace {
@@ -52,15 +63,94 @@ Study study_of(const Compare& job) {
     return study;
 }
 
+/// Runs `prepared`, its rows into `folder`.
+void run_into(ResultsFolder& folder, PreparedStudy prepared, Progress& progress,
+              Interruption& interruption) {
+    StudyObserver observer;
+    observer.case_started = [&](const Case& c) {
+        progress.case_started(c);
+        load_module_of(c.structure);  // before its creation is timed
+    };
+    observer.phase_started = [&](std::string_view phase) { progress.phase_started(phase); };
+    observer.case_checked = [&](const Finished& finished, Row& row) {
+        const auto whole = interruption.postpone();
+        folder.sample_fields(finished, row);
+    };
+    observer.case_finished = [&](const Row& row) {
+        const auto whole = interruption.postpone();
+        folder.add(row);
+        progress.case_finished(row);
+        if (!row.is_as_requested()) {
+            spdlog::warn("{}: {}{}", structure_label(row.setting), row.error, row.text("remark"));
+        }
+    };
+    std::move(prepared).run(observer);
+    const auto whole = interruption.postpone();
+    folder.finish(true);
+    progress.finish();
+}
+
+/// What an interrupted run of `study` left in `folder`: its provenance and its rows.
+std::pair<Provenance, std::vector<Row>> go_on_from(const std::filesystem::path& folder,
+                                                   const Study& study, const StudyRows& rows,
+                                                   const Provenance& now) {
+    const StoredResults earlier = read_results(folder, rows);
+    try {
+        return {earlier.provenance, rows_to_go_on_from(earlier, study, expand(study, rows), now)};
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("--resume {}: {}", folder.string(), error.what()));
+    }
+}
+
+/// The outcome of a study that ran to its end.
+struct FinishedStudy {
+    std::vector<Row> rows;
+    std::filesystem::path folder;  ///< of its results
+};
+
+/// Runs the study on all structures that it names, with progress on standard error unless quiet,
+/// and its rows into a folder of results. Throws InputError for what cannot be run.
+FinishedStudy run(const Compare& job, const std::string& command_line) {
+    Interruption interruption;
+    const Study study = study_of(job);
+    const auto threads = limit_threads(study.threads);
+    const StudyRows rows = program_rows();
+    const bool resumes = !job.resume.empty();
+    Provenance provenance = current_provenance();
+    provenance.command_line = command_line;
+    std::vector<Row> earlier;
+    if (resumes) std::tie(provenance, earlier) = go_on_from(job.resume, study, rows, provenance);
+    PreparedStudy prepared(study, rows, file_readers(), earlier.size());
+
+    ResultsFolder folder =
+        resumes ? ResultsFolder(job.resume, provenance, study, rows, std::move(earlier))
+                : ResultsFolder(results_path(study, provenance), provenance, study, rows);
+    const std::size_t all = folder.rows().size() + prepared.cases().size();
+    Progress progress(prepared.cases(), prepared.source_counts(),
+                      job.quiet ? ProgressStyle::none : progress_style_of_stderr());
+    const Interruption::Watch watch(
+        interruption, [&] { progress.show(); },
+        [&] {
+            progress.finish();
+            folder.finish(false);
+            print_error(
+                fmt::format("controlspace: interrupted: {} of {} done, in {}; to continue, run the "
+                            "same command with "
+                            "--resume {} in place of --output\n",
+                            folder.rows().size(), counted(all, "case"), folder.path().string(),
+                            folder.path().string()));
+        });
+    run_into(folder, std::move(prepared), progress, interruption);
+    return {{folder.rows().begin(), folder.rows().end()}, folder.path()};
+}
+
 int compare(const Compare& job, const std::string& command_line) {
     if (job.dry_run) {
         const PreparedStudy prepared(study_of(job), program_rows(), file_readers());
         print(forecast_text(prepared, forecast(prepared)));
         return 0;
     }
-    Interruption interruption;
-    const FinishedStudy finished =
-        run_study(study_of(job), {command_line, job.quiet, job.resume}, interruption);
+    const FinishedStudy finished = run(job, command_line);
     print(tables_text(finished.rows, program_rows(), /*markdown=*/false));
     print(fmt::format("\nResults: {}\n", finished.folder.string()));
     return std::ranges::all_of(finished.rows, &Row::is_as_requested) ? 0 : some_failed;

@@ -4,7 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include <utility>
-#include <vector>
 
 #include "cli/command.h"
 #include "cli/formats.h"

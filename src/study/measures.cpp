@@ -22,9 +22,10 @@ Measure counted(const char* key, const char* unit, Get get, Column column = {}) 
     return {key, unit, [get](const Finished& f) { return count(get(f)); }, std::move(column)};
 }
 
-template <class Get>
-Measure real(const char* key, Get get, Column column = {}) {
-    return {key, "", [get](const Finished& f) -> MeasuredValue { return get(f); },
+/// A row of a number that a member of Finished has.
+template <class Part, class Number>
+Measure real(const char* key, Part Finished::*part, Number Part::*number, Column column = {}) {
+    return {key, "", [=](const Finished& f) -> MeasuredValue { return f.*part.*number; },
             std::move(column)};
 }
 
@@ -81,39 +82,39 @@ std::string found_by_probes(const Finished& f) {
 }
 
 std::vector<Measure> accuracy_rows() {
+    using F = Finished;
     return {
-        real("delta_S_max", [](const Finished& f) { return f.source_accuracy; }),
-        real("delta_R_max", [](const Finished& f) { return f.accuracy.max; },
-             {"δ_R max", "{:.4f}"}),
-        real("delta_R_mean", [](const Finished& f) { return f.accuracy.mean; },
-             {"δ_R mean", "{:.4f}"}),
-        real("delta_R_p95", [](const Finished& f) { return f.accuracy.p95; }),
-        real("delta_R_p99", [](const Finished& f) { return f.accuracy.p99; },
-             {"δ_R p99", "{:.4f}"}),
-        real("delta_R_fine_max", [](const Finished& f) { return f.accuracy_fine.max; },
-             {"fine max", "{:.4f}"}),
-        real("delta_R_fine_mean", [](const Finished& f) { return f.accuracy_fine.mean; }),
-        real("delta_R_fine_p95", [](const Finished& f) { return f.accuracy_fine.p95; }),
-        real("delta_R_fine_p99", [](const Finished& f) { return f.accuracy_fine.p99; }),
-        real("delta_metric_R_max", [](const Finished& f) { return f.accuracy.riemannian_max; }),
-        real("coarser_max", [](const Finished& f) { return f.accuracy.coarser_max; }),
-        real("coarser_share", [](const Finished& f) { return f.accuracy.coarser_share; }),
-        real("coarser_fine_max", [](const Finished& f) { return f.accuracy_fine.coarser_max; }),
-        real("coarser_fine_share", [](const Finished& f) { return f.accuracy_fine.coarser_share; },
+        {"delta_S_max", "", [](const Finished& f) { return f.source_accuracy; }},
+        real("delta_R_max", &F::accuracy, &Accuracy::max, {"δ_R max", "{:.4f}"}),
+        real("delta_R_mean", &F::accuracy, &Accuracy::mean, {"δ_R mean", "{:.4f}"}),
+        real("delta_R_p95", &F::accuracy, &Accuracy::p95),
+        real("delta_R_p99", &F::accuracy, &Accuracy::p99, {"δ_R p99", "{:.4f}"}),
+        real("delta_R_fine_max", &F::accuracy_fine, &Accuracy::max, {"fine max", "{:.4f}"}),
+        real("delta_R_fine_mean", &F::accuracy_fine, &Accuracy::mean),
+        real("delta_R_fine_p95", &F::accuracy_fine, &Accuracy::p95),
+        real("delta_R_fine_p99", &F::accuracy_fine, &Accuracy::p99),
+        real("delta_metric_R_max", &F::accuracy, &Accuracy::riemannian_max),
+        real("coarser_max", &F::accuracy, &Accuracy::coarser_max),
+        real("coarser_share", &F::accuracy, &Accuracy::coarser_share),
+        real("coarser_fine_max", &F::accuracy_fine, &Accuracy::coarser_max),
+        real("coarser_fine_share", &F::accuracy_fine, &Accuracy::coarser_share,
              {"fine coarser", "{:.2f} %", 100}),
-        real("finer_max", [](const Finished& f) { return f.accuracy.finer_max; }),
-        real("finer_share", [](const Finished& f) { return f.accuracy.finer_share; }),
-        real("finer_fine_max", [](const Finished& f) { return f.accuracy_fine.finer_max; }),
-        real("finer_fine_share", [](const Finished& f) { return f.accuracy_fine.finer_share; },
+        real("finer_max", &F::accuracy, &Accuracy::finer_max),
+        real("finer_share", &F::accuracy, &Accuracy::finer_share),
+        real("finer_fine_max", &F::accuracy_fine, &Accuracy::finer_max),
+        real("finer_fine_share", &F::accuracy_fine, &Accuracy::finer_share,
              {"fine finer", "{:.2f} %", 100}),
-        real("within_max", [](const Finished& f) { return f.accuracy.within(); }),
-        real("within_fine_max", [](const Finished& f) { return f.accuracy_fine.within(); },
-             {"within", "{:.3f}x"}),
-        real("G_det", [](const Finished& f) { return f.steepness.det; }, {"G_det", "{:.3f}"}),
-        real("G_dir", [](const Finished& f) { return f.steepness.dir; }, {"G_dir", "{:.3f}"}),
-        real("gradation_max_left",
-             [](const Finished& f) { return f.creation.gradation.largest_ratio_left; },
-             {"G left", "{:.4f}"}),
+        {"within_max", "", [](const F& f) { return f.accuracy.within(); }},
+        {"within_fine_max",
+         "",
+         [](const F& f) { return f.accuracy_fine.within(); },
+         {"within", "{:.3f}x"}},
+        real("G_det", &F::steepness, &Steepness::det, {"G_det", "{:.3f}"}),
+        real("G_dir", &F::steepness, &Steepness::dir, {"G_dir", "{:.3f}"}),
+        {"gradation_max_left",
+         "",
+         [](const F& f) { return f.creation.gradation.largest_ratio_left; },
+         {"G left", "{:.4f}"}},
         counted("gradation_operations", "",
                 [](const Finished& f) { return f.creation.gradation.operations; }),
         // As text: JSON readers keep 53 bits of a number.

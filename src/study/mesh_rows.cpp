@@ -2,11 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <map>
-#include <optional>
-#include <utility>
-
 #include "controlspace/study/measure.h"
 #include "study/grouped.h"
 #include "study/rank_correlation.h"

@@ -6,7 +6,6 @@
 
 #include <chrono>
 #include <fstream>
-#include <string_view>
 #include <thread>
 
 #include "study/build_info.h"

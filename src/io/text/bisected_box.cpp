@@ -162,26 +162,16 @@ void BisectedBox::close() {
         }
         new_edges_.clear();
         const std::size_t present = all_.size();
-        for (std::size_t t = 0; t < present; ++t) {
+        for (std::size_t t = 0; t < all_.size(); ++t) {
             if (all_[t].parts != 0) continue;
             const Corners c = all_[t].corners;
+            // What was bisected here may leave parts with an edge that was bisected long before.
+            const auto may_be_end = [&](std::uint32_t p) { return t >= present || is_end[p]; };
             bool is_bisected = false;
             for (std::size_t i = 0; i < 4 && !is_bisected; ++i) {
-                for (std::size_t j = i + 1; j < 4 && is_end[c[i]]; ++j) {
-                    is_bisected =
-                        is_bisected || (is_end[c[j]] && middles_.contains(edge_key(c[i], c[j])));
-                }
-            }
-            if (is_bisected) bisect(t);
-        }
-        // What was bisected here may leave parts with an edge that was bisected long before.
-        for (std::size_t t = present; t < all_.size(); ++t) {
-            if (all_[t].parts != 0) continue;
-            const Corners c = all_[t].corners;
-            bool is_bisected = false;
-            for (std::size_t i = 0; i < 4; ++i) {
-                for (std::size_t j = i + 1; j < 4; ++j) {
-                    is_bisected = is_bisected || middles_.contains(edge_key(c[i], c[j]));
+                for (std::size_t j = i + 1; j < 4 && may_be_end(c[i]); ++j) {
+                    is_bisected = is_bisected ||
+                                  (may_be_end(c[j]) && middles_.contains(edge_key(c[i], c[j])));
                 }
             }
             if (is_bisected) bisect(t);

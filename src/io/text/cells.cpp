@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "controlspace/error.h"
 #include "controlspace/geometry/extent.h"
