@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-
 #include "controlspace/input_errors.h"
 #include "controlspace/space/detail/goal_field.h"
 #include "controlspace/space/sample_parallel.h"
