@@ -1,7 +1,9 @@
 #include "controlspace/baselines/catalogue.h"
 
+#include <stdexcept>
 #include <vector>
 
+#include "baselines/add_structures.h"
 #include "baselines/direct/direct.h"
 #include "baselines/uniform/uniform_grid.h"
 #ifdef CONTROLSPACE_OPENVDB
@@ -9,6 +11,25 @@
 #endif
 
 namespace controlspace {
+
+namespace {
+
+struct AddedRows {
+    std::vector<CatalogueEntry> rows;
+    bool listed = false;
+};
+AddedRows& added_rows() {
+    static AddedRows added;
+    return added;
+}
+
+}  // namespace
+
+void add_structures(std::span<const CatalogueEntry> rows) {
+    AddedRows& added = added_rows();
+    if (added.listed) throw std::logic_error("add_structures: after the first use of structures()");
+    added.rows.insert(added.rows.end(), rows.begin(), rows.end());
+}
 
 std::span<const CatalogueEntry> structures() {
     static const std::vector<CatalogueEntry> all = [] {
@@ -23,6 +44,8 @@ std::span<const CatalogueEntry> structures() {
         add(openvdb_rows());
 #endif
         add(direct_rows());
+        add(added_rows().rows);
+        added_rows().listed = true;
         return rows;
     }();
     return all;

@@ -1,0 +1,160 @@
+#include "cli/program.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <deque>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/help.h"
+#include "cli/options.h"
+#include "cli/standard_output.h"
+#include "controlspace/error.h"
+#include "controlspace/study/provenance.h"
+
+namespace controlspace {
+namespace {
+
+struct CommandRow {
+    const char* name;
+    const char* description;
+    Action (*add)(Options& options);
+    const char* examples;
+};
+constexpr CommandRow commands[] = {
+    {"compare", "Run a study: build, grade and measure structures on the same sources", add_compare,
+     "  controlspace compare my_sources.csv\n"
+     "  controlspace compare mesh.sol --target-delta 0.1 --structures K_oLA,K_oV\n"
+     "  controlspace compare study.toml --dry-run\n"},
+    {"info", "Describe sources (number, sizes, gradation) or a control space", add_info,
+     "  controlspace info part.stl\n"
+     "  controlspace info field.ctrl\n"},
+    {"convert", "Write the sources of one file in another format", add_convert,
+     "  controlspace convert mesh.sol sources.csv\n"
+     "  controlspace convert part.stl -o sources.vtu --isotropic\n"},
+    {"build", "Build and grade one structure, and save it", add_build,
+     "  controlspace build my_sources.csv -o field.ctrl\n"
+     "  controlspace build mesh.sol -o field.ctrl --within 1.2\n"},
+    {"query", "Write the metrics of one structure at given points", add_query,
+     "  controlspace query field.ctrl places.csv -o metrics.csv\n"
+     "  controlspace query field.ctrl --pipe    # for Gmsh's field ExternalProcess\n"},
+    {"export",
+     "Write the field of one structure to a file, for Blender, Houdini, ParaView or a mesher",
+     add_export,
+     "  controlspace export field.ctrl -o field.vtu\n"
+     "  controlspace export field.ctrl -o field.sol --mesh mesh.mesh\n"
+     "  controlspace export part.stl -o part.b.mtr    # for TetGen's part.poly\n"
+     "  controlspace export sphere --h 0.05 -o sphere.structured\n"},
+    {"mesh", "Make meshes with structures as size fields, and measure their conformity", add_mesh,
+     "  controlspace mesh part.step --isotropic\n"
+     "  controlspace mesh field.ctrl --part part.stl --mesher hxt\n"},
+    {"list", "List the structures and other values of options", add_list, ""},
+};
+
+constexpr const char* statuses =
+    "Exit status:\n"
+    "  0    success\n"
+    "  1    the program or the system failed\n"
+    "  2    the input cannot be used\n"
+    "  3    some cases failed, or missed the requested target: results are written, and say why\n"
+    "  130  interrupted by Ctrl-C";
+
+/// For another word, CLI11 reports only that a command is missing.
+void require_command(const std::string& word) {
+    std::vector<std::string> names;
+    for (const CommandRow& row : commands) names.emplace_back(row.name);
+    if (std::find(names.begin(), names.end(), word) != names.end()) return;
+    throw InputError(
+        fmt::format("unknown command '{}': give one of {}", word, fmt::join(names, ", ")));
+}
+
+/// The command line, quoted for a shell.
+std::string command_line_text(int argc, const char* const* argv) {
+    std::string text;
+    for (int i = 0; i < argc; ++i) {
+        std::string word = argv[i];
+        if (word.empty() || word.find_first_of(" \t\n'\"\\$`*?&|;<>()[]{}#~!") != word.npos) {
+            std::string quoted;
+            for (const char c : word)
+                quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+            word = "'" + quoted + "'";
+        }
+        text += (i > 0 ? " " : "") + word;
+    }
+    return text;
+}
+
+int run(int argc, const char* const* argv) {
+    CLI::App app(
+        "Builds and compares control spaces for mesh generation: metrics at every point of a box, "
+        "from point sources.",
+        "controlspace");
+    app.set_version_flag("--version", "controlspace " + version_text(current_provenance()));
+    app.require_subcommand(1);
+    app.footer(std::string("Examples:\n"
+                           "  controlspace build part.stl -o part.ctrl\n"
+                           "  controlspace COMMAND --help\n\n") +
+               statuses);
+    set_help(app);
+    std::deque<Options> options;
+    std::vector<Action> actions;
+    for (const CommandRow& row : commands) {
+        CLI::App* command = app.add_subcommand(row.name, row.description);
+        actions.push_back(row.add(options.emplace_back(*command)));
+        options.back().set_footer(row.examples, statuses);
+    }
+
+    if (argc > 1 && argv[1][0] != '-') require_command(argv[1]);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        print(app.help());
+        return 0;
+    } catch (const CLI::CallForVersion& version) {
+        print(std::string(version.what()) + "\n");
+        return 0;
+    } catch (const CLI::ParseError& error) {
+        const auto given = app.get_subcommands();
+        throw InputError(fmt::format("{} (see controlspace {}--help)", error.what(),
+                                     given.empty() ? "" : given.front()->get_name() + " "));
+    }
+    for (std::size_t i = 0; i < actions.size(); ++i) {
+        if (app.got_subcommand(commands[i].name)) return actions[i](command_line_text(argc, argv));
+    }
+    return 0;
+}
+
+int fail(int status, std::string what) {
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    print_error(fmt::format("controlspace: error: {}\n", what));
+    return status;
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+    occupy_standard_descriptors();
+    std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit, writing fails as on a full disk
+    try {
+        spdlog::set_default_logger(spdlog::stderr_color_mt("controlspace"));
+        spdlog::set_pattern("%n: %l: %v");
+        return run(argc, argv);
+    } catch (const InputError& error) {
+        return fail(2, error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(1, "out of memory: give fewer sources, or lower --max-memory");
+    } catch (const std::exception& error) {
+        return fail(1, fmt::format("unexpected: {}", error.what()));
+    }
+}
+
+}  // namespace controlspace
