@@ -1,14 +1,11 @@
-#include <fmt/format.h>
 #include <openvdb/Types.h>
 
-#include <limits>
 #include <utility>
 
 #include "baselines/lattice/grid_space.h"
 #include "baselines/openvdb/catalogue.h"
 #include "baselines/openvdb/dense_tree.h"
-#include "controlspace/error.h"
-#include "controlspace/metric/stored_metric.h"
+#include "baselines/openvdb/vec3s_value.h"
 
 namespace controlspace {
 
@@ -16,19 +13,6 @@ namespace {
 
 using openvdb::Vec3s;
 using Vec3sTree = openvdb::tree::Tree4<Vec3s, 5, 4, 3>::Type;
-
-Vec3s diagonal(const Metric& m) {
-    return {static_cast<float>(m.xx), static_cast<float>(m.yy), static_cast<float>(m.zz)};
-}
-Vec3s off_diagonal(const Metric& m) {
-    return {static_cast<float>(m.xy), static_cast<float>(m.xz), static_cast<float>(m.yz)};
-}
-Metric metric_of(const Vec3s& a, const Vec3s& b) {
-    return {a.x(), a.y(), a.z(), b.x(), b.y(), b.z()};
-}
-
-// A function of its own: GCC 12 takes what is rounded and widened at once for unrounded.
-[[gnu::noinline]] StoredMetric<float> rounded(const Metric& m) { return StoredMetric<float>(m); }
 
 class Vec3sPair {
 public:
@@ -42,16 +26,7 @@ public:
 
     static double bytes_for(const Vector& nodes) { return 2 * dense_bytes<Vec3sTree>(nodes); }
 
-    static Metric stored(const Metric& m) {
-        const StoredMetric<float> kept = rounded(m);
-        constexpr float least = std::numeric_limits<float>::min();
-        constexpr float most = std::numeric_limits<float>::max();
-        for (const float entry : {kept.xx, kept.yy, kept.zz}) {
-            if (entry < least || entry > most) fail(m);
-        }
-        if (!is_positive_definite(kept)) fail(m);
-        return kept;
-    }
+    static Metric stored(const Metric& m) { return in_floats(m); }
 
     class Reader {
     public:
@@ -88,12 +63,6 @@ public:
     }
 
 private:
-    [[noreturn]] static void fail(const Metric& m) {
-        throw InputError(fmt::format(
-            "floats cannot hold the metric {} (xx yy zz xy xz yz): use a grid of doubles",
-            to_string(m)));
-    }
-
     Vec3sTree diagonals_;
     Vec3sTree off_diagonals_;
 };
