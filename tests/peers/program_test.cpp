@@ -1,0 +1,43 @@
+// controlspace-peers knows the rows of foreign systems in every command; controlspace does not.
+#include <catch2/catch.hpp>
+
+#include "cli/sandbox.h"
+#include "peers/peers.h"
+
+namespace controlspace {
+
+TEST_CASE("controlspace-peers lists and compares foreign systems") {
+    const Sandbox sandbox("peers");
+    const Outcome listed = sandbox.run("list");
+    for (const CatalogueEntry& row : peer_rows()) {
+        CHECK(listed.out.find("  " + row.id + " ") != std::string::npos);
+    }
+    sandbox.write("s.csv", "x,y,z,h\n0,0,0,0.1\n1,0,0,0.2\n0,1,1,0.2\n");
+    const Outcome compared = sandbox.run(
+        "compare s.csv --structures kd-nearest-all,direct --access-points 1000 --access-repeats 1 "
+        "-o r");
+    CHECK(compared.status == 0);
+    CHECK(file_text(sandbox / "r/results.csv").find("kd-nearest-all") != std::string::npos);
+}
+
+TEST_CASE("a tensor stops a system of lengths, and the others go on") {
+    const Sandbox sandbox("peers-tensor");
+    const Outcome compared = sandbox.run(
+        "compare sphere --h 0.3 --s-a 2 --s-n 0.25 --structures kd-nearest,K_oL --access-points 1000 "
+        "--access-repeats 1 -o r");
+    CHECK(compared.status == 3);
+    const std::string results = file_text(sandbox / "r/results.json");
+    CHECK(results.find("give isotropic sources") != std::string::npos);
+    CHECK(results.find("K_oL") != std::string::npos);
+}
+
+TEST_CASE("controlspace without peers does not know them") {
+    const std::string main_program = std::string("'") + CONTROLSPACE_MAIN + "' list > list.txt; ";
+    const Sandbox sandbox("main");
+    sandbox.run("--version", main_program);
+    const std::string listed = file_text(sandbox / "list.txt");
+    CHECK(listed.find("K_oL") != std::string::npos);
+    for (const CatalogueEntry& row : peer_rows()) CHECK(listed.find(row.id) == std::string::npos);
+}
+
+}  // namespace controlspace
