@@ -17,18 +17,18 @@ std::vector<const CatalogueEntry*> chosen(const Values& names,
         const std::string& name = value.text();
         bool known = name == "all";
         std::string all = "all";
+        std::vector<std::string> families;
         for (const CatalogueEntry& entry : catalogue) {
             all += ", " + entry.id;
+            if (std::ranges::count(families, entry.family) == 0) families.push_back(entry.family);
             const bool former = !name.empty() && entry.former_id == name;
             if (name != "all" && entry.id != name && entry.family != name && !former) continue;
             known = true;
             if (std::ranges::count(entries, &entry) == 0) entries.push_back(&entry);
         }
         if (!known) {
-            throw InputError(
-                fmt::format("unknown structure '{}': give a family (trees, further, anchored, "
-                            "baselines) or some of {}",
-                            name, all));
+            throw InputError(fmt::format("unknown structure '{}': give a family ({}) or some of {}",
+                                         name, fmt::join(families, ", "), all));
         }
     }
     return entries;

@@ -12,6 +12,10 @@ TEST_CASE("controlspace-peers lists and compares foreign systems") {
     for (const CatalogueEntry& row : peer_rows()) {
         CHECK(listed.out.find("  " + row.id + " ") != std::string::npos);
     }
+    const Outcome unknown = sandbox.run("compare sphere --structures K_X -o none");
+    CHECK(unknown.status == 2);
+    CHECK(unknown.err.find("a family (trees, further, anchored, baselines, peers)") !=
+          std::string::npos);
     sandbox.write("s.csv", "x,y,z,h\n0,0,0,0.1\n1,0,0,0.2\n0,1,1,0.2\n");
     const Outcome compared = sandbox.run(
         "compare s.csv --structures kd-nearest-all,direct --access-points 1000 --access-repeats 1 "
@@ -23,7 +27,8 @@ TEST_CASE("controlspace-peers lists and compares foreign systems") {
 TEST_CASE("a tensor stops a system of lengths, and the others go on") {
     const Sandbox sandbox("peers-tensor");
     const Outcome compared = sandbox.run(
-        "compare sphere --h 0.3 --s-a 2 --s-n 0.25 --structures kd-nearest,K_oL --access-points 1000 "
+        "compare sphere --h 0.3 --s-a 2 --s-n 0.25 --structures kd-nearest,K_oL --access-points "
+        "1000 "
         "--access-repeats 1 -o r");
     CHECK(compared.status == 3);
     const std::string results = file_text(sandbox / "r/results.json");
@@ -31,11 +36,17 @@ TEST_CASE("a tensor stops a system of lengths, and the others go on") {
     CHECK(results.find("K_oL") != std::string::npos);
 }
 
-TEST_CASE("controlspace without peers does not know them") {
-    const std::string main_program = std::string("'") + CONTROLSPACE_MAIN + "' list > list.txt; ";
+TEST_CASE("controlspace itself neither knows nor links foreign systems") {
+    const std::string main_program = std::string("'") + CONTROLSPACE_MAIN + "' list > list.txt; " +
+                                     "ldd '" + CONTROLSPACE_MAIN + "' > libraries.txt; ";
     const Sandbox sandbox("main");
     sandbox.run("--version", main_program);
     const std::string listed = file_text(sandbox / "list.txt");
+    const std::string libraries = file_text(sandbox / "libraries.txt");
+    CHECK(libraries.find("libtbb") != std::string::npos);
+    for (const char* peer : {"netgen", "p4est", "mpi", "CGAL", "gmsh"}) {
+        CHECK(libraries.find(peer) == std::string::npos);
+    }
     CHECK(listed.find("K_oL") != std::string::npos);
     for (const CatalogueEntry& row : peer_rows()) CHECK(listed.find(row.id) == std::string::npos);
 }

@@ -1,0 +1,271 @@
+// What the adapters of foreign systems cost: the time of `sample` over that of a plain loop over
+// the library itself, which writes lengths alone, on the same sources and places. Samples are taken
+// in turns; printed is the median of their ratios, with its quartiles. Fails where answers differ.
+//   peers_overhead [NUMBER OF PLACES [SAMPLES]]
+#define OMPI_SKIP_MPICXX 1
+#define MPICH_SKIP_MPICXX 1
+#include <fmt/format.h>
+#ifdef PEER_netgen
+#include <mystdlib.h>
+
+#include <gprim.hpp>
+#include <meshing/localh.hpp>
+#include <myadt.hpp>
+#endif
+#ifdef PEER_p4est
+#include <p8est.h>
+#include <p8est_extended.h>
+#include <p8est_search.h>
+#endif
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+#ifdef PEER_kd_nearest
+#include <nanoflann.hpp>
+#endif
+#ifdef PEER_nanovdb
+#include <nanovdb/NanoVDB.h>
+#include <nanovdb/util/OpenToNanoVDB.h>
+#include <nanovdb/util/SampleFromVoxels.h>
+#include <openvdb/Grid.h>
+#endif
+
+#include "baselines/peers/peer_rows.h"
+#include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/catalogue.h"
+
+namespace {
+
+using namespace controlspace;
+
+const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
+constexpr double slope = 0.25;
+constexpr int voxels = 80;
+constexpr double voxel = 2.0 / voxels;
+
+/// Fills `out` with the lengths at the places.
+using Loop = std::function<void(std::span<const Point>, std::span<double> out)>;
+
+std::unique_ptr<ControlSpace> finished(const CatalogueEntry& row,
+                                       std::span<const PointSource> sources) {
+    SpaceOptions options;
+    options.domain = domain;
+    options.finest_length = finest_length(sources);
+    options.voxel = voxel;
+    const auto builder = row.make(options);
+    builder->insert(sources);
+    builder->grade({.ratio = 1 + slope});
+    return builder->build();
+}
+
+#ifdef PEER_kd_nearest
+struct Places {
+    std::span<const PointSource> sources;
+    std::size_t kdtree_get_point_count() const { return sources.size(); }
+    double kdtree_get_pt(std::size_t i, std::size_t axis) const {
+        return sources[i].position[static_cast<Axis>(axis)];
+    }
+    bool kdtree_get_bbox(auto&) const { return false; }
+};
+Loop bare_nanoflann(std::span<const PointSource> sources) {
+    using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Places>,
+                                                     Places, 3, std::uint32_t>;
+    const auto places = std::make_shared<Places>(Places{sources});
+    const auto tree = std::make_shared<Tree>(3, *places);
+    return [places, tree, sources](std::span<const Point> x, std::span<double> out) {
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            std::array<std::uint32_t, 8> nearest;
+            std::array<double, 8> squares;
+            const std::size_t found =
+                tree->knnSearch(x[i].data(), 8, nearest.data(), squares.data());
+            double h = domain.half_diagonal();
+            for (std::size_t k = 0; k < found; ++k) {
+                h = std::min(h, sources[nearest[k]].metric.xx + slope * std::sqrt(squares[k]));
+            }
+            out[i] = h;
+        }
+    };
+}
+#endif
+
+#ifdef PEER_netgen
+netgen::Point<3> netgen_point(const Point& p) { return {p.x(), p.y(), p.z()}; }
+Loop bare_netgen(std::span<const PointSource> sources) {
+    std::srand(1);  // LocalH moves its box by a random amount
+    const auto sizes = std::make_shared<netgen::LocalH>(netgen_point(domain.low),
+                                                        netgen_point(domain.high), slope);
+    for (const PointSource& s : sources) sizes->SetH(netgen_point(s.position), s.metric.xx);
+    return [=](std::span<const Point> x, std::span<double> out) {
+        for (std::size_t i = 0; i < x.size(); ++i) out[i] = sizes->GetH(netgen_point(x[i]));
+    };
+}
+#endif
+
+#ifdef PEER_nanovdb
+// The two grids, of the field at the voxels' centres or at their corners.
+template <int order>
+Loop bare_nanovdb(const ControlSpace& field) {
+    using Handle = nanovdb::GridHandle<nanovdb::HostBuffer>;
+    auto handles = std::make_shared<std::array<Handle, 2>>();
+    for (std::size_t part = 0; part < 2; ++part) {
+        const auto grid = openvdb::Vec3SGrid::create();
+        auto write = grid->getAccessor();
+        constexpr int nodes = order == 0 ? voxels : voxels + 1;
+        for (int n = 0; n < nodes * nodes * nodes; ++n) {
+            const int i = n % nodes, j = n / nodes % nodes, k = n / nodes / nodes;
+            const Point x =
+                domain.low + voxel * (Vector(i, j, k).array() + (order == 0) * 0.5).matrix();
+            const Metric m = sample_at(field, x);
+            write.setValue({i, j, k}, part == 0 ? openvdb::Vec3s(openvdb::Vec3d(m.xx, m.yy, m.zz))
+                                                : openvdb::Vec3s(openvdb::Vec3d(m.xy, m.xz, m.yz)));
+        }
+        (*handles)[part] = nanovdb::openToNanoVDB(*grid);
+    }
+    return [=](std::span<const Point> x, std::span<double> out) {
+        auto diagonals = (*handles)[0].grid<nanovdb::Vec3f>()->getAccessor();
+        auto others = (*handles)[1].grid<nanovdb::Vec3f>()->getAccessor();
+        const auto a = nanovdb::createSampler<order>(diagonals);
+        const auto b = nanovdb::createSampler<order>(others);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const Vector t = (x[i] - domain.low) / voxel - Vector::Constant(order == 0 ? 0.5 : 0);
+            const nanovdb::Vec3d at(t.x(), t.y(), t.z());
+            // Lengths alone would need no second grid: the sum keeps its reading.
+            out[i] = static_cast<double>(a(at)[0] + b(at)[0]);
+        }
+    };
+}
+#endif
+
+#ifdef PEER_p4est
+struct Search {
+    std::array<p4est_qcoord_t, 3> place;
+    p4est_locidx_t leaf;
+};
+int is_inside(p8est_t*, p4est_topidx_t, p8est_quadrant_t* q, p4est_locidx_t leaf, void* point) {
+    auto& search = *static_cast<Search*>(point);
+    const p4est_qcoord_t outside =
+        (search.place[0] ^ q->x) | (search.place[1] ^ q->y) | (search.place[2] ^ q->z);
+    if (outside >= P8EST_QUADRANT_LEN(q->level)) return 0;
+    if (leaf >= 0) search.leaf = leaf;
+    return 1;
+}
+Point centre(const p8est_quadrant_t& q) {
+    const double half = 0.5 * P8EST_QUADRANT_LEN(q.level);
+    return domain.low + Vector(q.x + half, q.y + half, q.z + half) * 2 / P8EST_ROOT_LEN;
+}
+int is_cut(p8est_t* forest, p4est_topidx_t, p8est_quadrant_t* q) {
+    const auto& octree = *static_cast<const ControlSpace*>(forest->user_pointer);
+    return octree.cell_at(centre(*q))->edges().x() < 1.5 / (1 << q->level);
+}
+// To be called once the adapter has started MPI. The forest lives until the program ends.
+Loop bare_p4est(const ControlSpace& octree) {
+    p8est_t* forest = p8est_new_ext(sc_MPI_COMM_SELF, p8est_connectivity_new_unitcube(), 0, 0, 1, 0,
+                                    nullptr, const_cast<ControlSpace*>(&octree));
+    p8est_refine(forest, 1, is_cut, nullptr);
+    sc_array_t* leaves = &p8est_tree_array_index(forest->trees, 0)->quadrants;
+    std::vector<double> lengths;
+    for (std::size_t i = 0; i < leaves->elem_count; ++i) {
+        lengths.push_back(sample_at(octree, centre(*p8est_quadrant_array_index(leaves, i))).xx);
+    }
+    return [=](std::span<const Point> x, std::span<double> out) {
+        constexpr std::size_t most = 4096;
+        std::vector<Search> found(most);
+        for (std::size_t first = 0; first < x.size(); first += most) {
+            const std::size_t count = std::min(most, x.size() - first);
+            for (std::size_t i = 0; i < count; ++i) {
+                const Vector t = (x[first + i] - domain.low) * (P8EST_ROOT_LEN / 2.0);
+                found[i].place = {static_cast<p4est_qcoord_t>(t.x()),
+                                  static_cast<p4est_qcoord_t>(t.y()),
+                                  static_cast<p4est_qcoord_t>(t.z())};
+            }
+            sc_array_t points;
+            sc_array_init_data(&points, found.data(), sizeof(Search), count);
+            p8est_search_local(forest, 0, nullptr, is_inside, &points);
+            for (std::size_t i = 0; i < count; ++i) {
+                out[first + i] = lengths[static_cast<std::size_t>(found[i].leaf)];
+            }
+        }
+    };
+}
+#endif
+
+double seconds(const auto& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Returns whether both answer alike, which a ratio needs to mean anything.
+bool compare(const std::string& id, const ControlSpace& space, const Loop& bare,
+             std::span<const Point> x, int samples) {
+    std::vector<Metric> ours(x.size());
+    std::vector<double> theirs(x.size()), ratios;
+    const auto adapted = [&] { space.sample(x, ours); };
+    const auto plain = [&] { bare(x, theirs); };
+    adapted();
+    plain();
+    double apart = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        apart = std::max(apart, std::abs(ours[i].xx / theirs[i] - 1));
+    }
+    for (int i = 0; i < samples; ++i) {
+        const double a = seconds(adapted);
+        ratios.push_back(a / seconds(plain));
+    }
+    std::ranges::sort(ratios);
+    const auto at = [&](double share) {
+        return ratios[static_cast<std::size_t>(share * static_cast<double>(ratios.size() - 1))];
+    };
+    fmt::print("{:20} {:6.2f}  {:5.2f} - {:5.2f}  {:.1e}\n", id, at(0.5), at(0.25), at(0.75),
+               apart);
+    return apart < 1e-5;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::size_t count = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 100000;
+    const int samples = argc > 2 ? std::atoi(argv[2]) : 21;
+    if (count == 0 || samples <= 0) {
+        fmt::print(stderr, "peers_overhead: give numbers above 0: [PLACES [SAMPLES]]\n");
+        return 2;
+    }
+    const std::vector<PointSource> sources =
+        sample_sphere({.h = 0.05, .s_a = 2, .s_n = 1, .rho = 2});
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> along(-0.98, 0.98);
+    std::vector<Point> x(count);
+    for (Point& p : x) p = Point(along(random), along(random), along(random));
+
+    const std::vector<CatalogueEntry> rows = peer_rows();
+    bool alike = true;
+    const auto against = [&](const std::string& id, const auto& bare) {
+        const auto space = finished(*find_entry(rows, id), sources);
+        alike = compare(id, *space, bare(*space), x, samples) && alike;
+    };
+    fmt::print("adapter / bare loop  median  quartiles      largest difference\n");
+#ifdef PEER_kd_nearest
+    against("kd-nearest", [&](const ControlSpace&) { return bare_nanoflann(sources); });
+#endif
+#ifdef PEER_nanovdb
+    against("nanovdb-nearest", [](const ControlSpace& s) { return bare_nanovdb<0>(s); });
+    against("nanovdb-trilinear", [](const ControlSpace& s) { return bare_nanovdb<1>(s); });
+#endif
+#ifdef PEER_netgen
+    against("netgen-localh", [&](const ControlSpace&) { return bare_netgen(sources); });
+#endif
+#ifdef PEER_p4est
+    const auto octree = finished(*find_entry(tree_catalogue(), "K_oL"), sources);
+    against("p4est-octree", [&](const ControlSpace&) { return bare_p4est(*octree); });
+#endif
+    return alike ? 0 : 1;
+}
