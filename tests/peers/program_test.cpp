@@ -37,10 +37,10 @@ TEST_CASE("a tensor stops a system of lengths, and the others go on") {
 }
 
 TEST_CASE("controlspace itself neither knows nor links foreign systems") {
-    const std::string main_program = std::string("'") + CONTROLSPACE_MAIN + "' list > list.txt; " +
-                                     "ldd '" + CONTROLSPACE_MAIN + "' > libraries.txt; ";
     const Sandbox sandbox("main");
-    sandbox.run("--version", main_program);
+    sandbox.run("--version", "'" CONTROLSPACE_MAIN
+                             "' list > list.txt; "
+                             "ldd '" CONTROLSPACE_MAIN "' > libraries.txt;");
     const std::string listed = file_text(sandbox / "list.txt");
     const std::string libraries = file_text(sandbox / "libraries.txt");
     CHECK(libraries.find("libtbb") != std::string::npos);
