@@ -136,7 +136,9 @@ std::string_view checked_body(std::string_view bytes, const std::string& name) {
 void save(const std::filesystem::path& file, const Saved* saved) {
     require_little_endian();
     if (saved == nullptr || !saved->recipe()) {
-        throw InputError("a control space can be saved if an entry of the catalogue has made it");
+        throw InputError(
+            "a control space can be saved if an entry of the catalogue has made it, other than a "
+            "foreign system");
     }
     const Recipe& recipe = *saved->recipe();
     StateWriter state;

@@ -4,6 +4,7 @@
 
 #include "baselines/add_structures.h"
 #include "case_of_each.h"
+#include "controlspace/space/sample_parallel.h"
 #include "peers/peers.h"
 
 namespace controlspace {
@@ -36,6 +37,15 @@ CASE_OF_EACH(entry, peers(), "one place at a time gets what many at once get") {
     for (std::size_t i = 0; i < places.size(); i += 7) {
         REQUIRE(sample_at(*space, places[i]) == together[i]);
     }
+}
+
+CASE_OF_EACH(entry, peers(), "all threads together get what one gets") {
+    const Work work = oblong_box();
+    const auto space = finished(entry.id, work);
+    const std::vector<Point> places = places_in(work, 20000);
+    std::vector<Metric> together(places.size());
+    sample_parallel(*space, places, together);
+    CHECK(differing(together, answers_at(*space, places)) == 0);
 }
 
 CASE_OF_EACH(entry, peers(), "a place outside gets the answer of the domain's nearest point") {

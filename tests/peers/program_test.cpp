@@ -26,10 +26,10 @@ TEST_CASE("controlspace-peers lists and compares foreign systems") {
 
 TEST_CASE("a tensor stops a system of lengths, and the others go on") {
     const Sandbox sandbox("peers-tensor");
+    sandbox.write("s.csv",
+                  "x,y,z,xx,yy,zz,xy,xz,yz\n0,0,0,0.2,0.2,0.1,0,0,0\n1,1,1,0.2,0.2,0.2,0,0,0\n");
     const Outcome compared = sandbox.run(
-        "compare sphere --h 0.3 --s-a 2 --s-n 0.25 --structures kd-nearest,K_oL --access-points "
-        "1000 "
-        "--access-repeats 1 -o r");
+        "compare s.csv --structures kd-nearest,K_oL --access-points 1000 --access-repeats 1 -o r");
     CHECK(compared.status == 3);
     const std::string results = file_text(sandbox / "r/results.json");
     CHECK(results.find("give isotropic sources") != std::string::npos);

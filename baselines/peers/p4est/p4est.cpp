@@ -72,6 +72,8 @@ public:
         octree_ = nullptr;
     }
 
+    // libsc counts its allocations without a lock: after several threads the counts alone are
+    // wrong.
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         constexpr std::size_t most = 4096;
         std::array<Search, most> found;
