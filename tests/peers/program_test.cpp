@@ -26,8 +26,9 @@ TEST_CASE("controlspace-peers lists and compares foreign systems") {
 
 TEST_CASE("a tensor stops a system of lengths, and the others go on") {
     const Sandbox sandbox("peers-tensor");
-    sandbox.write("s.csv",
-                  "x,y,z,xx,yy,zz,xy,xz,yz\n0,0,0,0.2,0.2,0.1,0,0,0\n1,1,1,0.2,0.2,0.2,0,0,0\n");
+    sandbox.write(
+        "s.csv",
+        "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n0,0,0,0.2,0.2,0.1,0,0,0\n1,1,1,0.2,0.2,0.2,0,0,0\n");
     const Outcome compared = sandbox.run(
         "compare s.csv --structures kd-nearest,K_oL --access-points 1000 --access-repeats 1 -o r");
     CHECK(compared.status == 3);
