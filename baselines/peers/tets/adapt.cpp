@@ -1,0 +1,111 @@
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "baselines/peers/tets/background_tets.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/space/detail/goal_field.h"
+#include "controlspace/space/sample_parallel.h"
+
+namespace controlspace {
+
+/// Places where tetrahedra are compared with a goal.
+struct BackgroundTets::Comparison {
+    std::vector<Point> x;
+    std::vector<Metric> wanted;
+
+    void ask(const ControlSpace& goal) {
+        wanted.resize(x.size());
+        sample_parallel(goal, x, wanted);
+    }
+};
+
+AdaptationReport BackgroundTets::adapt(const AdaptationGoal& goal) {
+    options_.h_max = std::min(options_.h_max, goal.h_max);
+    const GoalField wanted(goal, domain());
+    clear(largest_metric(options_));
+    Comparison corners{positions(control_nodes(Neighbourhood::faces).graph), {}};
+    corners.ask(wanted);
+    assign(corners.wanted);
+
+    Comparison named;
+    for (const PointSource& source : goal.sources) named.x.push_back(source.position);
+    for (const Point& place : goal.places) named.x.push_back(clamped(place));
+    named.ask(wanted);
+    // Between the places that are compared it may miss the goal by somewhat more.
+    const double allowed = 0.75 * goal.target;
+    bool has_room = true;
+    while (has_room && refine(named, wanted, allowed)) {
+        has_room = bytes() <= static_cast<double>(options_.max_bytes);
+    }
+    AdaptationReport report;
+    report.reached = wanted.largest_departure(domain(), [&](auto x, auto out) { sample(x, out); });
+    report.met = has_room && report.reached <= goal.target;
+    if (!has_room) {
+        report.shortfall = "more tetrahedra would outgrow the cap on memory";
+    } else if (!report.met) {
+        report.shortfall = "tetrahedra follow the field at sources, edges and centres: between "
+                           "these it is missed; give a smaller target";
+    }
+    return report;
+}
+
+// Makes a vertex of the place where a tetrahedron misses the goal most: of its centre, the middles
+// of its edges, and what is named. Returns whether there was any.
+bool BackgroundTets::refine(Comparison& named, const ControlSpace& goal, double allowed) {
+    Comparison places = named;
+    std::vector<Delaunay::Cell_handle> cells(named.x.size());
+    std::vector<Metric> own(named.x.size());
+    Delaunay::Cell_handle near;
+    for (std::size_t i = 0; i < named.x.size(); ++i) {
+        const Weights weights = locate(named.x[i], near);
+        near = cells[i] = weights.cell;
+        own[i] = blended(weights);
+    }
+    const auto corners = static_cast<std::size_t>(corners_of_cell());
+    Comparison inside;
+    for_each_cell([&](Delaunay::Cell_handle cell) {
+        if (cell->info().worst != TetState::unknown) return;
+        cell->info().worst = TetState::settled;
+        const auto compare = [&](const std::array<double, 4>& weights) {
+            Point x = Point::Zero();
+            for (std::size_t i = 0; i < corners; ++i) {
+                x += weights[i] * position(cell->vertex(static_cast<int>(i)));
+            }
+            inside.x.push_back(clamped(x));
+            own.push_back(blended({cell, weights}));
+            cells.push_back(cell);
+        };
+        const double part = 1 / static_cast<double>(corners);
+        compare({part, part, part, corners == 4 ? part : 0});
+        for (std::size_t i = 0; i < corners; ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                std::array<double, 4> weights{};
+                weights[i] = weights[j] = 0.5;
+                compare(weights);
+            }
+        }
+    });
+    inside.ask(goal);
+    places.x.insert(places.x.end(), inside.x.begin(), inside.x.end());
+    places.wanted.insert(places.wanted.end(), inside.wanted.begin(), inside.wanted.end());
+
+    std::vector<double> departures(places.x.size());
+    tbb::parallel_for(std::size_t{0}, departures.size(), [&](std::size_t i) {
+        departures[i] = strict_nonconformity(own[i], places.wanted[i]);
+    });
+    for (std::uint32_t i = 0; i < departures.size(); ++i) {
+        if (departures[i] <= allowed) continue;
+        std::uint32_t& worst = cells[i]->info().worst;
+        if (worst == TetState::settled || departures[i] > departures[worst]) worst = i;
+    }
+    Comparison chosen;
+    for (std::uint32_t i = 0; i < departures.size(); ++i) {
+        if (cells[i]->info().worst != i) continue;
+        chosen.x.push_back(places.x[i]);
+        chosen.wanted.push_back(places.wanted[i]);
+    }
+    return add(chosen.x, chosen.wanted) > 0;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,258 @@
+#include "baselines/peers/tets/background_tets.h"
+
+#include <CGAL/property_map.h>
+#include <CGAL/spatial_sort.h>
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cones/spatial_order.h"
+#include "controlspace/input_errors.h"
+#include "controlspace/metric/blend.h"
+#include "controlspace/metric/intersection.h"
+
+namespace controlspace {
+
+namespace {
+
+TetKernel::Point_3 to_cgal(const Point& p) { return {p.x(), p.y(), p.z()}; }
+
+/// f of the eigenvalues.
+template <class Function>
+Metric mapped(const Metric& m, Function f) {
+    if (is_isotropic(m)) return Metric::isotropic(f(m.xx));
+    const EigenFrame frame = eigen_frame(m);
+    const auto& [a, b, c] = frame.lengths;
+    return metric_from_frame({f(a), f(b), f(c)}, frame.directions);
+}
+
+}  // namespace
+
+BackgroundTets::BackgroundTets(const SpaceOptions& options, TetBlend blend)
+    : options_(options), blend_(blend) {
+    require_valid(options);
+    if (options.takes_later_sources) {
+        throw InputError("a background mesh takes no later sources: give all of them at once");
+    }
+    clear(largest_metric(options));
+}
+
+Metric BackgroundTets::encoded(const Metric& m) const {
+    if (blend_ == TetBlend::metrics) return m;
+    return mapped(m, [](double length) { return std::log(length); });
+}
+
+Metric BackgroundTets::decoded(const Metric& value) const {
+    if (blend_ == TetBlend::metrics) return value;
+    return mapped(value, [](double log) { return std::exp(log); });
+}
+
+void BackgroundTets::clear(const Metric& metric) {
+    mesh_.clear();
+    last_.forget();
+    graded_ = false;
+    std::vector<Point> corners;
+    for (int i = 0; i < 8; ++i) {
+        const auto side = [&](int axis) {
+            return (i >> axis & 1 ? domain().high : domain().low)[axis];
+        };
+        corners.emplace_back(side(0), side(1), side(2));
+    }
+    add(corners, std::vector<Metric>(corners.size(), metric));
+}
+
+std::size_t BackgroundTets::add(std::span<const Point> x, std::span<const Metric> metrics) {
+    using Place = std::pair<TetKernel::Point_3, std::size_t>;
+    std::vector<Place> places;
+    places.reserve(x.size());
+    for (const Point& p : x) places.emplace_back(to_cgal(p), places.size());
+    CGAL::spatial_sort(
+        places.begin(), places.end(),
+        CGAL::Spatial_sort_traits_adapter_3<TetKernel, CGAL::First_of_pair_property_map<Place>>());
+    std::size_t changed = 0;
+    last_.forget();
+    Delaunay::Cell_handle near;
+    std::vector<Delaunay::Vertex_handle> made(x.size());
+    auto number = static_cast<NodeIndex>(mesh_.number_of_vertices());
+    for (const auto& [place, i] : places) {
+        const Delaunay::Vertex_handle vertex = mesh_.insert(place, near);
+        near = vertex->cell();
+        TetVertex& held = vertex->info();
+        const bool is_new = held.index == TetVertex::none;
+        if (is_new) {
+            made[i] = vertex;
+            held.index = number;
+        }
+        const Metric before = is_new ? metrics[i] : decoded(held.value);
+        const Metric after = is_new ? before : intersection(before, metrics[i]);
+        if (!is_new && after == before) continue;
+        held.value = encoded(after);
+        ++changed;
+    }
+    // Numbered as they were given, not as they were sorted.
+    for (const Delaunay::Vertex_handle vertex : made) {
+        if (vertex != Delaunay::Vertex_handle()) vertex->info().index = number++;
+    }
+    return changed;
+}
+
+InsertionReport BackgroundTets::insert(std::span<const PointSource> sources) {
+    const auto refused = std::ranges::find_if_not(
+        sources, [&](const PointSource& source) { return is_valid(source, domain()); });
+    const auto count = static_cast<std::size_t>(refused - sources.begin());
+    // CGAL makes some 6.8 tetrahedra of each vertex.
+    const double vertex_bytes = sizeof(Delaunay::Vertex) + 6.8 * sizeof(Delaunay::Cell);
+    const double needed = bytes() + static_cast<double>(count) * vertex_bytes;
+    if (needed > static_cast<double>(options_.max_bytes)) {
+        throw MemoryLimitError(static_cast<std::size_t>(needed),
+                               fmt::format("tetrahedra of {} sources take about {:.3g} MB: raise "
+                                           "the cap on memory, or give fewer sources",
+                                           count, needed / 1e6));
+    }
+    std::vector<Point> x;
+    std::vector<Metric> metrics;
+    const Metric largest = largest_metric(options_);
+    for (const PointSource& source : sources.first(count)) {
+        x.push_back(source.position);
+        metrics.push_back(intersection(largest, source.metric));
+    }
+    if (graded_) {  // the graded field stays, lowered where the sources request it
+        std::vector<Metric> held(count);
+        sample(x, held);
+        for (std::size_t i = 0; i < count; ++i) metrics[i] = intersection(held[i], metrics[i]);
+    }
+    const InsertionReport report{count, add(x, metrics)};
+    if (refused != sources.end()) require_valid(*refused, count, domain());
+    return report;
+}
+
+GradationReport BackgroundTets::grade(const NodeGradation& gradation) {
+    auto [graph, metrics] = control_nodes(gradation.options.neighbourhood);
+    const GradationReport report =
+        gradation.field ? grade_to(*gradation.field, positions(graph), metrics)
+                        : controlspace::grade(graph, metrics, gradation.options);
+    assign(metrics);
+    return report;
+}
+
+void BackgroundTets::assign(std::span<const Metric> metrics) {
+    require_one_each(metrics.size(), mesh_.number_of_vertices());
+    for (const auto& vertex : mesh_.finite_vertex_handles()) {
+        vertex->info().value = encoded(metrics[vertex->info().index]);
+    }
+    graded_ = true;
+}
+
+ControlNodes BackgroundTets::control_nodes(Neighbourhood) const {
+    NodeGraph graph;
+    std::vector<Metric> metrics(mesh_.number_of_vertices());
+    graph.positions.resize(metrics.size());
+    graph.first.assign(metrics.size() + 1, 0);
+    for (const auto& vertex : mesh_.finite_vertex_handles()) {
+        graph.positions[vertex->info().index] = position(vertex);
+        metrics[vertex->info().index] = metric(vertex);
+    }
+    const auto for_each_end = [&](auto&& visit) {
+        for (const auto& [cell, i, j] : mesh_.finite_edges()) {
+            const NodeIndex a = cell->vertex(i)->info().index, b = cell->vertex(j)->info().index;
+            visit(a, b);
+            visit(b, a);
+        }
+    };
+    for_each_end([&](NodeIndex from, NodeIndex) { ++graph.first[from + std::size_t{1}]; });
+    for (std::size_t i = 1; i < graph.first.size(); ++i) graph.first[i] += graph.first[i - 1];
+    graph.neighbours.resize(graph.first.back());
+    std::vector<std::size_t> next(graph.first.begin(), graph.first.end() - 1);
+    for_each_end([&](NodeIndex from, NodeIndex to) { graph.neighbours[next[from]++] = to; });
+    return {std::move(graph), std::move(metrics)};
+}
+
+BackgroundTets::Weights BackgroundTets::locate(const Point& x, Delaunay::Cell_handle start) const {
+    const Point p = clamped(x);
+    Delaunay::Cell_handle cell = mesh_.locate(to_cgal(p), start);
+    if (mesh_.is_infinite(cell)) cell = cell->neighbor(cell->index(mesh_.infinite_vertex()));
+    const auto corner = [&](int i) { return position(cell->vertex(i)); };
+    const Point a = corner(0);
+    const Vector b = corner(1) - a, c = corner(2) - a, q = p - a;
+    // A triangle becomes a tetrahedron, whose fourth vertex gets the weight 0.
+    const Vector d = mesh_.dimension() == 3 ? Vector(corner(3) - a) : b.cross(c);
+    const Vector cd = c.cross(d);
+    const double volume = b.dot(cd);
+    Eigen::Array4d w(0, q.dot(cd) / volume, b.dot(q.cross(d)) / volume, b.dot(c.cross(q)) / volume);
+    if (mesh_.dimension() < 3) w[3] = 0;
+    w[0] = 1 - w[1] - w[2] - w[3];
+    // Rounding leaves a thin tetrahedron: answers stay between its vertices'.
+    w = w.max(0);
+    const double sum = w.sum();
+    if (!std::isfinite(sum)) return {cell, {1, 0, 0, 0}};
+    w /= sum;
+    return {cell, {w[0], w[1], w[2], w[3]}};
+}
+
+Metric BackgroundTets::blended(const Weights& weights) const {
+    return decoded(blend_lengths(
+        std::span(weights.of).first(static_cast<std::size_t>(corners_of_cell())),
+        [&](std::size_t i) -> const Metric& {
+            return weights.cell->vertex(static_cast<int>(i))->info().value;
+        }));
+}
+
+void BackgroundTets::sample(std::span<const Point> x, std::span<Metric> out) const {
+    Delaunay::Cell_handle cell = last_.get();
+    const auto answer = [&](std::size_t i) {
+        const Weights weights = locate(x[i], cell);
+        cell = weights.cell;
+        out[i] = blended(weights);
+    };
+    constexpr std::size_t batch = 32;  // from so many on, shorter walks outweigh the sorting
+    if (x.size() < batch) {
+        for (std::size_t i = 0; i < x.size(); ++i) answer(i);
+    } else {
+        for (const std::uint32_t i : spatial_order(x)) answer(i);
+    }
+    last_.set(cell);
+}
+
+double BackgroundTets::bytes() const {
+    const Delaunay::Triangulation_data_structure& tds = mesh_.tds();
+    return static_cast<double>(tds.vertices().capacity() * sizeof(Delaunay::Vertex) +
+                               tds.cells().capacity() * sizeof(Delaunay::Cell));
+}
+
+Footprint BackgroundTets::footprint() const {
+    Footprint footprint;
+    footprint.cells = mesh_.dimension() == 3 ? mesh_.number_of_finite_cells()
+                                             : mesh_.number_of_finite_facets();
+    footprint.control_nodes = mesh_.number_of_vertices();
+    footprint.bytes_payload = mesh_.tds().vertices().capacity() * sizeof(Metric);
+    footprint.bytes_topology = static_cast<std::size_t>(bytes()) - footprint.bytes_payload;
+    return footprint;
+}
+
+void BackgroundTets::save(StateWriter& state) const {
+    const ControlNodes nodes = control_nodes(Neighbourhood::faces);
+    state("tets.positions", positions(nodes.graph));
+    state("tets.metrics", nodes.metrics);
+    state("tets.graded", graded_);
+}
+
+void BackgroundTets::load(const StateReader& state) {
+    std::vector<Point> x;
+    std::vector<Metric> metrics;
+    state("tets.positions", x);
+    state("tets.metrics", metrics);
+    const auto is_inside = [&](const Point& p) { return domain().contains(p); };
+    state.require(std::ranges::all_of(x, is_inside), "tets.positions", "has places outside");
+    state.require(x.size() == metrics.size(), "tets.metrics", "has another length");
+    require_metrics(state, "tets.metrics", metrics);
+    clear(largest_metric(options_));
+    add(x, metrics);
+    // The corners are among them.
+    state.require(mesh_.number_of_vertices() == x.size(), "tets.positions", "lacks corners");
+    assign(metrics);
+    state("tets.graded", graded_);
+}
+
+}  // namespace controlspace

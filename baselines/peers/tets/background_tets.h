@@ -1,0 +1,96 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "baselines/peers/tets/delaunay.h"
+#include "controlspace/error.h"
+#include "controlspace/space/control_nodes.h"
+#include "controlspace/space/control_space.h"
+#include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/detail/given_sources.h"
+#include "controlspace/space/detail/state.h"
+#include "controlspace/space/space_options.h"
+
+namespace controlspace {
+
+/// What is linear within a tetrahedron.
+enum class TetBlend { metrics, logarithms };
+
+/// A background mesh, as meshers and error estimators use it: CGAL's Delaunay tetrahedra of the
+/// sources and the box's corners, a metric at each vertex; in a flat domain triangles.
+///
+/// Every source is a vertex, without regard to the insertion tolerance. Graded from node to node,
+/// metrics grow along the edges of the tetrahedra alone, paths through which are longer than
+/// straight lines; by the sources, vertices take the exact field. Neither bounds what is between
+/// vertices far apart: adaptation to a goal chooses vertices anew, from the corners, where the
+/// linear field misses it most. The data of a SharedBuilder.
+class BackgroundTets {
+public:
+    BackgroundTets(const SpaceOptions& options, TetBlend blend);
+
+    InsertionReport insert(std::span<const PointSource> sources);
+    GradationReport grade(const NodeGradation& gradation);
+    /// adapt.cpp
+    AdaptationReport adapt(const AdaptationGoal& goal);
+    void assign(std::span<const Metric> metrics);
+    ControlNodes control_nodes(Neighbourhood) const;
+
+    /// Walks from where the search before it ended. Thread-safe.
+    void sample(std::span<const Point> x, std::span<Metric> out) const;
+
+    Footprint footprint() const;
+    std::optional<Box> cell_at(const Point&) const { return std::nullopt; }
+    const SpaceOptions& options() const { return options_; }
+    const Box& domain() const { return options_.domain; }
+    const Delaunay& mesh() const { return mesh_; }
+    static Point position(Delaunay::Vertex_handle vertex) {
+        return {vertex->point().x(), vertex->point().y(), vertex->point().z()};
+    }
+    /// The metric of a vertex.
+    Metric metric(Delaunay::Vertex_handle vertex) const { return decoded(vertex->info().value); }
+    /// 4, or 3 in a flat domain.
+    int corners_of_cell() const { return mesh_.dimension() + 1; }
+    /// visit(cell) for all tetrahedra, or triangles.
+    template <class Visit>
+    void for_each_cell(Visit&& visit) const {
+        if (mesh_.dimension() == 3) {
+            for (const auto& cell : mesh_.finite_cell_handles()) visit(cell);
+        } else {
+            for (const auto& [cell, _] : mesh_.finite_facets()) visit(cell);
+        }
+    }
+
+    void save(StateWriter& state) const;
+    void load(const StateReader& state);
+
+private:
+    struct Weights {
+        Delaunay::Cell_handle cell;
+        std::array<double, 4> of;  ///< its vertices; >= 0, their sum 1
+    };
+    Weights locate(const Point& x, Delaunay::Cell_handle start) const;
+    Metric blended(const Weights& weights) const;
+    Metric encoded(const Metric& m) const;
+    Metric decoded(const Metric& value) const;
+    /// Vertices at `x` with the metrics; where there is one already, the intersection. Returns how
+    /// many were made or made smaller.
+    std::size_t add(std::span<const Point> x, std::span<const Metric> metrics);
+    /// The corners alone, with the metric.
+    void clear(const Metric& metric);
+    double bytes() const;
+    /// The place nearest to x in the domain.
+    Point clamped(const Point& x) const { return x.cwiseMax(domain().low).cwiseMin(domain().high); }
+    struct Comparison;
+    bool refine(Comparison& named, const ControlSpace& goal, double allowed);
+
+    SpaceOptions options_;
+    TetBlend blend_;
+    Delaunay mesh_;
+    bool graded_ = false;
+    mutable LastCell last_;
+};
+
+}  // namespace controlspace
