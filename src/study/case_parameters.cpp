@@ -38,6 +38,10 @@ bool has(const CatalogueEntry& entry, const Case&) {
 bool is_octree(const CatalogueEntry& entry, const Case&) {
     return entry.has<SourceLeaves>() && !entry.has<SplitRules>();
 }
+/// Nodes of trees and meshes lie where a field requires them, those of grids on a lattice.
+bool chooses_nodes(const CatalogueEntry& entry, const Case&) {
+    return entry.has<SourceLeaves>() || (entry.has<MetricNodes>() && !entry.has<VoxelSize>());
+}
 /// An adapted tree is not graded: it is exact at its nodes.
 bool is_graded(const CatalogueEntry& entry, const Case& c) {
     return entry.has<MetricNodes>() && !c.target_delta;
@@ -250,7 +254,7 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
         structure("target_delta", "",
                   "Non-conformity to the exact field that trees are adapted to, in place of "
                   "insertion and gradation; 0: not adapted",
-                  target(), {0}, has<SourceLeaves>, if_given("δ <= {:.4g}", &Case::target_delta)),
+                  target(), {0}, chooses_nodes, if_given("δ <= {:.4g}", &Case::target_delta)),
         {{"within", "",
           "The same as the largest factor by which a length may differ from the exact field in any "
           "direction: 1.1 is target_delta = 0.01575",
@@ -258,7 +262,7 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
          Role::structure,
          {},
          {},
-         has<SourceLeaves>,
+         chooses_nodes,
          {},
          "target_delta"},
         structure("equal_delta", "",

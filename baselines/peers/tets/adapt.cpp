@@ -44,8 +44,9 @@ AdaptationReport BackgroundTets::adapt(const AdaptationGoal& goal) {
     if (!has_room) {
         report.shortfall = "more tetrahedra would outgrow the cap on memory";
     } else if (!report.met) {
-        report.shortfall = "tetrahedra follow the field at sources, edges and centres: between "
-                           "these it is missed; give a smaller target";
+        report.shortfall =
+            "tetrahedra follow the field at sources, edges and centres: between "
+            "these it is missed; give a smaller target";
     }
     return report;
 }

@@ -2,9 +2,9 @@
 
 #include <CGAL/property_map.h>
 #include <CGAL/spatial_sort.h>
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -130,9 +130,9 @@ InsertionReport BackgroundTets::insert(std::span<const PointSource> sources) {
 
 GradationReport BackgroundTets::grade(const NodeGradation& gradation) {
     auto [graph, metrics] = control_nodes(gradation.options.neighbourhood);
-    const GradationReport report =
-        gradation.field ? grade_to(*gradation.field, positions(graph), metrics)
-                        : controlspace::grade(graph, metrics, gradation.options);
+    const GradationReport report = gradation.field
+                                       ? grade_to(*gradation.field, positions(graph), metrics)
+                                       : controlspace::grade(graph, metrics, gradation.options);
     assign(metrics);
     return report;
 }
@@ -192,11 +192,11 @@ BackgroundTets::Weights BackgroundTets::locate(const Point& x, Delaunay::Cell_ha
 }
 
 Metric BackgroundTets::blended(const Weights& weights) const {
-    return decoded(blend_lengths(
-        std::span(weights.of).first(static_cast<std::size_t>(corners_of_cell())),
-        [&](std::size_t i) -> const Metric& {
-            return weights.cell->vertex(static_cast<int>(i))->info().value;
-        }));
+    return decoded(
+        blend_lengths(std::span(weights.of).first(static_cast<std::size_t>(corners_of_cell())),
+                      [&](std::size_t i) -> const Metric& {
+                          return weights.cell->vertex(static_cast<int>(i))->info().value;
+                      }));
 }
 
 void BackgroundTets::sample(std::span<const Point> x, std::span<Metric> out) const {
@@ -223,8 +223,8 @@ double BackgroundTets::bytes() const {
 
 Footprint BackgroundTets::footprint() const {
     Footprint footprint;
-    footprint.cells = mesh_.dimension() == 3 ? mesh_.number_of_finite_cells()
-                                             : mesh_.number_of_finite_facets();
+    footprint.cells =
+        mesh_.dimension() == 3 ? mesh_.number_of_finite_cells() : mesh_.number_of_finite_facets();
     footprint.control_nodes = mesh_.number_of_vertices();
     footprint.bytes_payload = mesh_.tds().vertices().capacity() * sizeof(Metric);
     footprint.bytes_topology = static_cast<std::size_t>(bytes()) - footprint.bytes_payload;

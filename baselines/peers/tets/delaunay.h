@@ -28,11 +28,10 @@ struct TetState {
 
 using TetKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Delaunay = CGAL::Delaunay_triangulation_3<
-    TetKernel,
-    CGAL::Triangulation_data_structure_3<
-        CGAL::Triangulation_vertex_base_with_info_3<TetVertex, TetKernel>,
-        CGAL::Triangulation_cell_base_with_info_3<
-            TetState, TetKernel, CGAL::Delaunay_triangulation_cell_base_3<TetKernel>>>>;
+    TetKernel, CGAL::Triangulation_data_structure_3<
+                   CGAL::Triangulation_vertex_base_with_info_3<TetVertex, TetKernel>,
+                   CGAL::Triangulation_cell_base_with_info_3<
+                       TetState, TetKernel, CGAL::Delaunay_triangulation_cell_base_3<TetKernel>>>>;
 
 /// Where the last search ended, at which the next begins. A copy belongs to another triangulation:
 /// it remembers nothing.

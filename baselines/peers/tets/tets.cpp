@@ -9,9 +9,11 @@ namespace {
 template <TetBlend blend>
 CatalogueEntry row(std::string id, std::string what) {
     return {.id = std::move(id),
-            .description = "background mesh: Delaunay tetrahedra of the sources and the box's "
-                           "corners (CGAL), " +
-                           what + " linear in each; with schedule queue graded along its edges",
+            .description =
+                "background mesh: Delaunay tetrahedra of the sources and the box's "
+                "corners (CGAL), " +
+                what + " linear in each; with schedule queue graded along its edges",
+            .family = "peers",
             .order = 1,
             .construct = [](const SpaceOptions& options) -> std::unique_ptr<ControlSpaceBuilder> {
                 return std::make_unique<SharedBuilder<BackgroundTets>>(options, blend);
@@ -22,7 +24,8 @@ CatalogueEntry row(std::string id, std::string what) {
 }  // namespace
 
 std::vector<CatalogueEntry> tets_rows() {
-    return {row<TetBlend::metrics>("tets-linear", "M"), row<TetBlend::logarithms>("tets-log", "log M")};
+    return {row<TetBlend::metrics>("tets-linear", "M"),
+            row<TetBlend::logarithms>("tets-log", "log M")};
 }
 
 }  // namespace controlspace
