@@ -251,10 +251,11 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
                       const bool published = c.interpolation == QuadraticForm::published;
                       return published ? "published interpolation" : "";
                   }),
-        structure("target_delta", "",
-                  "Non-conformity to the exact field that trees are adapted to, in place of "
-                  "insertion and gradation; 0: not adapted",
-                  target(), {0}, chooses_nodes, if_given("δ <= {:.4g}", &Case::target_delta)),
+        structure(
+            "target_delta", "",
+            "Non-conformity to the exact field that trees and meshes are adapted to, in place of "
+            "insertion and gradation; 0: not adapted",
+            target(), {0}, chooses_nodes, if_given("δ <= {:.4g}", &Case::target_delta)),
         {{"within", "",
           "The same as the largest factor by which a length may differ from the exact field in any "
           "direction: 1.1 is target_delta = 0.01575",

@@ -45,14 +45,15 @@ AdaptationReport BackgroundTets::adapt(const AdaptationGoal& goal) {
         report.shortfall = "more tetrahedra would outgrow the cap on memory";
     } else if (!report.met) {
         report.shortfall =
-            "tetrahedra follow the field at sources, edges and centres: between "
+            "tetrahedra follow the field at sources, edges and five places inside: between "
             "these it is missed; give a smaller target";
     }
     return report;
 }
 
-// Makes a vertex of the place where a tetrahedron misses the goal most: of its centre, the middles
-// of its edges, and what is named. Returns whether there was any.
+// Makes a vertex of the place where a tetrahedron misses the goal most: of its centre, places half
+// way from there to its corners, the middles of its edges, and what is named. Returns whether there
+// was any.
 bool BackgroundTets::refine(Comparison& named, const ControlSpace& goal, double allowed) {
     Comparison places = named;
     std::vector<Delaunay::Cell_handle> cells(named.x.size());
@@ -77,11 +78,16 @@ bool BackgroundTets::refine(Comparison& named, const ControlSpace& goal, double 
             own.push_back(blended({cell, weights}));
             cells.push_back(cell);
         };
-        const double part = 1 / static_cast<double>(corners);
-        compare({part, part, part, corners == 4 ? part : 0});
+        std::array<double, 4> centre{};
+        std::fill_n(centre.begin(), corners, 1 / static_cast<double>(corners));
+        compare(centre);
         for (std::size_t i = 0; i < corners; ++i) {
+            std::array<double, 4> weights = centre;
+            for (double& weight : weights) weight /= 2;
+            weights[i] += 0.5;
+            compare(weights);
             for (std::size_t j = 0; j < i; ++j) {
-                std::array<double, 4> weights{};
+                weights = {};
                 weights[i] = weights[j] = 0.5;
                 compare(weights);
             }
