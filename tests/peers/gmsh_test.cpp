@@ -105,7 +105,7 @@ TEST_CASE("gmsh-view of tensors holds M^-2: exact at sources, and linear in it b
     }
 }
 
-CASE_OF_EACH(entry, gmsh_rows(), "two fields of Gmsh at once, and what one leaves behind") {
+CASE_OF_EACH(entry, gmsh_rows(), "two fields of Gmsh at once") {
     const Box other{Point(-1, -1, -1), Point(0, 0, 0)};
     const auto first = filled(entry, oblong);
     const double before = sample_at(*first, oblong.centre()).xx;
@@ -119,7 +119,10 @@ CASE_OF_EACH(entry, gmsh_rows(), "two fields of Gmsh at once, and what one leave
     gmsh::model::add("mesher");
     gmsh::model::mesh::setSizeCallback([](int, int, double, double, double) { return 1e-9; });
     CHECK(sample_at(*first, oblong.centre()).xx == before);
-    gmsh::model::setCurrent("mesher");
+    gmsh::model::mesh::removeSizeCallback();
+    std::string current;
+    gmsh::model::getCurrent(current);
+    CHECK(current == "mesher");
     gmsh::model::remove();
 }
 
@@ -136,6 +139,13 @@ CASE_OF_EACH(entry, gmsh_rows(), "memory of a field of Gmsh grows with what it h
     CHECK(fine.bytes_payload > 0);
     CHECK(fine.bytes_total() >= fine.control_nodes * sizeof(double));
     CHECK(fine.bytes_total() < 3000 * fine.control_nodes);
+}
+
+CASE_OF_EACH(entry, gmsh_rows(), "a field of a Gmsh that was closed throws") {
+    const auto closed = filled(entry, oblong);
+    gmsh::finalize();
+    CHECK_THROWS_WITH(sample_at(*closed, oblong.centre()), Catch::Contains("build the structure"));
+    CHECK(sample_at(*filled(entry, oblong), oblong.centre()).xx > 0);
 }
 
 TEST_CASE("gmsh-structured refuses tensors, and says what to do") {

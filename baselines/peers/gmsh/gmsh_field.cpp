@@ -10,31 +10,51 @@
 
 #include "controlspace/error.h"
 
-// Exported by Gmsh 4.8 to 4.13, but declared in no header that is installed.
+// Exported by Gmsh 4.8, but declared in no header that is installed: of each class what is called
+// here, none of which is virtual in the call.
 class GEntity;
+class SMetric3 {
+public:
+    std::array<double, 6> lower_triangle{};
+};
+class FieldManager {
+public:
+    Field* get(int tag);
+};
 class GModel {
 public:
     static std::vector<GModel*> list;
     static GModel* current(int index = -1);
     static int setCurrent(GModel* model);
-    GRegion* getRegionByTag(int tag) const;
+    FieldManager* getFields();
 };
-double BGM_MeshSizeWithoutScaling(GEntity* entity, double u, double v, double x, double y,
-                                  double z);
+class PostViewField {
+public:
+    double operator()(double x, double y, double z, GEntity* entity);
+    void operator()(double x, double y, double z, SMetric3& metric, GEntity* entity);
+};
+class StructuredField {
+public:
+    double operator()(double x, double y, double z, GEntity* entity);
+};
 
 namespace controlspace {
 
 namespace {
 
-/// Gmsh, for one thread at a time, with the model that was current as it was before.
+std::mutex& only_gmsh() {
+    static std::mutex mutex;
+    return mutex;
+}
+
+/// Gmsh, open, with the model that was current left so in the end.
 class InGmsh {
 public:
-    InGmsh() : lock_(only()) {
-        [[maybe_unused]] static const bool is_open = [] {
+    InGmsh() : lock_(only_gmsh()) {
+        if (GModel::list.empty()) {  // not open, or closed again
             gmsh::initialize(0, nullptr, false);
             gmsh::option::setNumber("General.Terminal", 0);
-            return true;
-        }();
+        }
         before_ = GModel::current();
     }
     ~InGmsh() {
@@ -44,10 +64,6 @@ public:
     InGmsh& operator=(const InGmsh&) = delete;
 
 private:
-    static std::mutex& only() {
-        static std::mutex mutex;
-        return mutex;
-    }
     std::lock_guard<std::mutex> lock_;
     GModel* before_;
 };
@@ -67,11 +83,9 @@ GmshField::GmshField(const std::function<Made()>& make, const Point& x, bool has
         name_ = fmt::format("controlspace {}", ++made);
         try {
             gmsh::model::add(name_);
-            constexpr int volume = 3;
-            region_ = GModel::current()->getRegionByTag(gmsh::model::addDiscreteEntity(volume));
             model_ = GModel::current();
             made_ = make();
-            gmsh::model::mesh::field::setAsBackgroundMesh(made_.field);
+            field_ = model_->getFields()->get(made_.field);
         } catch (const std::string& what) {
             throw InputError("Gmsh failed: " + what);
         }
@@ -85,8 +99,8 @@ GmshField::GmshField(const std::function<Made()>& make, const Point& x, bool has
 }
 
 GmshField::~GmshField() {
-    const InGmsh gmsh;
     if (std::ranges::count(GModel::list, model_) == 0) return;  // Gmsh was closed
+    const InGmsh gmsh;
     try {
         GModel::setCurrent(model_);
         gmsh::model::remove();
@@ -100,41 +114,35 @@ void GmshField::require_open() const {
         throw InputError(
             "Gmsh was closed, by a mesh that it made meanwhile: build the structure anew");
     }
-    // Of the current model Gmsh asks for a size callback, too.
-    GModel::setCurrent(model_);
 }
 
 void GmshField::sizes(std::span<const Point> x, std::span<double> out) const {
-    const InGmsh gmsh;
+    const std::lock_guard lock(only_gmsh());
     require_open();
-    constexpr double nothing = 1e21;  // Gmsh's answer where there is no field is 1e22
-    auto* const entity = reinterpret_cast<GEntity*>(region_);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        out[i] = BGM_MeshSizeWithoutScaling(entity, 0, 0, x[i].x(), x[i].y(), x[i].z());
-        if (out[i] > 0 && out[i] < nothing) continue;
-        throw InputError(
-            fmt::format("Gmsh's field has no size at ({} {} {})", x[i].x(), x[i].y(), x[i].z()));
+    const auto evaluate = [&](auto& field) {
+        constexpr double nothing = 1e21;  // Gmsh's answer where there is no field is 1e22
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            out[i] = field(x[i].x(), x[i].y(), x[i].z(), nullptr);
+            if (out[i] > 0 && out[i] < nothing) continue;
+            throw InputError(fmt::format("Gmsh's field has no size at ({} {} {}): leave it out",
+                                         x[i].x(), x[i].y(), x[i].z()));
+        }
+    };
+    if (made_.view >= 0) {
+        evaluate(*reinterpret_cast<PostViewField*>(field_));
+    } else {
+        evaluate(*reinterpret_cast<StructuredField*>(field_));
     }
 }
 
 void GmshField::tensors(std::span<const Point> x, std::span<Tensor> out) const {
-    const InGmsh gmsh;
+    const std::lock_guard lock(only_gmsh());
     require_open();
-    constexpr int all = -1;
-    constexpr double as_the_field = 0.05;  // how far outside of an element it finds a place
-    std::vector<double> values;
+    auto& field = *reinterpret_cast<PostViewField*>(field_);
     for (std::size_t i = 0; i < x.size(); ++i) {
-        try {
-            gmsh::view::probe(made_.view, x[i].x(), x[i].y(), x[i].z(), values, all, all, false,
-                              as_the_field);
-        } catch (const std::string& what) {
-            throw InputError("Gmsh failed: " + what);
-        }
-        if (values.size() != out[i].size()) {
-            throw InputError(fmt::format("Gmsh's view has no tensor at ({} {} {})", x[i].x(),
-                                         x[i].y(), x[i].z()));
-        }
-        std::ranges::copy(values, out[i].begin());
+        SMetric3 metric;
+        field(x[i].x(), x[i].y(), x[i].z(), metric, nullptr);
+        out[i] = metric.lower_triangle;
     }
 }
 

@@ -8,19 +8,22 @@
 
 #include "controlspace/geometry/point.h"
 
+class Field;
 class GModel;
-class GRegion;
 
 namespace controlspace {
 
-/// A size field of Gmsh in a model of its own, asked as Gmsh's mesher asks its background field.
-/// Gmsh is one for the whole process and knows no threads: all fields share one lock. It stays open
-/// until the process ends.
+/// A size field of Gmsh in a model of its own, evaluated as Gmsh's mesher evaluates its background
+/// field. Gmsh is one for the whole process and knows no threads: all fields share one lock. It
+/// stays open until the process ends.
+///
+/// Tensors come from the field alone, too: what the mesher asks for them, BGM_MeshMetric of Gmsh
+/// 4.8.4, takes 20 times as long and turns those whose directions are not the axes'.
 class GmshField {
 public:
     struct Made {
         int field;      ///< its tag
-        int view = -1;  ///< the view that it reads, if any
+        int view = -1;  ///< of a field PostView, the view that it reads; otherwise it is Structured
     };
     /// `make` adds the field to an empty model. It is asked once, at `x`, which builds its search:
     /// for a tensor if it `has_tensors`. Throws InputError for what Gmsh throws.
@@ -29,13 +32,10 @@ public:
     GmshField(const GmshField&) = delete;
     GmshField& operator=(const GmshField&) = delete;
 
-    /// What Gmsh's mesher gets for each place. Throws InputError for a place that the field does
-    /// not cover.
+    /// Throws InputError for a place that the field does not cover.
     void sizes(std::span<const Point> x, std::span<double> out) const;
-    /// The view's tensors, row by row, from the search that the field does. The mesher's own
-    /// question for them (BGM_MeshMetric) turns tensors that are not symmetric to an axis,
-    /// in 4.8.4.
-    using Tensor = std::array<double, 9>;
+    /// Of a PostView: xx, xy, yy, xz, yz, zz; zeros where it does not cover the place.
+    using Tensor = std::array<double, 6>;
     void tensors(std::span<const Point> x, std::span<Tensor> out) const;
 
     /// Allocated while it was made, as the allocator counts.
@@ -47,7 +47,7 @@ private:
     std::string name_;
     Made made_{};
     GModel* model_ = nullptr;
-    GRegion* region_ = nullptr;
+    Field* field_ = nullptr;
     std::size_t bytes_ = 0;
 };
 

@@ -35,8 +35,8 @@ public:
         field_.tensors(inside, tensors);
         for (std::size_t i = 0; i < x.size(); ++i) {
             const auto& t = tensors[i];
-            const auto metric = from_riemannian({t[0], t[4], t[8], t[1], t[2], t[5]});
-            if (!metric) throw InputError("Gmsh's view answers a tensor that is no metric");
+            const auto metric = from_riemannian({t[0], t[2], t[5], t[1], t[3], t[4]});
+            if (!metric) throw InputError("Gmsh's view has no metric at a place: leave it out");
             out[i] = *metric;
         }
     }
