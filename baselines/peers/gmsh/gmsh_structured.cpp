@@ -73,7 +73,9 @@ public:
         Footprint footprint;
         footprint.cells = static_cast<std::size_t>(cells_.prod());
         footprint.control_nodes = nodes_;
-        footprint.bytes_payload = field_.bytes();
+        footprint.bytes_payload = nodes_ * sizeof(double);
+        footprint.bytes_topology =
+            std::max(field_.bytes(), footprint.bytes_payload) - footprint.bytes_payload;
         footprint.remark = remark_;
         return footprint;
     }

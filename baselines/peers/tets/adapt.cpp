@@ -60,22 +60,24 @@ bool BackgroundTets::refine(Comparison& named, const ControlSpace& goal, double 
     std::vector<Metric> own(named.x.size());
     Delaunay::Cell_handle near;
     for (std::size_t i = 0; i < named.x.size(); ++i) {
-        const Weights weights = locate(named.x[i], near);
-        near = cells[i] = weights.cell;
-        own[i] = blended(weights);
+        const Place place = locate(named.x[i], near);
+        near = cells[i] = place.cell;
+        own[i] = blended(place);
     }
     const auto corners = static_cast<std::size_t>(corners_of_cell());
     Comparison inside;
     for_each_cell([&](Delaunay::Cell_handle cell) {
         if (cell->info().worst != TetState::unknown) return;
         cell->info().worst = TetState::settled;
+        std::array<Delaunay::Vertex_handle, 4> vertices;
+        for (std::size_t i = 0; i < corners; ++i) vertices[i] = cell->vertex(static_cast<int>(i));
         const auto compare = [&](const std::array<double, 4>& weights) {
             Point x = Point::Zero();
             for (std::size_t i = 0; i < corners; ++i) {
-                x += weights[i] * position(cell->vertex(static_cast<int>(i)));
+                x += weights[i] * position(vertices[i]);
             }
             inside.x.push_back(clamped(x));
-            own.push_back(blended({cell, weights}));
+            own.push_back(blended({cell, corners_of_cell(), vertices, weights}));
             cells.push_back(cell);
         };
         std::array<double, 4> centre{};

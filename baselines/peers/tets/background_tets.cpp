@@ -64,13 +64,14 @@ void BackgroundTets::clear(const Metric& metric) {
 }
 
 std::size_t BackgroundTets::add(std::span<const Point> x, std::span<const Metric> metrics) {
-    using Place = std::pair<TetKernel::Point_3, std::size_t>;
-    std::vector<Place> places;
+    using Numbered = std::pair<TetKernel::Point_3, std::size_t>;
+    std::vector<Numbered> places;
     places.reserve(x.size());
     for (const Point& p : x) places.emplace_back(to_cgal(p), places.size());
     CGAL::spatial_sort(
         places.begin(), places.end(),
-        CGAL::Spatial_sort_traits_adapter_3<TetKernel, CGAL::First_of_pair_property_map<Place>>());
+        CGAL::Spatial_sort_traits_adapter_3<TetKernel,
+                                            CGAL::First_of_pair_property_map<Numbered>>());
     std::size_t changed = 0;
     last_.forget();
     Delaunay::Cell_handle near;
@@ -169,42 +170,62 @@ ControlNodes BackgroundTets::control_nodes(Neighbourhood) const {
     return {std::move(graph), std::move(metrics)};
 }
 
-BackgroundTets::Weights BackgroundTets::locate(const Point& x, Delaunay::Cell_handle start) const {
+// By the vertices of the smallest face that holds the place, in their order: whichever of the
+// tetrahedra around it the walk ends in, the bits are the same.
+BackgroundTets::Place BackgroundTets::locate(const Point& x, Delaunay::Cell_handle start) const {
     const Point p = clamped(x);
-    Delaunay::Cell_handle cell = mesh_.locate(to_cgal(p), start);
-    if (mesh_.is_infinite(cell)) cell = cell->neighbor(cell->index(mesh_.infinite_vertex()));
-    const auto corner = [&](int i) { return position(cell->vertex(i)); };
-    const Point a = corner(0);
-    const Vector b = corner(1) - a, c = corner(2) - a, q = p - a;
-    // A triangle becomes a tetrahedron, whose fourth vertex gets the weight 0.
-    const Vector d = mesh_.dimension() == 3 ? Vector(corner(3) - a) : b.cross(c);
-    const Vector cd = c.cross(d);
-    const double volume = b.dot(cd);
-    Eigen::Array4d w(0, q.dot(cd) / volume, b.dot(q.cross(d)) / volume, b.dot(c.cross(q)) / volume);
-    if (mesh_.dimension() < 3) w[3] = 0;
+    Delaunay::Locate_type type;
+    int i, j;
+    Place place;
+    place.cell = mesh_.locate(to_cgal(p), type, i, j, start);
+    const auto is_in_face = [&](int k) {
+        if (type == Delaunay::VERTEX) return k == i;
+        if (type == Delaunay::EDGE) return k == i || k == j;
+        return type != Delaunay::FACET || mesh_.dimension() < 3 || k != i;
+    };
+    for (int k = 0; k < corners_of_cell(); ++k) {
+        const Delaunay::Vertex_handle vertex = place.cell->vertex(k);
+        if (!is_in_face(k) || mesh_.is_infinite(vertex)) continue;
+        place.vertices[static_cast<std::size_t>(place.count++)] = vertex;
+    }
+    std::sort(place.vertices.begin(), place.vertices.begin() + place.count,
+              [](auto a, auto b) { return a->info().index < b->info().index; });
+    const Point a = position(place.vertices[0]);
+    const auto edge = [&](std::size_t k) { return Vector(position(place.vertices[k]) - a); };
+    const Vector q = p - a;
+    Eigen::Array4d w = Eigen::Array4d::Zero();
+    if (place.count == 2) {
+        w[1] = q.dot(edge(1)) / edge(1).squaredNorm();
+    } else if (place.count > 2) {
+        const Vector b = edge(1), c = edge(2);
+        const Vector d = place.count == 4 ? edge(3) : Vector(b.cross(c));
+        const Vector cd = c.cross(d);
+        const double volume = b.dot(cd);
+        w[1] = q.dot(cd) / volume;
+        w[2] = b.dot(q.cross(d)) / volume;
+        if (place.count == 4) w[3] = b.dot(c.cross(q)) / volume;
+    }
     w[0] = 1 - w[1] - w[2] - w[3];
     // Rounding leaves a thin tetrahedron: answers stay between its vertices'.
     w = w.max(0);
-    const double sum = w.sum();
-    if (!std::isfinite(sum)) return {cell, {1, 0, 0, 0}};
-    w /= sum;
-    return {cell, {w[0], w[1], w[2], w[3]}};
+    w /= w.sum();
+    if (!w.allFinite()) w = {1, 0, 0, 0};
+    place.weights = {w[0], w[1], w[2], w[3]};
+    return place;
 }
 
-Metric BackgroundTets::blended(const Weights& weights) const {
-    return decoded(
-        blend_lengths(std::span(weights.of).first(static_cast<std::size_t>(corners_of_cell())),
-                      [&](std::size_t i) -> const Metric& {
-                          return weights.cell->vertex(static_cast<int>(i))->info().value;
-                      }));
+Metric BackgroundTets::blended(const Place& place) const {
+    return decoded(blend_lengths(
+        std::span(place.weights).first(static_cast<std::size_t>(place.count)),
+        [&](std::size_t i) -> const Metric& { return place.vertices[i]->info().value; }));
 }
 
 void BackgroundTets::sample(std::span<const Point> x, std::span<Metric> out) const {
     Delaunay::Cell_handle cell = last_.get();
     const auto answer = [&](std::size_t i) {
-        const Weights weights = locate(x[i], cell);
-        cell = weights.cell;
-        out[i] = blended(weights);
+        const Place place = locate(x[i], cell);
+        cell = place.cell;
+        out[i] = blended(place);
     };
     constexpr std::size_t batch = 32;  // from so many on, shorter walks outweigh the sorting
     if (x.size() < batch) {

@@ -67,12 +67,15 @@ public:
     void load(const StateReader& state);
 
 private:
-    struct Weights {
+    /// A place in a tetrahedron, or in its face, edge or vertex.
+    struct Place {
         Delaunay::Cell_handle cell;
-        std::array<double, 4> of;  ///< its vertices; >= 0, their sum 1
+        int count = 0;
+        std::array<Delaunay::Vertex_handle, 4> vertices;
+        std::array<double, 4> weights;  ///< >= 0, their sum 1
     };
-    Weights locate(const Point& x, Delaunay::Cell_handle start) const;
-    Metric blended(const Weights& weights) const;
+    Place locate(const Point& x, Delaunay::Cell_handle start) const;
+    Metric blended(const Place& place) const;
     Metric encoded(const Metric& m) const;
     Metric decoded(const Metric& value) const;
     /// Vertices at `x` with the metrics; where there is one already, the intersection. Returns how
