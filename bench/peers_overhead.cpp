@@ -12,6 +12,13 @@
 #include <meshing/localh.hpp>
 #include <myadt.hpp>
 #endif
+#ifdef PEER_tets
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+#include <CGAL/property_map.h>
+#include <CGAL/spatial_sort.h>
+#endif
 #ifdef PEER_p4est
 #include <p8est.h>
 #include <p8est_extended.h>
@@ -145,6 +152,51 @@ Loop bare_nanovdb(const ControlSpace& field) {
 }
 #endif
 
+#ifdef PEER_tets
+// Tetrahedra of the sources and corners, their vertices' lengths those of the field; places in
+// CGAL's own order, each searched from the one before.
+Loop bare_tets(const ControlSpace& field, std::span<const PointSource> sources) {
+    using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+    using Mesh = CGAL::Delaunay_triangulation_3<
+        Kernel, CGAL::Triangulation_data_structure_3<
+                    CGAL::Triangulation_vertex_base_with_info_3<double, Kernel>,
+                    CGAL::Delaunay_triangulation_cell_base_3<Kernel>>>;
+    const auto place = [](const Point& p) { return Kernel::Point_3(p.x(), p.y(), p.z()); };
+    const auto mesh = std::make_shared<Mesh>();
+    const auto add = [&](const Point& p) {
+        mesh->insert(place(p))->info() = sample_at(field, p).xx;
+    };
+    for (const PointSource& source : sources) add(source.position);
+    for (int i = 0; i < 8; ++i) {
+        add({i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0});
+    }
+    return [=](std::span<const Point> x, std::span<double> out) {
+        using Numbered = std::pair<Kernel::Point_3, std::size_t>;
+        std::vector<Numbered> sorted;
+        for (const Point& p : x) sorted.emplace_back(place(p), sorted.size());
+        CGAL::spatial_sort(
+            sorted.begin(), sorted.end(),
+            CGAL::Spatial_sort_traits_adapter_3<Kernel,
+                                                CGAL::First_of_pair_property_map<Numbered>>());
+        Mesh::Cell_handle cell;
+        for (const auto& [p, i] : sorted) {
+            cell = mesh->locate(p, cell);
+            double sum = 0, volume = 0;
+            for (int k = 0; k < 4; ++k) {
+                std::array<Kernel::Point_3, 4> corners;
+                for (int c = 0; c < 4; ++c) {
+                    corners[static_cast<std::size_t>(c)] = c == k ? p : cell->vertex(c)->point();
+                }
+                const double part = CGAL::volume(corners[0], corners[1], corners[2], corners[3]);
+                sum += part * cell->vertex(k)->info();
+                volume += part;
+            }
+            out[i] = sum / volume;
+        }
+    };
+}
+#endif
+
 #ifdef PEER_p4est
 struct Search {
     std::array<p4est_qcoord_t, 3> place;
@@ -266,6 +318,9 @@ int main(int argc, char** argv) {
 #ifdef PEER_p4est
     const auto octree = finished(*find_entry(tree_catalogue(), "K_oL"), sources);
     against("p4est-octree", [&](const ControlSpace&) { return bare_p4est(*octree); });
+#endif
+#ifdef PEER_tets
+    against("tets-linear", [&](const ControlSpace& s) { return bare_tets(s, sources); });
 #endif
     return alike ? 0 : 1;
 }
