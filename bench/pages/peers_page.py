@@ -1,0 +1,275 @@
+# The page of bench/peers: foreign systems and the project's structures on the same works.
+import argparse
+import math
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+
+from peers_works import DELTAS, TENSORS, WORKS
+
+from . import figures
+from .command import OK
+from .report_command import Section, page
+from .results import InputError, read_results, write_file
+from .table import cell, fixed, table_of
+
+COSTS = [("memory [MB]", "memory_MB"), ("creation [s]", "creation_s"),
+         ("access at random places [ns/query]", "t_access_ns_random"),
+         ("access in the order of a grid [ns/query]", "t_access_ns_grid")]
+
+
+@dataclass
+class Work:
+    name: str
+    results: object
+
+    @property
+    def title(self):
+        return WORKS[self.name].__doc__
+
+    @property
+    def rows(self):
+        return self.results.measured
+
+
+def read_works(folder):
+    """Those of FOLDER/WORK/results.json, in the order of peers_works."""
+    works = [Work(name, read_results(folder / name)) for name in WORKS
+             if (folder / name / "results.json").exists()]
+    if not works:
+        raise InputError(f"{folder}: no WORK/results.json: name a folder that bench/peers wrote")
+    return works
+
+
+def structures_in(works):
+    return list(dict.fromkeys(figures.structure_of(row) for w in works for row in w.results.rows))
+
+
+def is_foreign(structure):
+    return not structure.startswith("K_") and structure != "direct"
+
+
+def asked(row):
+    return row.setting.get("equal_delta") or row.setting.get("target_delta")
+
+
+def largest_delta(row):
+    """At all probes: those by which resolutions are chosen, and the finer ones."""
+    return max(row["delta_R_max"], row["delta_R_fine_max"])
+
+
+def reaches(row, delta):
+    """Where resolutions are chosen; adaptation and bisection may end a hair above."""
+    return row["delta_R_max"] <= 1.01 * delta
+
+
+def quartiles(row, cost):
+    if cost == "memory_MB":
+        return row[cost], row[cost]
+    key = "t_creation_s" if cost == "creation_s" else cost
+    return row[f"{key}_q1"], row[f"{key}_q3"]
+
+
+def cheapest(rows, cost):
+    """The structure that costs least, and those whose quartiles overlap with its."""
+    if not rows:
+        return []
+    limit = quartiles(min(rows, key=lambda row: row[cost]), cost)[1]
+    return list(dict.fromkeys(figures.structure_of(row) for row in sorted(rows, key=lambda r: r[cost])
+                              if quartiles(row, cost)[0] <= limit))
+
+
+def least(rows, cost, structure):
+    return min((r[cost] for r in rows if figures.structure_of(r) == structure), default=math.inf)
+
+
+# ---- What to choose
+
+def winner(works, delta, cost):
+    """(structure, number of works on which none is cheaper), and the works that any reaches."""
+    reached = [rows for rows in ([r for r in w.rows if reaches(r, delta)] for w in works) if rows]
+    wins = Counter(s for rows in reached for s in cheapest(rows, cost))
+    if not wins:
+        return None, 0, reached
+    # Of structures with as many wins the one that loses least elsewhere.
+    def loss(structure):
+        return median(least(rows, cost, structure) / min(r[cost] for r in rows) for rows in reached)
+
+    best = min(wins, key=lambda s: (-wins[s], loss(s)))
+    return best, wins[best], reached
+
+
+def best_foreign(reached, cost, other):
+    """The foreign system with the least median of its cost over that of `other`, and that median."""
+    found = {}
+    for s in {figures.structure_of(r) for rows in reached for r in rows if is_foreign(figures.structure_of(r))}:
+        ratios = [least(rows, cost, s) / least(rows, cost, other) for rows in reached
+                  if least(rows, cost, s) < math.inf and least(rows, cost, other) < math.inf]
+        if s != other and len(ratios) >= len(reached) / 2:
+            found[s] = median(ratios)
+    best = min(found, key=found.get, default=None)
+    return best, found.get(best)
+
+
+def sentence(works, what, delta, cost, wish):
+    best, wins, reached = winner(works, delta, cost)
+    if not best:
+        return f"{what}, δ ≤ {delta}: no system reaches it on any of {len(works)} works."
+    text = (f"{what}, δ ≤ {delta}: {best} is {wish} on {wins} of {len(reached)} works (or not to be "
+            f"told from what is)")
+    if is_foreign(best):
+        return text + "."
+    foreign, ratio = best_foreign(reached, cost, best)
+    if not foreign:
+        return text + "; no other system reaches it on half of them."
+    return text + f"; of the foreign systems {foreign} comes nearest, at {ratio:.2g} times that (median)."
+
+
+def choices(works):
+    """Five sentences."""
+    isotropic = [w for w in works if w.name not in TENSORS]
+    tensors = [w for w in works if w.name in TENSORS]
+    wanted = [(isotropic, "Isotropic", 0.1, "memory_MB", "smallest"),
+              (isotropic, "Isotropic", 0.1, "t_access_ns_random", "fastest at random places"),
+              (isotropic, "Isotropic", 0.02, "memory_MB", "smallest"),
+              (tensors, "Tensors", 0.1, "memory_MB", "smallest"),
+              (tensors, "Tensors", 0.1, "t_access_ns_random", "fastest at random places")]
+    return [sentence(*one) for one in wanted if one[0]]
+
+
+# ---- Tables
+
+def choice_table(works):
+    lines = []
+    for work in works:
+        for delta in DELTAS:
+            rows = [row for row in work.rows if reaches(row, delta)]
+            best = [cheapest(rows, cost) for _, cost in COSTS]
+            lines.append([work.title, f"{delta:g}", *(", ".join(names[:3]) or "–" for names in best)])
+    return table_of("peers-choice", lines)
+
+
+def systems_table(works):
+    """Every structure: where it was measured and what it reached; a reason where it failed."""
+    lines = []
+    for structure in structures_in(works):
+        rows = [(w, r) for w in works for r in w.results.rows if figures.structure_of(r) == structure]
+        measured = {w.name for w, r in rows if r.measures is not None}
+        reached = [str(len({w.name for w, r in rows if r.measures is not None and reaches(r, d)}))
+                   for d in DELTAS]
+        failures = {}
+        for w, r in rows:
+            if r.error:
+                failures.setdefault(r.error, dict.fromkeys([]))[w.name] = None
+        reasons = "; ".join(f"{', '.join(names)}: {error}" for error, names in failures.items())
+        text = next((w.results.descriptions["structures"][structure] for w in works
+                     if structure in w.results.descriptions.get("structures", {})), "–")
+        lines.append([structure, text, f"{len(measured)} of {len({w.name for w, _ in rows})}", *reached,
+                      reasons])
+    return table_of("peers-systems", lines)
+
+
+def rows_table(work):
+    def setting(row):
+        return row.method.removeprefix(figures.structure_of(row)).lstrip(" ,") or "–"
+
+    def time(row, cost, digits):
+        low, high = quartiles(row, cost)
+        return f"{fixed(row[cost], digits)} ({fixed(low, digits)}–{fixed(high, digits)})"
+
+    lines = []
+    for row in work.results.rows:
+        start = [figures.structure_of(row), setting(row)]
+        if row.measures is None:
+            lines.append([*start, *["–"] * 6, f"failed: {row.error}"])
+            continue
+        lines.append([*start, fixed(row["delta_R_max"], 4), fixed(row["delta_R_fine_max"], 4),
+                      fixed(row["memory_MB"], 3), time(row, "creation_s", 4),
+                      time(row, "t_access_ns_random", 1), time(row, "t_access_ns_grid", 1), row["remark"]])
+    return table_of("peers-rows", lines, title=work.title)
+
+
+# ---- Figures
+
+def front_figure(work, styles):
+    rows = [row for row in work.rows if math.isfinite(largest_delta(row))]
+    structures = list(dict.fromkeys(map(figures.structure_of, rows)))
+    for row in rows:
+        row.measures["largest_delta"] = largest_delta(row)
+    lines = math.ceil((len(structures) + 1) / 4)
+
+    def plot(figure):
+        axes = figure.subplot_mosaic([[0, 1], [2, 3], ["legend"] * 2],
+                                     height_ratios=[300, 300, 18 * lines])
+        for i, (label, cost) in enumerate(COSTS):
+            ax = axes[i]
+            front = sorted(figures.front_of(rows, cost, "largest_delta"), key=lambda r: r[cost])
+            ax.step([r[cost] for r in front], [figures.drawn(largest_delta(r)) for r in front],
+                    where="post", color="#888888", label="front")
+            for structure in structures:
+                same = [r for r in rows if figures.structure_of(r) == structure]
+                style = styles(structure)
+                if not is_foreign(structure):
+                    style["fillstyle"] = "none"
+                ax.plot([r[cost] for r in same], [figures.drawn(largest_delta(r)) for r in same],
+                        linestyle="", label=structure, markersize=7, **style)
+            for delta in DELTAS:
+                ax.axhline(delta, color="#888888", linewidth=0.8, linestyle=":")
+            ax.margins(x=0.1, y=0.1)
+            figures.log_axis(ax.xaxis, label)
+            figures.log_axis(ax.yaxis, "largest δ")
+        axes["legend"].axis("off")
+        axes["legend"].legend(*axes[0].get_legend_handles_labels(), loc="center", ncols=4, fontsize=9.5)
+
+    return figures.Spec("peers", {"work": work.title}, plot, width=900,
+                        height=700 + 18 * lines)
+
+
+# ---- The page
+
+def origin(works, command):
+    first = works[0].results
+    sources = {w.results.rows[0].sources for w in works}
+    text = (f"{len(works)} works of {min(sources)} to {max(sources)} sources, {len(structures_in(works))} "
+            f"systems. Made by `{command}` with controlspace {first.version}, {first.head['cpu']} "
+            f"({first.head['cores']} cores), {first.head['date']}.")
+    unfinished = [w.title for w in works if not w.results.complete]
+    return text + (f" Not complete: {', '.join(unfinished)}." if unfinished else "")
+
+
+def write_pages(works, folder, command, note):
+    styles = figures.Styles([row for w in works for row in w.results.rows])
+    drawn = figures.draw([front_figure(w, styles) for w in works])
+    sentences, intro = choices(works), [origin(works, command), *([note] if note else [])]
+    tables = [choice_table(works), systems_table(works)]
+    caption = drawn[0].caption
+
+    lines = ["# Foreign systems", "", *(f"{text}\n" for text in intro), "## What to choose", "",
+             *(f"{i}. {text}" for i, text in enumerate(sentences, 1)), ""]
+    lines += [f"{table.markdown()}" for table in tables]
+    lines += ["## Fronts", "", caption, ""]
+    for work, figure in zip(works, drawn):
+        write_file(folder / work.name / "fronts.svg", figure.bytes)
+        lines += [f"### {work.title}", "", f"![{cell(work.title)}]({work.name}/fronts.svg)", "",
+                  "<details><summary>All rows</summary>", "", rows_table(work).markdown().split("\n\n", 1)[1],
+                  "</details>", ""]
+    write_file(folder / "README.md", "\n".join(lines).rstrip("\n") + "\n")
+
+    sections = [Section("What to choose", [*(("paragraph", text) for text in intro),
+                                           ("sentences", sentences), *(("table", t) for t in tables)])]
+    sections += [Section(w.title, [("figures", [f]), ("table", rows_table(w))])
+                 for w, f in zip(works, drawn)]
+    write_file(folder / "report.html", page("Foreign systems", sections, [w.results for w in works]))
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(description="Writes README.md and report.html of the results of "
+                                     "bench/peers.")
+    parser.add_argument("folder", metavar="FOLDER", type=Path, help="of WORK/results.json")
+    parser.add_argument("--command", default="bench/peers", help="what made the results, as the page says it")
+    parser.add_argument("--note", default="", help="a sentence on the machine")
+    options = parser.parse_args(arguments)
+    write_pages(read_works(options.folder), options.folder, options.command, options.note)
+    print(f"Page: {options.folder}/README.md, report.html")
+    return OK

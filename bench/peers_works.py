@@ -1,0 +1,192 @@
+"""The works on which bench/peers compares systems: peers_works.py FOLDER [--quick] [--only WORK]... writes
+FOLDER/WORK/study.toml, and the sources that the program does not sample itself.
+
+A work is a function that returns settings of a study; the first line of its documentation is its title. Its
+argument `quick` asks for fewer sources.
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+
+HERE = pathlib.Path(__file__).resolve().parent
+UNIT_CUBE = [0, 1, 0, 1, 0, 1]
+LAYERS = {"s_a": 4, "s_n": 0.25}
+
+# All are measured like this. Voxels and other resolutions are chosen and judged at the probes of probe_grid, and
+# all answers compared with the exact field at those of both grids, of which no two places are the same.
+STUDY = {"splits": "s_L", "creation_repeats": 3, "access_points": 20000}
+QUICK, FULL = {"access_repeats": 5}, {"access_repeats": 9}
+# Trees of the project, adapted; beside them the family "baselines" and all foreign systems.
+OWN = ["K_L", "K_V", "K_oL", "K_oV", "K_LA", "K_oLA"]
+DELTAS = [0.1, 0.02]
+
+
+def sphere(folder, quick):
+    """Sphere of the paper, isotropic"""
+    return {"sources": "sphere", "h": 0.03 if quick else 0.015}
+
+
+def planes(folder, quick):
+    """Planes of the paper, isotropic"""
+    return {"sources": "planes", "h": 0.03 if quick else 0.015}
+
+
+def sphere_layers(folder, quick):
+    """Sphere, lengths [4, 0.25]: 16:1"""
+    return {"sources": "sphere", "h": 0.04 if quick else 0.02, **LAYERS}
+
+
+def planes_layers(folder, quick):
+    """Planes, lengths [4, 0.25]: 16:1"""
+    return {"sources": "planes", "h": 0.04 if quick else 0.02, **LAYERS}
+
+
+def thin_layers(folder, quick):
+    """Sphere, layers of 100:1"""
+    return {"sources": "sphere", "h": 0.06 if quick else 0.03, "s_a": 10, "s_n": 0.01, "rho": 4}
+
+
+def scattered(folder, quick):
+    """Sphere, sources scattered at random"""
+    return {"sources": "sphere", "h": 0.03 if quick else 0.015, "sampling": "random"}
+
+
+def clustered(folder, quick):
+    """Sphere, sources in clusters"""
+    return {"sources": "sphere", "h": 0.03 if quick else 0.015, "sampling": "clustered"}
+
+
+def ugawg_linear(folder, quick):
+    """UGAWG's linear metric at scattered points"""
+    x = scattered_points(quick)
+    ones = np.ones(len(x))
+    return tensors(folder, x, 0.1 * ones, 0.1 * ones, across(x[:, 2]), 0 * ones)
+
+
+def ugawg_polar(folder, quick):
+    """UGAWG's first polar metric at scattered points"""
+    x = scattered_points(quick)
+    r = np.hypot(x[:, 0], x[:, 1])
+    h, c, s = across(r), x[:, 0] / r, x[:, 1] / r
+    return tensors(folder, x, h * c**2 + 0.1 * s**2, h * s**2 + 0.1 * c**2, np.full(len(x), 0.1), (h - 0.1) * c * s)
+
+
+def across(coordinate):
+    """UGAWG's length across its layer, from 0.001 to 0.1."""
+    return 0.001 + 0.198 * np.abs(coordinate - 0.5)
+
+
+def predicted(folder, quick):
+    """Metrics predicted from a solution's Hessian, at scattered points"""
+    x = scattered_points(quick)
+    # u = tanh(20 (x + y² / 2 - 0.8)) + sin(3 z) / 3 with an error of 0.01.
+    f = np.tanh(20 * (x[:, 0] + x[:, 1] ** 2 / 2 - 0.8))
+    first, second = 20 * (1 - f**2), -800 * f * (1 - f**2)
+    hessian = np.zeros((len(x), 3, 3))
+    gradient = np.stack([np.ones(len(x)), x[:, 1], np.zeros(len(x))], axis=1)
+    hessian += second[:, None, None] * gradient[:, :, None] * gradient[:, None, :]
+    hessian[:, 1, 1] += first
+    hessian[:, 2, 2] = -3 * np.sin(3 * x[:, 2])
+    values, vectors = np.linalg.eigh(hessian)
+    lengths = np.clip(np.sqrt(0.01 / np.maximum(np.abs(values), 1e-9)), 0.005, 0.2)
+    m = np.einsum("nik,nk,njk->nij", vectors, lengths, vectors)
+    return tensors(folder, x, m[:, 0, 0], m[:, 1, 1], m[:, 2, 2], m[:, 0, 1], m[:, 0, 2], m[:, 1, 2])
+
+
+def bracket(folder, quick):
+    """Bracket: curvature and thickness"""
+    return part(folder, quick)
+
+
+def junction(folder, quick):
+    """Junction of pipes: curvature and thickness"""
+    return part(folder, quick)
+
+
+def blade(folder, quick):
+    """Blade: curvature and thickness"""
+    return part(folder, quick)
+
+
+def coast(folder, quick):
+    """Fractal coast line in a plane"""
+    # Midpoints of edges, displaced across them at random, again and again: dimension 1.2.
+    random = np.random.default_rng(1)
+    x = np.array([[0.3, 0.3], [1.1, 0.2], [1.7, 0.5], [0.8, 0.8]])
+    while len(x) < (2**14 if quick else 2**20):
+        edge = np.roll(x, -1, axis=0) - x
+        shift = random.normal(0, 0.16, len(x))[:, None] * edge[:, ::-1] * [-1, 1]
+        x = np.stack([x, x + edge / 2 + shift], axis=1).reshape(-1, 2)
+    x = np.clip(x, [0, 0], [2, 1])
+    h = 0.004 + 0.012 * np.cos(3 * x[:, 0]) ** 2
+    np.savetxt(folder / "sources.csv", np.c_[x, 0 * h, h], "%.9g", ",", header="x,y,z,h", comments="")
+    return {"sources": "sources.csv", "domain": [0, 2, 0, 1, 0, 0]}
+
+
+ISOTROPIC, TENSORS = (
+    {function.__name__.replace("_", "-"): function for function in functions} for functions in (
+        (sphere, planes, scattered, clustered, bracket, junction, blade, coast),
+        (sphere_layers, planes_layers, thin_layers, ugawg_linear, ugawg_polar, predicted)))
+WORKS = {**ISOTROPIC, **TENSORS}
+
+
+def scattered_points(quick):
+    return np.random.default_rng(1).uniform(0, 1, (500 if quick else 5000, 3))
+
+
+def tensors(folder, x, *components):
+    """Settings of sources of tensors: xx, yy, zz, xy and, where they are not 0, xz and yz."""
+    m = np.zeros((len(x), 6))
+    m[:, :len(components)] = np.stack(components, axis=1)
+    np.savetxt(folder / "sources.csv", np.c_[x, m], "%.9g", ",",
+               header="x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz", comments="")
+    return {"sources": "sources.csv", "domain": UNIT_CUBE}
+
+
+def part(folder, quick):
+    if not (folder.parent / f"{folder.name}.step").exists():
+        subprocess.run([sys.executable, HERE / "parts.py", folder.parent], check=True, capture_output=True)
+    return {"sources": f"../{folder.name}.step", "isotropic": True,
+            "surface_angle": 30 if quick else 15}
+
+
+def study_of(name, folder, quick, structures):
+    """The text of a study file."""
+    make = WORKS[name]
+    settings = make(folder, quick)
+    is_tensor = name in TENSORS
+    # The exact field of tensors, of which each node of a grid and each probe is one, takes 20 times as long.
+    grid = (30 if quick else 40) if is_tensor else 60
+    memory = (0.02 if quick else 0.1) if is_tensor else (0.1 if quick else 0.5)
+    study = {"name": name, **STUDY, **(QUICK if quick else FULL), **settings, "probe_grid": grid,
+             "fine_probe_grid": grid + 1, "max_memory": memory}
+    runs = [{"structures": OWN, "target_delta": DELTAS},
+            {"structures": ["baselines", *structures], "equal_delta": DELTAS}]
+
+    def lines(table):
+        return "".join(f"{key} = {json.dumps(value)}\n" for key, value in table.items())
+
+    return f"# {make.__doc__}\n{lines(study)}" + "".join(f"\n[[runs]]\n{lines(run)}" for run in runs)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--only", action="append", choices=list(WORKS))
+    parser.add_argument("--structures", default="peers", help="beside those of the project")
+    options = parser.parse_args()
+    for name in options.only or WORKS:
+        folder = options.folder / name
+        folder.mkdir(parents=True, exist_ok=True)
+        text = study_of(name, folder, options.quick, [s for s in options.structures.split(",") if s])
+        (folder / "study.toml").write_text(text, encoding="utf-8")
+        print(name)
+
+
+if __name__ == "__main__":
+    main()
