@@ -20,8 +20,9 @@ LAYERS = {"s_a": 4, "s_n": 0.25}
 # all answers compared with the exact field at those of both grids, of which no two places are the same.
 STUDY = {"splits": "s_L", "creation_repeats": 3, "access_points": 20000}
 QUICK, FULL = {"access_repeats": 5}, {"access_repeats": 9}
-# Trees of the project, adapted; beside them the family "baselines" and all foreign systems.
-OWN = ["K_L", "K_V", "K_oL", "K_oV", "K_LA", "K_oLA"]
+TREES = ["K_L", "K_V", "K_oL", "K_oV", "K_LA", "K_oLA"]
+GRIDS = ["uniform-nearest", "uniform-trilinear", "openvdb-uniform-nearest", "openvdb-uniform-trilinear",
+         "openvdb-vec3s-trilinear"]
 DELTAS = [0.1, 0.02]
 
 
@@ -157,15 +158,15 @@ def part(folder, quick):
 def study_of(name, folder, quick, structures):
     """The text of a study file."""
     make = WORKS[name]
-    settings = make(folder, quick)
     is_tensor = name in TENSORS
-    # The exact field of tensors, of which each node of a grid and each probe is one, takes 20 times as long.
-    grid = (30 if quick else 40) if is_tensor else 60
-    memory = (0.02 if quick else 0.1) if is_tensor else (0.1 if quick else 0.5)
-    study = {"name": name, **STUDY, **(QUICK if quick else FULL), **settings, "probe_grid": grid,
-             "fine_probe_grid": grid + 1, "max_memory": memory}
-    runs = [{"structures": OWN, "target_delta": DELTAS},
-            {"structures": ["baselines", *structures], "equal_delta": DELTAS}]
+    # The exact field of tensors takes 20 times as long, at each probe and each node of a grid. `direct` computes
+    # it for each answer, and is left out there.
+    probes = (20 if quick else 40) if is_tensor else 60
+    memory = (0.01 if quick else 0.1) if is_tensor else (0.1 if quick else 0.5)
+    study = {"name": name, **STUDY, **(QUICK if quick else FULL), **make(folder, quick), "probe_grid": probes,
+             "fine_probe_grid": probes + 1, "max_memory": memory}
+    others = GRIDS + [*structures] + ([] if is_tensor else ["direct"])
+    runs = [{"structures": TREES, "target_delta": DELTAS}, {"structures": others, "equal_delta": DELTAS}]
 
     def lines(table):
         return "".join(f"{key} = {json.dumps(value)}\n" for key, value in table.items())

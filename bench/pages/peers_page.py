@@ -10,9 +10,9 @@ from peers_works import DELTAS, TENSORS, WORKS
 
 from . import figures
 from .command import OK
-from .report_command import Section, page
+from .report_command import Section, counted, page
 from .results import InputError, read_results, write_file
-from .table import cell, fixed, table_of
+from .table import fixed, table_of
 
 COSTS = [("memory [MB]", "memory_MB"), ("creation [s]", "creation_s"),
          ("access at random places [ns/query]", "t_access_ns_random"),
@@ -55,13 +55,13 @@ def asked(row):
 
 
 def largest_delta(row):
-    """At all probes: those by which resolutions are chosen, and the finer ones."""
+    """At all probes."""
     return max(row["delta_R_max"], row["delta_R_fine_max"])
 
 
 def reaches(row, delta):
-    """Where resolutions are chosen; adaptation and bisection may end a hair above."""
-    return row["delta_R_max"] <= 1.01 * delta
+    """Adaptation and bisection may end a hair above."""
+    return largest_delta(row) <= 1.01 * delta
 
 
 def quartiles(row, cost):
@@ -115,8 +115,8 @@ def best_foreign(reached, cost, other):
 def sentence(works, what, delta, cost, wish):
     best, wins, reached = winner(works, delta, cost)
     if not best:
-        return f"{what}, δ ≤ {delta}: no system reaches it on any of {len(works)} works."
-    text = (f"{what}, δ ≤ {delta}: {best} is {wish} on {wins} of {len(reached)} works (or not to be "
+        return f"{what}, δ ≤ {delta}: no system reaches it on any of {counted(len(works), 'work')}."
+    text = (f"{what}, δ ≤ {delta}: {best} is {wish} on {wins} of {counted(len(reached), 'work')} (or not to be "
             f"told from what is)")
     if is_foreign(best):
         return text + "."
@@ -240,26 +240,28 @@ def origin(works, command):
 
 def write_pages(works, folder, command, note):
     styles = figures.Styles([row for w in works for row in w.results.rows])
-    drawn = figures.draw([front_figure(w, styles) for w in works])
+    drawn = dict(zip((w.name for w in works if w.rows),
+                     figures.draw([front_figure(w, styles) for w in works if w.rows])))
     sentences, intro = choices(works), [origin(works, command), *([note] if note else [])]
     tables = [choice_table(works), systems_table(works)]
-    caption = drawn[0].caption
-
     lines = ["# Foreign systems", "", *(f"{text}\n" for text in intro), "## What to choose", "",
              *(f"{i}. {text}" for i, text in enumerate(sentences, 1)), ""]
     lines += [f"{table.markdown()}" for table in tables]
-    lines += ["## Fronts", "", caption, ""]
-    for work, figure in zip(works, drawn):
-        write_file(folder / work.name / "fronts.svg", figure.bytes)
-        lines += [f"### {work.title}", "", f"![{cell(work.title)}]({work.name}/fronts.svg)", "",
-                  "<details><summary>All rows</summary>", "", rows_table(work).markdown().split("\n\n", 1)[1],
+    lines += ["## Fronts", ""]
+    lines += [f"{figure.caption}\n" for figure in [*drawn.values()][:1]]
+    for work in works:
+        lines += [f"### {work.title}", ""]
+        if work.name in drawn:
+            write_file(folder / work.name / "fronts.svg", drawn[work.name].bytes)
+            lines += [f"![{work.title}]({work.name}/fronts.svg)", ""]
+        lines += ["<details><summary>All rows</summary>", "", rows_table(work).markdown().split("\n\n", 1)[1],
                   "</details>", ""]
     write_file(folder / "README.md", "\n".join(lines).rstrip("\n") + "\n")
 
     sections = [Section("What to choose", [*(("paragraph", text) for text in intro),
                                            ("sentences", sentences), *(("table", t) for t in tables)])]
-    sections += [Section(w.title, [("figures", [f]), ("table", rows_table(w))])
-                 for w, f in zip(works, drawn)]
+    sections += [Section(w.title, [*([("figures", [drawn[w.name]])] if w.name in drawn else []),
+                                   ("table", rows_table(w))]) for w in works]
     write_file(folder / "report.html", page("Foreign systems", sections, [w.results for w in works]))
 
 
