@@ -18,8 +18,7 @@ LAYERS = {"s_a": 4, "s_n": 0.25}
 
 # All are measured like this. Voxels and other resolutions are chosen and judged at the probes of probe_grid, and
 # all answers compared with the exact field at those of both grids, of which no two places are the same.
-STUDY = {"splits": "s_L", "creation_repeats": 3, "access_points": 20000}
-QUICK, FULL = {"access_repeats": 5}, {"access_repeats": 9}
+STUDY = {"splits": "s_L", "access_points": 20000}
 TREES = ["K_L", "K_V", "K_oL", "K_oV", "K_LA", "K_oLA"]
 GRIDS = ["uniform-nearest", "uniform-trilinear", "openvdb-uniform-nearest", "openvdb-uniform-trilinear",
          "openvdb-vec3s-trilinear"]
@@ -38,17 +37,18 @@ def planes(folder, quick):
 
 def sphere_layers(folder, quick):
     """Sphere, lengths [4, 0.25]: 16:1"""
-    return {"sources": "sphere", "h": 0.04 if quick else 0.02, **LAYERS}
+    return {"sources": "sphere", "h": 0.08 if quick else 0.03, **LAYERS}
 
 
 def planes_layers(folder, quick):
     """Planes, lengths [4, 0.25]: 16:1"""
-    return {"sources": "planes", "h": 0.04 if quick else 0.02, **LAYERS}
+    return {"sources": "planes", "h": 0.08 if quick else 0.03, **LAYERS}
 
 
 def thin_layers(folder, quick):
     """Sphere, layers of 100:1"""
-    return {"sources": "sphere", "h": 0.06 if quick else 0.03, "s_a": 10, "s_n": 0.01, "rho": 4}
+    return {"sources": "sphere", "h": 0.06 if quick else 0.03, "s_a": 10, "s_n": 0.01,
+            "rho": 5 if quick else 4}
 
 
 def scattered(folder, quick):
@@ -136,7 +136,7 @@ WORKS = {**ISOTROPIC, **TENSORS}
 
 
 def scattered_points(quick):
-    return np.random.default_rng(1).uniform(0, 1, (500 if quick else 5000, 3))
+    return np.random.default_rng(1).uniform(0, 1, (200 if quick else 2000, 3))
 
 
 def tensors(folder, x, *components):
@@ -152,21 +152,23 @@ def part(folder, quick):
     if not (folder.parent / f"{folder.name}.step").exists():
         subprocess.run([sys.executable, HERE / "parts.py", folder.parent], check=True, capture_output=True)
     return {"sources": f"../{folder.name}.step", "isotropic": True,
-            "surface_angle": 30 if quick else 15}
+            "surface_angle": 45 if quick else 15}
 
 
 def study_of(name, folder, quick, structures):
     """The text of a study file."""
     make = WORKS[name]
     is_tensor = name in TENSORS
-    # The exact field of tensors takes 20 times as long, at each probe and each node of a grid. `direct` computes
-    # it for each answer, and is left out there.
+    # The exact field of tensors takes 20 times as long, at each probe and each node. `direct` computes it for
+    # each answer, and is left out there.
     probes = (20 if quick else 40) if is_tensor else 60
-    memory = (0.01 if quick else 0.1) if is_tensor else (0.1 if quick else 0.5)
-    study = {"name": name, **STUDY, **(QUICK if quick else FULL), **make(folder, quick), "probe_grid": probes,
+    memory = (0.005 if quick else 0.1) if is_tensor else (0.1 if quick else 0.5)
+    study = {"name": name, **STUDY, "creation_repeats": 1 if quick and is_tensor else 3,
+             "access_repeats": 5 if quick else 9, **make(folder, quick), "probe_grid": probes,
              "fine_probe_grid": probes + 1, "max_memory": memory}
+    deltas = DELTAS[:1] if quick and is_tensor else DELTAS
     others = GRIDS + [*structures] + ([] if is_tensor else ["direct"])
-    runs = [{"structures": TREES, "target_delta": DELTAS}, {"structures": others, "equal_delta": DELTAS}]
+    runs = [{"structures": TREES, "target_delta": deltas}, {"structures": others, "equal_delta": deltas}]
 
     def lines(table):
         return "".join(f"{key} = {json.dumps(value)}\n" for key, value in table.items())

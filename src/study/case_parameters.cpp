@@ -267,9 +267,8 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
          {},
          "target_delta"},
         structure("equal_delta", "",
-                  "Largest delta_R for which the voxels of a grid are chosen (and prune_delta, "
-                  "where that "
-                  "saves memory); 0: not chosen. For trees see target_delta",
+                  "Largest delta_R, at all probes, for which voxels are chosen (and prune_delta, "
+                  "where that saves memory); 0: not chosen. For trees see target_delta",
                   number_or_none(&Case::equal_delta), {0}, has<VoxelSize>,
                   if_given("for delta {:.4g}", &Case::equal_delta)),
         structure("equal_memory", "MB",

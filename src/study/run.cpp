@@ -127,7 +127,8 @@ private:
         const EqualSetting found = find_equal_setting(
             c, prepared_.entry(c), workload.domain.edges().maxCoeff(), [&](const Case& trial) {
                 const auto space = make_and_fill(study_, trial, rows_, workload).build(trial);
-                return Trial{accuracy(*space, probes.coarse).max,
+                return Trial{std::max(accuracy(*space, probes.coarse).max,
+                                      accuracy(*space, probes.fine).max),
                              static_cast<double>(space->footprint().bytes_total())};
             });
         c = found.setting;
