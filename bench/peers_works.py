@@ -20,8 +20,8 @@ LAYERS = {"s_a": 4, "s_n": 0.25}
 # all answers compared with the exact field at those of both grids, of which no two places are the same.
 STUDY = {"splits": "s_L", "access_points": 20000}
 TREES = ["K_L", "K_V", "K_oL", "K_oV", "K_LA", "K_oLA"]
-GRIDS = ["uniform-nearest", "uniform-trilinear", "openvdb-uniform-nearest", "openvdb-uniform-trilinear",
-         "openvdb-vec3s-trilinear"]
+GRIDS = ["uniform-nearest", "uniform-trilinear", "openvdb-vec3s-trilinear"]
+OF_SIZES = ["openvdb-uniform-nearest", "openvdb-uniform-trilinear", "direct"]
 DELTAS = [0.1, 0.02]
 
 
@@ -160,15 +160,17 @@ def study_of(name, folder, quick, structures):
     make = WORKS[name]
     is_tensor = name in TENSORS
     # The exact field of tensors takes 20 times as long, at each probe and each node. `direct` computes it for
-    # each answer, and is left out there.
+    # each answer, and is left out there; so are grids whose nodes are those of others.
     probes = (20 if quick else 40) if is_tensor else 60
-    memory = (0.005 if quick else 0.1) if is_tensor else (0.1 if quick else 0.5)
+    memory = (0.01 if quick else 0.1) if is_tensor else (0.1 if quick else 0.5)
     study = {"name": name, **STUDY, "creation_repeats": 1 if quick and is_tensor else 3,
              "access_repeats": 5 if quick else 9, **make(folder, quick), "probe_grid": probes,
              "fine_probe_grid": probes + 1, "max_memory": memory}
     deltas = DELTAS[:1] if quick and is_tensor else DELTAS
-    others = GRIDS + [*structures] + ([] if is_tensor else ["direct"])
-    runs = [{"structures": TREES, "target_delta": deltas}, {"structures": others, "equal_delta": deltas}]
+    others = GRIDS + ([] if is_tensor else OF_SIZES)
+    runs = [{"structures": TREES, "target_delta": deltas}, {"structures": others, "equal_delta": deltas},
+            {"structures": structures, "target_delta": deltas, "equal_delta": deltas}]
+    runs = [run for run in runs if run["structures"]]
 
     def lines(table):
         return "".join(f"{key} = {json.dumps(value)}\n" for key, value in table.items())

@@ -116,7 +116,7 @@ class Works(unittest.TestCase):
                 place.mkdir()
                 study = tomllib.loads(peers_works.study_of(name, place, True, ["peers"]))
                 self.assertEqual(study["name"], name)
-                self.assertIn("peers", study["runs"][1]["structures"])
+                self.assertEqual(study["runs"][-1]["structures"], ["peers"])
                 if study["sources"] != "sources.csv":
                     continue
                 table = np.loadtxt(place / "sources.csv", delimiter=",", skiprows=1)
