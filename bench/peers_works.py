@@ -27,12 +27,12 @@ DELTAS = [0.1, 0.02]
 
 def sphere(folder, quick):
     """Sphere of the paper, isotropic"""
-    return {"sources": "sphere", "h": 0.03 if quick else 0.015}
+    return {"sources": "sphere", "h": 0.04 if quick else 0.015}
 
 
 def planes(folder, quick):
     """Planes of the paper, isotropic"""
-    return {"sources": "planes", "h": 0.03 if quick else 0.015}
+    return {"sources": "planes", "h": 0.04 if quick else 0.015}
 
 
 def sphere_layers(folder, quick):
@@ -53,12 +53,12 @@ def thin_layers(folder, quick):
 
 def scattered(folder, quick):
     """Sphere, sources scattered at random"""
-    return {"sources": "sphere", "h": 0.03 if quick else 0.015, "sampling": "random"}
+    return {"sources": "sphere", "h": 0.04 if quick else 0.015, "sampling": "random"}
 
 
 def clustered(folder, quick):
     """Sphere, sources in clusters"""
-    return {"sources": "sphere", "h": 0.03 if quick else 0.015, "sampling": "clustered"}
+    return {"sources": "sphere", "h": 0.04 if quick else 0.015, "sampling": "clustered"}
 
 
 def ugawg_linear(folder, quick):
@@ -162,7 +162,7 @@ def study_of(name, folder, quick, structures):
     # The exact field of tensors takes 20 times as long, at each probe and each node. `direct` computes it for
     # each answer, and is left out there; so are grids whose nodes are those of others.
     probes, fine = ((15, 20) if quick else (20, 41)) if is_tensor else (30, 61)
-    memory = (0.01 if quick else 0.1) if is_tensor else (0.1 if quick else 0.5)
+    memory = (0.01 if quick else 0.1) if is_tensor else (0.05 if quick else 0.5)
     study = {"name": name, **STUDY, "creation_repeats": 1 if quick and is_tensor else 3,
              "access_repeats": 5 if quick else 9, **make(folder, quick), "probe_grid": probes,
              "fine_probe_grid": fine, "max_memory": memory}

@@ -50,10 +50,6 @@ def is_foreign(structure):
     return not structure.startswith("K_") and structure != "direct"
 
 
-def asked(row):
-    return row.setting.get("equal_delta") or row.setting.get("target_delta")
-
-
 def largest_delta(row):
     """At all probes."""
     return max(row["delta_R_max"], row["delta_R_fine_max"])
@@ -161,7 +157,7 @@ def systems_table(works):
         failures = {}
         for w, r in rows:
             if r.error:
-                failures.setdefault(r.error, dict.fromkeys([]))[w.name] = None
+                failures.setdefault(r.error, {})[w.name] = None
         reasons = "; ".join(f"{', '.join(names)}: {error}" for error, names in failures.items())
         text = next((w.results.descriptions["structures"][structure] for w in works
                      if structure in w.results.descriptions.get("structures", {})), "–")
@@ -178,6 +174,10 @@ def rows_table(work):
         low, high = quartiles(row, cost)
         return f"{fixed(row[cost], digits)} ({fixed(low, digits)}–{fixed(high, digits)})"
 
+    def remark(row):
+        # All systems are given the same settings.
+        return "; ".join(text for text in row["remark"].split("; ") if not text.startswith("without effect"))
+
     lines = []
     for row in work.results.rows:
         start = [figures.structure_of(row), setting(row)]
@@ -186,7 +186,7 @@ def rows_table(work):
             continue
         lines.append([*start, fixed(row["delta_R_max"], 4), fixed(row["delta_R_fine_max"], 4),
                       fixed(row["memory_MB"], 3), time(row, "creation_s", 4),
-                      time(row, "t_access_ns_random", 1), time(row, "t_access_ns_grid", 1), row["remark"]])
+                      time(row, "t_access_ns_random", 1), time(row, "t_access_ns_grid", 1), remark(row)])
     return table_of("peers-rows", lines, title=work.title)
 
 
