@@ -37,18 +37,18 @@ def planes(folder, quick):
 
 def sphere_layers(folder, quick):
     """Sphere, lengths [4, 0.25]: 16:1"""
-    return {"sources": "sphere", "h": 0.08 if quick else 0.03, **LAYERS}
+    return {"sources": "sphere", "h": 0.08 if quick else 0.03, "rho": 3 if quick else 1, **LAYERS}
 
 
 def planes_layers(folder, quick):
     """Planes, lengths [4, 0.25]: 16:1"""
-    return {"sources": "planes", "h": 0.08 if quick else 0.03, **LAYERS}
+    return {"sources": "planes", "h": 0.08 if quick else 0.03, "rho": 3 if quick else 1, **LAYERS}
 
 
 def thin_layers(folder, quick):
     """Sphere, layers of 100:1"""
     return {"sources": "sphere", "h": 0.06 if quick else 0.03, "s_a": 10, "s_n": 0.01,
-            "rho": 5 if quick else 4}
+            "rho": 8 if quick else 4}
 
 
 def scattered(folder, quick):

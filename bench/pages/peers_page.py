@@ -32,6 +32,12 @@ class Work:
     def rows(self):
         return self.results.measured
 
+    @property
+    def deltas(self):
+        """Those that were asked for: with --quick, of tensors the first alone."""
+        settings = [row.setting for row in self.results.rows]
+        return [d for d in DELTAS if any(d in (s.get("equal_delta"), s.get("target_delta")) for s in settings)]
+
 
 def read_works(folder):
     """Those of FOLDER/WORK/results.json, in the order of peers_works."""
@@ -139,7 +145,7 @@ def choices(works):
 def choice_table(works):
     lines = []
     for work in works:
-        for delta in DELTAS:
+        for delta in work.deltas:
             rows = [row for row in work.rows if reaches(row, delta)]
             best = [cheapest(rows, cost) for _, cost in COSTS]
             lines.append([work.title, f"{delta:g}", *(", ".join(names[:3]) or "–" for names in best)])
@@ -152,8 +158,8 @@ def systems_table(works):
     for structure in structures_in(works):
         rows = [(w, r) for w in works for r in w.results.rows if figures.structure_of(r) == structure]
         measured = {w.name for w, r in rows if r.measures is not None}
-        reached = [str(len({w.name for w, r in rows if r.measures is not None and reaches(r, d)}))
-                   for d in DELTAS]
+        reached = [str(len({w.name for w, r in rows
+                            if d in w.deltas and r.measures is not None and reaches(r, d)})) for d in DELTAS]
         failures = {}
         for w, r in rows:
             if r.error:

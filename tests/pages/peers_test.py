@@ -100,10 +100,15 @@ class Choice(WithFolder):
         self.assertEqual(peers_page.cheapest([], "memory_MB"), [])
 
     def test_delta_that_is_missed_does_not_count(self):
-        work, = self.works(sphere=[row("K_V", 0.0985, 2), row("kd-nearest", 0.12, 1)])
-        table = peers_page.choice_table([work])
-        self.assertEqual(table.rows[0][2], "K_V")
-        self.assertEqual(table.rows[1][2], "–")
+        rows = [row("K_V", 0.0985, 2, target_delta=0.1), row("K_V", 0.03, 3, target_delta=0.02),
+                row("kd-nearest", 0.12, 1)]
+        table = peers_page.choice_table(self.works(sphere=rows))
+        self.assertEqual([line[2] for line in table.rows], ["K_V", "–"])
+
+    def test_delta_that_was_not_asked_for_is_not_shown(self):
+        works = self.works(sphere=[row("K_V", 0.01, target_delta=0.1)])
+        self.assertEqual([line[1] for line in peers_page.choice_table(works).rows], ["0.1"])
+        self.assertEqual(peers_page.systems_table(works).rows[0][3:5], ["1", "0"])
 
 
 class Works(unittest.TestCase):
