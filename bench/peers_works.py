@@ -118,7 +118,7 @@ def coast(folder, quick):
     # Midpoints of edges, displaced across them at random, again and again: dimension 1.2.
     random = np.random.default_rng(1)
     x = np.array([[0.3, 0.3], [1.1, 0.2], [1.7, 0.5], [0.8, 0.8]])
-    while len(x) < (2**14 if quick else 2**20):
+    while len(x) < (2**13 if quick else 2**20):
         edge = np.roll(x, -1, axis=0) - x
         shift = random.normal(0, 0.16, len(x))[:, None] * edge[:, ::-1] * [-1, 1]
         x = np.stack([x, x + edge / 2 + shift], axis=1).reshape(-1, 2)
@@ -152,7 +152,7 @@ def part(folder, quick):
     if not (folder.parent / f"{folder.name}.step").exists():
         subprocess.run([sys.executable, HERE / "parts.py", folder.parent], check=True, capture_output=True)
     return {"sources": f"../{folder.name}.step", "isotropic": True,
-            "surface_angle": 45 if quick else 15}
+            "surface_angle": 60 if quick else 15}
 
 
 def study_of(name, folder, quick, structures):
@@ -163,7 +163,7 @@ def study_of(name, folder, quick, structures):
     # each answer, and is left out there; so are grids whose nodes are those of others.
     probes, fine = ((15, 20) if quick else (20, 41)) if is_tensor else (30, 61)
     memory = (0.01 if quick else 0.1) if is_tensor else (0.05 if quick else 0.5)
-    study = {"name": name, **STUDY, "creation_repeats": 1 if quick and is_tensor else 3,
+    study = {"name": name, **STUDY, "creation_repeats": 1 if quick else 3,
              "access_repeats": 5 if quick else 9, **make(folder, quick), "probe_grid": probes,
              "fine_probe_grid": fine, "max_memory": memory}
     deltas = DELTAS[:1] if quick and is_tensor else DELTAS

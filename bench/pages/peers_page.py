@@ -118,14 +118,13 @@ def sentence(works, what, delta, cost, wish):
     best, wins, reached = winner(works, delta, cost)
     if not best:
         return f"{what}, δ ≤ {delta}: no system reaches it on any of {counted(len(works), 'work')}."
-    text = (f"{what}, δ ≤ {delta}: {best} is {wish} on {wins} of {counted(len(reached), 'work')} (or not to be "
-            f"told from what is)")
+    text = f"{what}, δ ≤ {delta}: {best} is {wish} on {wins} of {counted(len(reached), 'work')}"
     if is_foreign(best):
         return text + "."
     foreign, ratio = best_foreign(reached, cost, best)
     if not foreign:
-        return text + "; no other system reaches it on half of them."
-    return text + f"; of the foreign systems {foreign} comes nearest, at {ratio:.2g} times that (median)."
+        return text + "; no other system reaches it on half of these."
+    return text + f"; of the other systems {foreign} comes nearest, at {ratio:.2g} times that (median)."
 
 
 def choices(works):
@@ -248,7 +247,8 @@ def write_pages(works, folder, command, note):
     styles = figures.Styles([row for w in works for row in w.results.rows])
     drawn = dict(zip((w.name for w in works if w.rows),
                      figures.draw([front_figure(w, styles) for w in works if w.rows])))
-    sentences, intro = choices(works), [origin(works, command), *([note] if note else [])]
+    sentences, intro = choices(works), [origin(works, command), *([note] if note else []),
+                                        "Times whose quartiles overlap count as equal."]
     tables = [choice_table(works), systems_table(works)]
     lines = ["# Foreign systems", "", *(f"{text}\n" for text in intro), "## What to choose", "",
              *(f"{i}. {text}" for i, text in enumerate(sentences, 1)), ""]
