@@ -136,7 +136,7 @@ WORKS = {**ISOTROPIC, **TENSORS}
 
 
 def scattered_points(quick):
-    return np.random.default_rng(1).uniform(0, 1, (200 if quick else 2000, 3))
+    return np.random.default_rng(1).uniform(0, 1, (60 if quick else 1000, 3))
 
 
 def tensors(folder, x, *components):
