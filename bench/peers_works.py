@@ -152,7 +152,7 @@ def part(folder, quick):
     if not (folder.parent / f"{folder.name}.step").exists():
         subprocess.run([sys.executable, HERE / "parts.py", folder.parent], check=True, capture_output=True)
     return {"sources": f"../{folder.name}.step", "isotropic": True,
-            "surface_angle": 60 if quick else 15}
+            "surface_angle": 45 if quick else 15}
 
 
 def study_of(name, folder, quick, structures):

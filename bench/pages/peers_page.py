@@ -102,13 +102,15 @@ def winner(works, delta, cost):
     return best, wins[best], reached
 
 
-def best_foreign(reached, cost, other):
-    """The foreign system with the least median of its cost over that of `other`, and that median."""
+def best_of_others(reached, cost, other):
+    """Of the foreign systems, or if `other` is one, of the rest: that with the least median of its cost over
+    that of `other`, and that median."""
     found = {}
-    for s in {figures.structure_of(r) for rows in reached for r in rows if is_foreign(figures.structure_of(r))}:
+    for s in {figures.structure_of(r) for rows in reached for r in rows
+              if is_foreign(figures.structure_of(r)) != is_foreign(other)}:
         ratios = [least(rows, cost, s) / least(rows, cost, other) for rows in reached
                   if least(rows, cost, s) < math.inf and least(rows, cost, other) < math.inf]
-        if s != other and len(ratios) >= len(reached) / 2:
+        if len(ratios) >= len(reached) / 2:
             found[s] = median(ratios)
     best = min(found, key=found.get, default=None)
     return best, found.get(best)
@@ -119,12 +121,11 @@ def sentence(works, what, delta, cost, wish):
     if not best:
         return f"{what}, δ ≤ {delta}: no system reaches it on any of {counted(len(works), 'work')}."
     text = f"{what}, δ ≤ {delta}: {best} is {wish} on {wins} of {counted(len(reached), 'work')}"
-    if is_foreign(best):
-        return text + "."
-    foreign, ratio = best_foreign(reached, cost, best)
-    if not foreign:
-        return text + "; no other system reaches it on half of these."
-    return text + f"; of the other systems {foreign} comes nearest, at {ratio:.2g} times that (median)."
+    others = "this project's structures" if is_foreign(best) else "the foreign systems"
+    nearest, ratio = best_of_others(reached, cost, best)
+    if not nearest:
+        return text + f"; of {others} none reaches it on half of these."
+    return text + f"; of {others} {nearest} comes nearest, at {ratio:.2g} times that (median)."
 
 
 def choices(works):
