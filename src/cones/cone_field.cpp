@@ -46,6 +46,13 @@ Metric ConeField::at(const Point& x, const Metric* further, Memory& memory) cons
     return further != nullptr ? intersection(m, *further) : m;
 }
 
+Metric ConeField::evaluate(const Point& x, const Metric* further, Memory& memory,
+                           const OrderFreeCones::Start* near, OrderFreeCones::Start& found) const {
+    const auto* cones = std::get_if<OrderFreeCones>(&cones_);
+    if (cones == nullptr) return at(x, further, memory);
+    return cones->intersect(x, further, memory.order_free, near, &found).metric();
+}
+
 void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out,
                          std::span<const Metric> further) const {
     assert(x.size() == out.size());

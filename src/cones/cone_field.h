@@ -56,6 +56,13 @@ public:
     /// The same for places that come in an order in which neighbours are near to each other.
     void evaluate(std::span<const Point> x, std::span<Metric> out, Memory& memory,
                   std::span<const Metric> further = {}) const;
+    /// The metric at one place, intersected with `further`, if given. Where `has_starts`, the
+    /// search begins at `near`, if given, and `found` becomes what those of nearby places may begin
+    /// at.
+    Metric evaluate(const Point& x, const Metric* further, Memory& memory,
+                    const OrderFreeCones::Start* near, OrderFreeCones::Start& found) const;
+    /// Whether sources are intersected without an order.
+    bool has_starts() const { return std::holds_alternative<OrderFreeCones>(cones_); }
     /// The same of an isotropic field, or lengths up to the fraction `tolerance` more.
     void evaluate_roughly(std::span<const Point> x, double tolerance, std::span<Metric> out,
                           Memory& memory) const;

@@ -340,10 +340,11 @@ const OrderFreeCones::Start& OrderFreeCones::start_near(const Point& p, Search& 
 }
 
 OrderFreeIntersection OrderFreeCones::intersect(const Point& p, const Metric* further,
-                                                Search& search) const {
+                                                Search& search, const Start* near,
+                                                Start* found) const {
     if (further != nullptr) require_valid(*further, failure_of("the further metric"));
-    if (tree_.empty() || !p.allFinite()) return answer(p, further, {}, tolerance_, nullptr);
-    return answer(p, further, start_near(p, search), tolerance_, nullptr);
+    if (tree_.empty() || !p.allFinite()) return answer(p, further, {}, tolerance_, found);
+    return answer(p, further, near != nullptr ? *near : start_near(p, search), tolerance_, found);
 }
 
 }  // namespace controlspace

@@ -25,6 +25,7 @@ public:
     /// In multipliers, in place of the index of a source: the largest metric, and a further one.
     static constexpr std::uint32_t index_of_largest = 0xffffffff;
     static constexpr std::uint32_t index_of_further = 0xfffffffe;
+    static constexpr std::size_t most_members = OrderFreeIntersection::most_multipliers - 2;
 
     /// g >= 1, the ratio of sources that have none. With a `tolerance` t, log det M is within 3
     /// ln(1 + t) of the best. Throws InputError for metrics that `order_free_intersection` does not
@@ -35,12 +36,20 @@ public:
     /// The duality gap that a tolerance allows.
     static double gap_of(double tolerance);
 
+    /// Where the search for an answer begins: the core set of another place, and its factor.
+    struct Start {
+        Eigen::Matrix3d factor = Eigen::Matrix3d::Identity();
+        std::array<std::uint32_t, most_members> members{};
+        std::uint32_t count = 0;
+    };
     struct Search;
 
     /// The intersection at `p`, within `further` too, if there is such. Multipliers have the
-    /// indices of sources. Throws InputError for a `further` metric that `order_free_intersection`
-    /// does not accept.
-    OrderFreeIntersection intersect(const Point& p, const Metric* further, Search& search) const;
+    /// indices of sources. Begins at `near`, if given, which should be that of a place near to `p`:
+    /// the answer depends on it, as far as the tolerance allows. `found` becomes that of `p`.
+    /// Throws InputError for a `further` metric that `order_free_intersection` does not accept.
+    OrderFreeIntersection intersect(const Point& p, const Metric* further, Search& search,
+                                    const Start* near = nullptr, Start* found = nullptr) const;
 
     /// Sources that change the result nowhere, and were left out.
     std::size_t dropped() const { return dropped_; }
@@ -50,13 +59,6 @@ public:
     std::size_t bytes_topology() const { return tree_.bytes() - bytes_payload(); }
 
 private:
-    static constexpr std::size_t most_members = OrderFreeIntersection::most_multipliers - 2;
-    /// Where the search for an answer begins: the core set of another place, and its factor.
-    struct Start {
-        Eigen::Matrix3d factor = Eigen::Matrix3d::Identity();
-        std::array<std::uint32_t, most_members> members{};
-        std::uint32_t count = 0;
-    };
     struct Cell {
         static constexpr std::int64_t none = -1;
         std::array<std::int64_t, 4> key{none, 0, 0, 0};  ///< level, and place in the grid

@@ -17,6 +17,13 @@ double norm_of_excess(double x, double y, double z) {
     return std::sqrt(excess(x) * excess(x) + excess(y) * excess(y) + excess(z) * excess(z));
 }
 
+// Of lengths along one direction: at least 1.
+double largest_ratio(const Metric& a, const Metric& b) {
+    if (is_axis_aligned(a) && is_axis_aligned(b)) return std::max(growth(a, b), growth(b, a));
+    const auto ratios = svd(Cholesky(b).solve(a.matrix())).s;
+    return std::max(ratios[0], 1 / ratios[2]);
+}
+
 }  // namespace
 
 double nonconformity(const Metric& a, const Metric& b) {
@@ -31,15 +38,25 @@ double nonconformity(const Metric& a, const Metric& b) {
 double strict_nonconformity(const Metric& a, const Metric& b) {
     const double delta = nonconformity(a, b);
     if (is_isotropic(a) && is_isotropic(b)) return delta;
-    return std::max(delta, nonconformity_of_factor(std::max(growth(a, b), growth(b, a))));
+    return std::max(delta, nonconformity_of_factor(largest_ratio(a, b)));
+}
+
+double directional_nonconformity(const Metric& a, const Metric& b) {
+    const double delta = nonconformity(a, b);
+    if (is_axis_aligned(a) && is_axis_aligned(b)) return delta;
+    return std::max(delta, excess(largest_ratio(a, b)));
 }
 
 double nonconformity_of_factor(double k) { return std::sqrt(3.0) * excess(k); }
+
+double nonconformity_along(double k) { return excess(k); }
 
 double largest_factor_within(double delta) {
     const double excess_of_each = delta / std::sqrt(3.0);
     return 1 + 0.5 * (excess_of_each + std::sqrt(excess_of_each * (excess_of_each + 4)));
 }
+
+double largest_factor_along(double delta) { return largest_factor_within(std::sqrt(3.0) * delta); }
 
 double riemannian_nonconformity(const Metric& a, const Metric& b) {
     if (is_axis_aligned(a) && is_axis_aligned(b)) {

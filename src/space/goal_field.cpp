@@ -1,11 +1,8 @@
 #include "controlspace/space/detail/goal_field.h"
 
 #include <fmt/format.h>
-#include <tbb/concurrent_unordered_map.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 
 #include "cones/cone_field.h"
@@ -16,6 +13,7 @@
 #include "controlspace/space/control_space_builder.h"
 #include "controlspace/space/sample_parallel.h"
 #include "controlspace/space/space_options.h"
+#include "space/goal_cache.h"
 
 namespace controlspace {
 
@@ -36,8 +34,6 @@ const AdaptationGoal& require_valid(const AdaptationGoal& goal, const Box& domai
     return goal;
 }
 
-constexpr std::size_t most_remembered = 1000000;  // 130 bytes each
-
 // Some hundredth of the target, as δ.
 double negligible_for(double target) { return 0.1 * std::sqrt(target); }
 
@@ -48,20 +44,6 @@ double tolerance_for(const AdaptationGoal& goal) {
 
 }  // namespace
 
-struct GoalField::Remembered {
-    struct Hash {
-        std::size_t operator()(const std::array<double, 3>& x) const {
-            std::uint64_t hash = 0;
-            for (const double a : x) {
-                hash = (hash ^ std::bit_cast<std::uint64_t>(a)) * 0x9e3779b97f4a7c15;
-                hash ^= hash >> 32;
-            }
-            return hash;
-        }
-    };
-    tbb::concurrent_unordered_map<std::array<double, 3>, Metric, Hash> metrics;
-};
-
 GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
     : target_(require_valid(goal, domain).target),
       ratio_(goal.ratio),
@@ -71,7 +53,7 @@ GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
       largest_(largest_metric(domain, goal.h_max)),
       cones_(std::make_unique<ConeField>(goal.sources, goal.ratio, largest_, tolerance_for(goal),
                                          goal.intersection)),
-      remembered_(std::make_unique<Remembered>()) {}
+      cache_(std::make_unique<GoalCache>()) {}
 
 GoalField::~GoalField() = default;
 
@@ -90,21 +72,7 @@ std::vector<Metric> GoalField::continuous_at(std::span<const Point> x) const {
     return own;
 }
 
-bool GoalField::recall(const Point& x, Metric& out) const {
-    const auto found = remembered_->metrics.find({x.x(), x.y(), x.z()});
-    if (found == remembered_->metrics.end()) return false;
-    out = found->second;
-    return true;
-}
-
-void GoalField::remember(const Point& x, const Metric& m) const {
-    if (remembered_->metrics.size() >= most_remembered) return;
-    remembered_->metrics.emplace(std::array{x.x(), x.y(), x.z()}, m);
-}
-
-void GoalField::forget_if_full() const {
-    if (remembered_->metrics.size() >= most_remembered) remembered_->metrics.clear();
-}
+void GoalField::forget_if_full() const { cache_->forget_if_full(); }
 
 double GoalField::largest_departure(const Box& domain, const Sample& sample_space) const {
     constexpr std::uint64_t everywhere = 100000, near_sources = 100000;
@@ -123,7 +91,7 @@ double GoalField::largest_departure(const Box& domain, const Sample& sample_spac
     sample_parallel(*this, x, exact);
     double largest = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
-        largest = std::max(largest, strict_nonconformity(own[i], exact[i]));
+        largest = std::max(largest, directional_nonconformity(own[i], exact[i]));
     }
     return largest;
 }

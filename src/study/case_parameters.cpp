@@ -80,12 +80,14 @@ Access<Case> target() {
 
 /// The same by the largest factor between lengths.
 Access<Case> target_factor() {
-    Access<Case> access = target();
-    access.set = [set = access.set](Case& c, const Values& values) {
-        const double factor = values.front().number();
-        if (!(factor >= 1.0001 && factor <= 1e6))
+    Access<Case> access = number_or_none(&Case::within);
+    access.set = [set_factor = access.set, set_target = target().set](Case& c,
+                                                                      const Values& values) {
+        set_factor(c, values);
+        if (!c.within) return;
+        if (!(*c.within >= 1.0001 && *c.within <= 1e6))
             throw InputError("give a factor from 1.0001 to 1e6");
-        set(c, Values{nonconformity_of_factor(factor)});
+        set_target(c, Values{nonconformity_of_factor(*c.within)});
     };
     return access;
 }
@@ -258,10 +260,10 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
             target(), {0}, chooses_nodes, if_given("δ <= {:.4g}", &Case::target_delta)),
         {{"within", "",
           "The same as the largest factor by which a length may differ from the exact field in any "
-          "direction: 1.1 is target_delta = 0.01575",
+          "direction: 1.1 is target_delta = 0.01575, with tensors 0.00909; 0: not given",
           target_factor()},
          Role::structure,
-         {},
+         {0},
          {},
          chooses_nodes,
          {},

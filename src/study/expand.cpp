@@ -68,7 +68,7 @@ std::vector<Case> settings_of(const Study& study, const Run& run,
     std::vector<Case> cases(1);
     cases.front().sources = study.sources;
     for (const CaseParameter& p : parameters) {
-        if (p.role == Role::structure || !p.same_as.empty()) continue;
+        if (p.role == Role::structure || p.is_form()) continue;
         if (is_needed(p, run, cases.front())) multiply(cases, p, run.values(p));
     }
     return cases;
@@ -80,12 +80,12 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
     std::vector<Case> cases{setting};
     cases.front().structure = entry.id;
     for (const CaseParameter& p : parameters) {
-        if (p.role != Role::structure || !p.same_as.empty()) continue;
+        if (p.role != Role::structure || p.is_form()) continue;
         // Without adaptation trees do not follow a field.
-        const bool is_default_target =
-            p.key == "target_delta" && has_field(setting.sources) && run.find(p.key) == nullptr;
-        const Values values =
-            is_default_target ? Values{nonconformity_of_factor(default_within)} : run.values(p);
+        const bool is_default_target = p.key == "within" && has_field(setting.sources) &&
+                                       run.find("target_delta") == nullptr &&
+                                       run.find("within") == nullptr;
+        const Values values = is_default_target ? Values{default_within} : run.values(p);
         std::vector<Case> product;
         for (const Case& c : cases) {
             std::vector<Case> made{c};
@@ -148,14 +148,18 @@ void Run::set_structures(const Values& names) {
 void Run::set(const CaseParameter& parameter, const Values& values,
               std::span<const CaseParameter> all) {
     require_fit(parameter.access.type, 0, values);
-    const auto target = parameter.same_as.empty()
-                            ? &parameter
-                            : &*std::ranges::find(all, parameter.same_as, &CaseParameter::key);
+    const auto target = parameter.is_form()
+                            ? &*std::ranges::find(all, parameter.same_as, &CaseParameter::key)
+                            : &parameter;
     Values list;
     for (const Value& value : values) {
         Case c;
         set_checked(parameter.access, c, {value});
         list.push_back(target == &parameter ? value : target->access.get(c).front());
+    }
+    // What is given last holds, of those that set the same.
+    for (const CaseParameter& other : all) {
+        if (other.same_as == target->key || other.key == target->same_as) lists_.erase(other.key);
     }
     lists_[target->key] = std::move(list);
 }

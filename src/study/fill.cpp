@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "controlspace/error.h"
+#include "controlspace/geometry/detail/place_sequence.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/study/run.h"
@@ -19,9 +21,8 @@ void require_follows(const Case& c, const CatalogueEntry& entry) {
 }
 
 /// δ and the factor between lengths, and how they are known.
-std::string outcome_of(const AdaptationReport& report) {
+std::string outcome_of(const AdaptationReport& report, double factor) {
     if (std::isinf(report.reached)) return "δ unknown: no bound was found";
-    const double factor = largest_factor_within(report.reached);
     if (report.is_bound) {
         return fmt::format("δ <= {:.4g} everywhere: lengths within {:.4g}x", report.reached,
                            factor);
@@ -34,6 +35,21 @@ void add_remark(Creation& creation, const std::string& remark) {
     creation.remark.append(creation.remark.empty() ? "" : "; ").append(remark);
 }
 
+/// Whether any source is a tensor, or the continuous field at some thousand places.
+bool has_tensors(const Workload& workload) {
+    const auto& field = workload.field.field;
+    std::vector<Metric> metrics;
+    if (field) {
+        std::vector<Point> x = workload.field.places;
+        constexpr std::uint64_t more = 4096;
+        for (std::uint64_t k = 0; k < more; ++k) x.push_back(place_in(workload.domain, k));
+        metrics.resize(x.size());
+        field->sample(x, metrics);
+    }
+    return !std::ranges::all_of(metrics, is_isotropic) ||
+           !std::ranges::all_of(workload.sources, is_isotropic, &PointSource::metric);
+}
+
 void adapt(Filled& filled, const Case& c, const Workload& workload) {
     AdaptationGoal goal{.sources = workload.sources,
                         .continuous = workload.field.field,
@@ -42,17 +58,19 @@ void adapt(Filled& filled, const Case& c, const Workload& workload) {
                         .h_max = c.sources.h_max,
                         .places = workload.field.places};
     if (c.target_delta) goal.target = *c.target_delta;
+    // Of tensors, δ allows more along one direction alone than along all at once.
+    const bool is_along = has_tensors(workload);
+    if (c.within && is_along) goal.target = nonconformity_along(*c.within);
+    const auto factor_of = is_along ? largest_factor_along : largest_factor_within;
     const AdaptationReport report = filled.builder->adapt(goal);
     if (c.target_delta) {
-        add_remark(filled.creation, outcome_of(report));
-        if (std::isfinite(report.reached)) {
-            filled.creation.within = largest_factor_within(report.reached);
-        }
+        const double reached = factor_of(report.reached);
+        add_remark(filled.creation, outcome_of(report, reached));
+        if (std::isfinite(report.reached)) filled.creation.within = reached;
         if (report.met) return;
-        filled.creation.shortfall =
-            fmt::format("target {:.4g} (lengths within {:.4g}x) missed{}{}", goal.target,
-                        largest_factor_within(goal.target), report.shortfall.empty() ? "" : ": ",
-                        report.shortfall);
+        filled.creation.shortfall = fmt::format(
+            "target {:.4g} (lengths within {:.4g}x) missed{}{}", goal.target,
+            factor_of(goal.target), report.shortfall.empty() ? "" : ": ", report.shortfall);
     }
 }
 

@@ -134,7 +134,7 @@ Json to_json(const Case& setting, std::span<const CaseParameter> parameters) {
         const std::string& key = result_key(p);
         const Values values = values_of(p, setting);
         const bool is_written = json.contains(key) && !json[key].is_null();
-        if (!p.same_as.empty() || is_written) continue;
+        if (p.is_form() || is_written) continue;
         json[key] = values.empty() ? Json(nullptr) : to_json(p.access.type, values.front());
     }
     return json;
@@ -161,7 +161,7 @@ Row row_from_json(const Json& json, const StudyRows& rows, const SourcesChoice& 
     row.setting.sources = sources;
     row.setting.structure = json.at("structure");
     for (const CaseParameter& p : rows.parameters) {
-        if (!p.same_as.empty() || json.at(result_key(p)).is_null()) continue;
+        if (p.is_form() || json.at(result_key(p)).is_null()) continue;
         try {
             set_checked(p.access, row.setting, values_from(json.at(result_key(p))));
         } catch (const InputError& error) {
@@ -204,11 +204,11 @@ Json head_json(const Provenance& provenance, const Study& study, const StudyRows
         Json& lists = settings["runs"].emplace_back();
         lists[structures_key] = list_of(ValueType::text, run.structures());
         for (const CaseParameter& p : parameters) {
-            if (p.same_as.empty()) lists[p.key] = list_of(p.access.type, run.values(p));
+            if (!p.is_form()) lists[p.key] = list_of(p.access.type, run.values(p));
         }
     }
     for (const CaseParameter& p : parameters) {
-        if (!p.same_as.empty() || p.defaults.empty()) continue;
+        if (p.defaults.empty()) continue;
         json["defaults"].emplace(result_key(p), to_json(p.access.type, p.defaults.front()));
     }
     json["descriptions"] = descriptions(rows);

@@ -96,6 +96,12 @@ TEST_CASE("a target that is missed is reported, with status 3, and what was made
     const Outcome delta =
         box.run("query s.csv places.csv --structures K_oV --target-delta 0.015745916432444364");
     CHECK(delta.out == within.out);
+    // Of tensors the factor is kept along each direction by itself.
+    box.write("t.csv",
+              "x,y,z,xx,yy,zz,xy,xz,yz\n0,0,0,0.1,0.3,0.3,0,0,0\n1,1,1,0.3,0.1,0.3,0,0,0.05\n");
+    const Outcome tensors = box.run("query t.csv places.csv --structures K_oV --within 1.2");
+    CHECK(tensors.status == 0);
+    CHECK_THAT(tensors.err, Contains("K_oV: δ 0.03") && Contains("lengths within 1.2x there"));
     check_refused(box.run("query s.csv places.csv --within 1"), "--within: ");
     check_refused(box.run("query s.csv places.csv --within 1.1 --target-delta 0.1"), "--within");
 }

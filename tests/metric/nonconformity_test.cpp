@@ -103,9 +103,36 @@ TEST_CASE("strict nonconformity is no less than δ, and bounds what lengths diff
     CHECK(growth(thin, turned) > 2);
 }
 
+TEST_CASE("directional nonconformity bounds each length by itself") {
+    Draw draw(34);
+    for (int i = 0; i < 100; ++i) {
+        const Metric a = draw.metric(1, 20);
+        const Metric b = draw.metric(1, 20);
+        const double delta = directional_nonconformity(a, b);
+        CHECK(delta >= nonconformity(a, b));
+        CHECK(delta <= strict_nonconformity(a, b));
+        CHECK(delta == Approx(directional_nonconformity(b, a)).epsilon(1e-9));
+        const double k = std::max(growth(a, b), growth(b, a));
+        CHECK(k <= largest_factor_along(delta) * (1 + 1e-9));
+        const Metric c = Metric::isotropic(a.xx);
+        const Metric d = Metric::isotropic(b.xx);
+        CHECK(directional_nonconformity(c, d) == nonconformity(c, d));
+    }
+    // Along one direction alone it is δ; of a thin metric that is turned a little, more.
+    const Metric thin{1, 0.01, 1, 0, 0, 0};
+    CHECK(directional_nonconformity(thin, {1, 0.013, 1, 0, 0, 0}) ==
+          Approx(nonconformity_along(1.3)));
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.02, Vector::UnitZ()).toRotationMatrix();
+    const Metric turned = Metric::from_matrix(turn * thin.matrix() * turn.transpose());
+    CHECK(directional_nonconformity(thin, turned) ==
+          Approx(nonconformity_along(growth(thin, turned))));
+    CHECK(nonconformity(thin, turned) < 0.5 * directional_nonconformity(thin, turned));
+}
+
 TEST_CASE("the largest factor within a nonconformity has just that") {
     for (const double delta : {1e-9, 1e-3, 0.1, 2.0, 1e3}) {
         const Metric longer = Metric::isotropic(0.3 * largest_factor_within(delta));
         CHECK(nonconformity(Metric::isotropic(0.3), longer) == Approx(delta).epsilon(1e-6));
+        CHECK(nonconformity_along(largest_factor_along(delta)) == Approx(delta).epsilon(1e-6));
     }
 }

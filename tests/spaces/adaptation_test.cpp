@@ -134,6 +134,44 @@ CASE_OF_EACH(entry, vertex_trees(), "thin metrics: no length is off in any direc
     CHECK(most <= 3);  // between samples; the target allows 2
 }
 
+CASE_OF_EACH(entry, vertex_trees(), "layers: lengths keep the target in each direction") {
+    constexpr double target = 0.1;
+    const std::vector<PointSource> sources = sample_sphere({.h = 0.25, .s_a = 4, .s_n = 0.25});
+    const auto field = exact_reference(sources, g, largest_metric(domain), 1e-3);
+    const auto space = editable(entry.make({.domain = domain}));
+    const AdaptationReport report = space->adapt({sources, nullptr, g, target});
+    CHECK(report.met);
+    CHECK(!report.is_bound);
+    const auto delta = [&](const Point& x) {
+        return directional_nonconformity(sample_at(*space, x), sample_at(*field, x));
+    };
+    std::vector<std::pair<double, Point>> worst;
+    for (const Point& x : random_points(domain, 20000, 71)) worst.emplace_back(delta(x), x);
+    const auto is_worse = [](const auto& a, const auto& b) { return a.first > b.first; };
+    std::ranges::sort(worst, is_worse);
+    const std::size_t beyond = static_cast<std::size_t>(
+        std::ranges::find_if(worst, [&](const auto& p) { return p.first <= target; }) -
+        worst.begin());
+    CHECK(beyond <= 20);
+    // Uphill from the worst places.
+    constexpr std::size_t starts = 20;
+    worst.resize(starts);
+    for (auto& [most, at] : worst) {
+        double step = 0.01;
+        for (const Point& v : random_points(domain, 200, 72)) {
+            const Point x = (at + step * v).cwiseMax(domain.low).cwiseMin(domain.high);
+            const double found = delta(x);
+            if (found > most) {
+                most = found;
+                at = x;
+            } else {
+                step *= 0.98;
+            }
+        }
+        CHECK(most <= 1.5 * target);
+    }
+}
+
 TEST_CASE("trees that keep sources keep the target of thin layers") {
     constexpr double target = 0.3;
     constexpr auto order_free = IntersectionRule::order_free;

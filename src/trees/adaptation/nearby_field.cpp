@@ -1,15 +1,67 @@
 #include "controlspace/trees/detail/nearby_field.h"
 
+#include <Eigen/LU>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
 #include "cones/cone_field.h"
 #include "cones/nearby_cones.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
+#include "space/goal_cache.h"
 
 namespace controlspace {
 
+namespace {
+
+// Answers at places of a leaf, from which those at other places of it start.
+class Trail {
+public:
+    void clear() { steps_.clear(); }
+    void add(const Point& x, const OrderFreeCones::Start& start) {
+        constexpr std::size_t most = 64;
+        if (start.count == 0 || steps_.size() == most) return;
+        steps_.push_back({x, start.factor.inverse(), start});
+    }
+    /// That at the nearest place, as its own metric measures; null if there is none.
+    const OrderFreeCones::Start* nearest(const Point& x) const {
+        const OrderFreeCones::Start* nearest = nullptr;
+        double least = std::numeric_limits<double>::infinity();
+        for (const Step& step : steps_) {
+            const double distance = (step.inverse_factor * (x - step.place)).squaredNorm();
+            if (!(distance < least)) continue;
+            least = distance;
+            nearest = &step.start;
+        }
+        return nearest;
+    }
+
+private:
+    struct Step {
+        Point place;
+        Eigen::Matrix3d inverse_factor;
+        OrderFreeCones::Start start;
+    };
+    std::vector<Step> steps_;
+};
+
+}  // namespace
+
 struct NearbyField::Search {
+    explicit Search(const GoalField& of) : field(of) {
+        if (takes_long()) memory.order_free = field.cache().borrow();
+    }
+    Search(const Search& other) : Search(other.field) {}
+    ~Search() {
+        if (takes_long()) field.cache().give_back(std::move(memory.order_free));
+    }
+    Search& operator=(const Search&) = delete;
+
     const GoalField& field;
     Box box = {};
+    Trail trail = {};
     ConeField::Memory memory = {};
     NearbyCones gathered = {}, cones = {};
     bool is_gathered = false;
@@ -23,7 +75,34 @@ struct NearbyField::Search {
         if (are_few) cones.narrow(gathered, box);
     }
     void by_memory(std::span<const Point> x, std::span<Metric> out) {
-        field.cones().evaluate(x, out, memory, field.continuous_at(x));
+        const std::vector<Metric> further = field.continuous_at(x);
+        if (!field.cones().has_starts()) {
+            field.cones().evaluate(x, out, memory, further);
+            return;
+        }
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            out[i] =
+                answer(x[i], further.empty() ? nullptr : &further[i], trail.nearest(x[i])).metric;
+        }
+    }
+    GoalCache::Answer answer(const Point& x, const Metric* further,
+                             const OrderFreeCones::Start* near) {
+        GoalCache::Answer answer;
+        answer.metric = field.cones().evaluate(x, further, memory, near, answer.start);
+        trail.add(x, answer.start);
+        return answer;
+    }
+    // Whatever the places before.
+    Metric shared(const Point& x) {
+        GoalCache::Answer known;
+        if (field.cache().recall(x, known)) {
+            trail.add(x, known.start);
+            return known.metric;
+        }
+        const std::vector<Metric> further = field.continuous_at({&x, 1});
+        known = answer(x, further.empty() ? nullptr : further.data(), nullptr);
+        field.cache().remember(x, known);
+        return known.metric;
     }
     void by_few(std::span<const Point> x, std::span<Metric> out) const {
         const std::vector<Metric> further = field.continuous_at(x);
@@ -34,16 +113,19 @@ struct NearbyField::Search {
     }
 };
 
-NearbyField::NearbyField(const GoalField& field) : search_(new Search{.field = field}) {}
+NearbyField::NearbyField(const GoalField& field) : search_(new Search(field)) {}
 NearbyField::NearbyField(const NearbyField& other) : search_(new Search(*other.search_)) {}
 NearbyField::~NearbyField() = default;
 
 void NearbyField::enter(const Box& box, bool at_many_points) {
     search_->box = box;
     search_->memory.hint = 0;
+    search_->trail.clear();
     search_->is_gathered = !at_many_points;
     search_->are_few = false;
 }
+
+bool NearbyField::takes_long() const { return search_->takes_long(); }
 
 void NearbyField::evaluate(std::span<const Point> x, std::span<Metric> out) {
     search_->gather();
@@ -70,12 +152,9 @@ double NearbyField::evaluate_roughly(std::span<const Point> x, bool shared, std:
 }
 
 Metric NearbyField::at(const Point& x) {
-    const GoalField& field = search_->field;
-    const bool takes_long = search_->takes_long();
+    if (search_->takes_long()) return search_->shared(x);
     Metric m;
-    if (takes_long && field.recall(x, m)) return m;
     search_->by_memory({&x, 1}, {&m, 1});
-    if (takes_long) field.remember(x, m);
     return m;
 }
 

@@ -1,5 +1,7 @@
 #include "trees/values/anchored_values.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -164,6 +166,12 @@ bool AnchoredValues::is_covered(SourceIndex source, std::span<const SourceIndex>
 std::size_t AnchoredValues::drop_needless(std::span<SourceIndex> list, std::span<const Point> x,
                                           std::span<const Metric> exact, double tolerance) const {
     std::size_t n = list.size();
+    const auto left_by = [&](std::span<const SourceIndex> sources, std::size_t i) {
+        return std::max(tolerance, nonconformity(cones_at(x[i], sources), exact[i]));
+    };
+    std::array<double, LeafPlaces::all> left{};  // by the list as it is
+    std::array<double, LeafPlaces::all> left_without{};
+    for (std::size_t i = 0; i < x.size(); ++i) left[i] = left_by(list, i);
     for (std::size_t k = 0; k < n;) {
         std::array<SourceIndex, most> others{};
         std::copy_n(list.begin(), k, others.begin());
@@ -173,14 +181,14 @@ std::size_t AnchoredValues::drop_needless(std::span<SourceIndex> list, std::span
         const auto without = std::span<const SourceIndex>(others).first(n - 1);
         bool is_needed = false;
         for (std::size_t i = 0; i < x.size() && !is_needed; ++i) {
-            const double most_left =
-                std::max(tolerance, nonconformity(cones_at(x[i], list.first(n)), exact[i]));
-            is_needed = nonconformity(cones_at(x[i], without), exact[i]) > most_left;
+            left_without[i] = left_by(without, i);
+            is_needed = left_without[i] > left[i];
         }
         if (is_needed) {
             ++k;
         } else {
             std::ranges::copy(without, list.begin());
+            left = left_without;
             --n;
         }
     }
@@ -194,8 +202,10 @@ void AnchoredValues::fit(std::span<const LeafBox> leaves, const GoalField& field
     const double factor = largest_factor_within(well_within);
     std::vector<SourceIndex> chosen(leaves.size() * most);
     std::vector<std::size_t> count(leaves.size(), 0);
-    in_parallel(leaves.size(), [&, governing = std::vector<SourceIndex>(),
-                                memory = ConeField::Memory()](std::size_t i) mutable {
+    // Cells of an order-free search serve many leaves, and have no effect on answers.
+    tbb::enumerable_thread_specific<ConeField::Memory> memories;
+    in_parallel(leaves.size(), [&, governing = std::vector<SourceIndex>()](std::size_t i) mutable {
+        ConeField::Memory& memory = memories.local();
         const std::span<SourceIndex> list(chosen.data() + i * most, most);
         std::size_t& n = count[i];
         memory.hint = 0;  // of several sources that are equally near the same is found always

@@ -19,7 +19,7 @@ struct AdaptationGoal {
     std::span<const PointSource> sources;
     std::shared_ptr<const ControlSpace> continuous;  ///< or none
     double ratio = 1.25;                             ///< g_r of the sources' cones
-    /// Largest δ to the field, strictly (`strict_nonconformity`); 0 is out of reach.
+    /// Largest δ to the field (`directional_nonconformity`); 0 is out of reach.
     double target = 0.1;
     IntersectionRule intersection = IntersectionRule::order_free;
     double h_max = largest_magnitude;  ///< as of SpaceOptions: bounds M_max

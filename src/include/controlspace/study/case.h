@@ -49,6 +49,8 @@ struct Case {
     std::optional<double> prune_delta = {};  ///< OpenVDB only; none: nothing is pruned
     /// Trees only: adapted to this δ in place of insertion and gradation; none: they are not.
     std::optional<double> target_delta = {};
+    /// Where the target was given as the largest factor between lengths in any direction.
+    std::optional<double> within = {};
     /// Grids only: δ_R, or memory [MB], that voxels are chosen for.
     std::optional<double> equal_delta = {};
     std::optional<double> equal_memory = {};

@@ -74,6 +74,8 @@ struct CaseParameter : Parameter<Case> {
     std::function<bool(const CatalogueEntry&, const Case&)> fits = {};
     std::string result_key = {};  ///< in rows of results; empty: `key`
     std::string same_as = {};     ///< the key whose value it sets in another form
+    /// Nothing but another form of that value, which has no value of its own.
+    bool is_form() const { return !same_as.empty() && defaults.empty(); }
     /// Effect on the options that structures are made with, for what is not a member of Case.
     std::function<void(const Case&, SpaceOptions&)> apply = {};
 };

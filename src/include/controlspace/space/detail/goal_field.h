@@ -13,6 +13,7 @@
 namespace controlspace {
 
 class ConeField;
+class GoalCache;
 
 /// The field of a goal, whose sources must outlive it, as exact as the target needs: order-free, to
 /// a tenth of the target; in turn, cones of tensors that would change it by some hundredth of the
@@ -35,14 +36,13 @@ public:
 
     /// Answers metrics at places.
     using Sample = std::function<void(std::span<const Point>, std::span<Metric>)>;
-    /// Largest δ, strictly, between what `sample` answers and the field, at places all over the
+    /// Largest δ (`directional_nonconformity`) between what `sample` answers and the field, at places all over the
     /// domain and near to sources.
     double largest_departure(const Box& domain, const Sample& sample) const;
 
-    /// Cached metrics at places shared by leaves, up to some number of them. Thread-safe, but for
-    /// `forget_if_full`.
-    bool recall(const Point& x, Metric& out) const;
-    void remember(const Point& x, const Metric& m) const;
+    /// What is kept from leaf to leaf.
+    GoalCache& cache() const { return *cache_; }
+    /// Not while others use the cache.
     void forget_if_full() const;
 
     const ConeField& cones() const { return *cones_; }
@@ -63,8 +63,7 @@ private:
     std::shared_ptr<const ControlSpace> continuous_;
     Metric largest_;
     std::unique_ptr<const ConeField> cones_;
-    struct Remembered;
-    std::unique_ptr<Remembered> remembered_;
+    std::unique_ptr<GoalCache> cache_;
 };
 
 }  // namespace controlspace

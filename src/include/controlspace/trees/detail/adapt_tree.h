@@ -271,7 +271,7 @@ private:
             LeafIndex& leaf = leaf_of_source_[i];
             if (states_[leaf] == LeafState::settled) return;
             leaf = tree_.find(sources_[i]);
-            of_source[i] = strict_nonconformity(
+            of_source[i] = directional_nonconformity(
                 value_in(tree_, field_of(storage_), leaf, sources_[i]), at_sources_[i]);
         });
         for (std::size_t i = 0; i < sources_.size(); ++i) {

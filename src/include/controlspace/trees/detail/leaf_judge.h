@@ -108,7 +108,8 @@ public:
         }
     }
 
-    /// Hill climb from the worst place so far, where that is not far below the target.
+    /// Hill climb from the worst place so far, where that is not far below the target. Where the
+    /// field takes long, it ends once gains like the last one would not reach the target.
     void climb(const LeafBox& of, NearbyField& nearby, Departure& departure) const {
         constexpr int rounds = 5;
         constexpr double near = 0.5;
@@ -124,7 +125,10 @@ public:
             }
             const double before = departure.worst;
             compare_with(of, nearby, x, false, departure, {});
-            if (!(departure.worst > before)) step *= 0.4;
+            const double gain = departure.worst - before;
+            if (!(gain > 0)) step *= 0.4;
+            const int left = rounds - 1 - round;
+            if (nearby.takes_long() && !(departure.worst + left * gain > target_)) return;
         }
     }
 
@@ -183,7 +187,7 @@ private:
     // target is evaluated exactly.
     void compare(const Metric& own, const Metric& longest, double factor, const Point& x,
                  NearbyField& nearby, Departure& departure) const {
-        if (factor == 1) return departure.take(strict_nonconformity(own, longest), x);
+        if (factor == 1) return departure.take(directional_nonconformity(own, longest), x);
         const double from_longest = nonconformity(own, longest);
         const Metric shortest = (1 / factor) * longest;
         const double from_shortest = nonconformity(own, shortest);

@@ -99,7 +99,7 @@ private:
         const double factor = cone_factor(sources_[source], field_.ratio(), x);
         Departure departure;
         if (!is_within(own, 1, factor * metric)) {
-            const double delta = strict_nonconformity(own, intersection(own, factor * metric));
+            const double delta = directional_nonconformity(own, intersection(own, factor * metric));
             if (delta > of_interest * field_.target()) departure.take(delta, x);
         }
         return departure;
@@ -142,7 +142,7 @@ private:
                 const double factor = 1 + slope * metric_length(metric, x - q);
                 if (is_within(own, most * factor, metric)) continue;
                 const Metric within = intersection(own, factor * metric);
-                departure.take(strict_nonconformity(own, within), x);
+                departure.take(directional_nonconformity(own, within), x);
                 if (departure.worst > field_.target()) return;
             }
             if (is_doubtful) halve(part, metric, parts);

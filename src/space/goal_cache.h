@@ -1,0 +1,68 @@
+#pragma once
+
+#include <tbb/concurrent_queue.h>
+#include <tbb/concurrent_unordered_map.h>
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "cones/order_free_cones.h"
+#include "controlspace/geometry/point.h"
+#include "controlspace/metric/metric.h"
+
+namespace controlspace {
+
+/// What the adaptation to a field keeps from leaf to leaf: answers at places that leaves share, up
+/// to some number of them, and the memory of searches. None of it has an effect on answers.
+/// Thread-safe, but for `forget_if_full`.
+class GoalCache {
+public:
+    struct Answer {
+        Metric metric;
+        OrderFreeCones::Start start;  ///< for places nearby, if it has members
+    };
+
+    bool recall(const Point& x, Answer& out) const {
+        const auto found = answers_.find({x.x(), x.y(), x.z()});
+        if (found == answers_.end()) return false;
+        out = found->second;
+        return true;
+    }
+    void remember(const Point& x, const Answer& answer) {
+        if (is_full()) return;
+        answers_.emplace(std::array{x.x(), x.y(), x.z()}, answer);
+    }
+    void forget_if_full() {
+        if (is_full()) answers_.clear();
+    }
+
+    /// The memory of an earlier search of the field, if there is one.
+    OrderFreeCones::Search borrow() {
+        OrderFreeCones::Search search;
+        searches_.try_pop(search);
+        return search;
+    }
+    void give_back(OrderFreeCones::Search&& search) { searches_.push(std::move(search)); }
+
+private:
+    static constexpr std::size_t most_answers = 500000;  // 250 bytes each
+    bool is_full() const { return answers_.size() >= most_answers; }
+
+    struct Hash {
+        std::size_t operator()(const std::array<double, 3>& x) const {
+            std::uint64_t hash = 0;
+            for (const double a : x) {
+                hash = (hash ^ std::bit_cast<std::uint64_t>(a)) * 0x9e3779b97f4a7c15;
+                hash ^= hash >> 32;
+            }
+            return hash;
+        }
+    };
+    tbb::concurrent_unordered_map<std::array<double, 3>, Answer, Hash> answers_;
+    tbb::concurrent_queue<OrderFreeCones::Search> searches_;
+};
+
+}  // namespace controlspace
