@@ -98,10 +98,13 @@ TEST_CASE("a target that is missed is reported, with status 3, and what was made
     CHECK(delta.out == within.out);
     // Of tensors the factor is kept along each direction by itself.
     box.write("t.csv",
-              "x,y,z,xx,yy,zz,xy,xz,yz\n0,0,0,0.1,0.3,0.3,0,0,0\n1,1,1,0.3,0.1,0.3,0,0,0.05\n");
+              "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n0,0,0,0.1,0.3,0.3,0,0,0\n1,1,1,0.3,0.1,0.3,0,0,"
+              "0.05\n");
     const Outcome tensors = box.run("query t.csv places.csv --structures K_oV --within 1.2");
     CHECK(tensors.status == 0);
-    CHECK_THAT(tensors.err, Contains("K_oV: δ 0.03") && Contains("lengths within 1.2x there"));
+    CHECK_THAT(tensors.err, Contains("K_oV: δ 0.03") && Contains("lengths within 1.1"));
+    CHECK_THAT(box.run("query t.csv places.csv --structures K_oV --target-delta 0.1").err,
+               Contains("lengths within 1.3"));
     check_refused(box.run("query s.csv places.csv --within 1"), "--within: ");
     check_refused(box.run("query s.csv places.csv --within 1.1 --target-delta 0.1"), "--within");
 }
