@@ -233,7 +233,7 @@ TEST_CASE("each parameter gives back what it was set to") {
     }
     for (const auto& p : case_parameters()) {
         INFO(p.key);
-        CHECK(p.defaults.empty() == !p.same_as.empty());
+        CHECK(p.defaults.empty() == p.is_form());
         for (const Value& value : p.defaults) {
             Case c;
             if (p.key == "kd_depth") c.split = SplitRule::golden;
