@@ -36,8 +36,8 @@ public:
 
     /// Answers metrics at places.
     using Sample = std::function<void(std::span<const Point>, std::span<Metric>)>;
-    /// Largest δ (`directional_nonconformity`) between what `sample` answers and the field, at places all over the
-    /// domain and near to sources.
+    /// Largest δ (`directional_nonconformity`) between what `sample` answers and the field, at
+    /// places all over the domain and near to sources.
     double largest_departure(const Box& domain, const Sample& sample) const;
 
     /// What is kept from leaf to leaf.
