@@ -68,6 +68,15 @@ private:
     GModel* before_;
 };
 
+/// Gmsh throws strings.
+void with_gmsh_errors(const auto& action) {
+    try {
+        action();
+    } catch (const std::string& what) {
+        throw InputError("Gmsh failed: " + what);
+    }
+}
+
 std::size_t allocated() {
     const auto counts = mallinfo2();
     return counts.uordblks + counts.hblkhd;
@@ -77,20 +86,16 @@ std::size_t allocated() {
 
 GmshField::GmshField(const std::function<Made()>& make, const Point& x, bool has_tensors) {
     static int made = 0;
-    {
+    with_gmsh_errors([&] {
         const InGmsh gmsh;
         const std::size_t before = allocated();
         name_ = fmt::format("controlspace {}", ++made);
-        try {
-            gmsh::model::add(name_);
-            model_ = GModel::current();
-            made_ = make();
-            field_ = model_->getFields()->get(made_.field);
-        } catch (const std::string& what) {
-            throw InputError("Gmsh failed: " + what);
-        }
+        gmsh::model::add(name_);
+        model_ = GModel::current();
+        made_ = make();
+        field_ = model_->getFields()->get(made_.field);
         bytes_ = allocated() - before;
-    }
+    });
     const std::size_t before = allocated();
     double size = 0;
     Tensor tensor;
@@ -128,22 +133,26 @@ void GmshField::sizes(std::span<const Point> x, std::span<double> out) const {
                                          x[i].x(), x[i].y(), x[i].z()));
         }
     };
-    if (made_.view >= 0) {
-        evaluate(*reinterpret_cast<PostViewField*>(field_));
-    } else {
-        evaluate(*reinterpret_cast<StructuredField*>(field_));
-    }
+    with_gmsh_errors([&] {
+        if (made_.view >= 0) {
+            evaluate(*reinterpret_cast<PostViewField*>(field_));
+        } else {
+            evaluate(*reinterpret_cast<StructuredField*>(field_));
+        }
+    });
 }
 
 void GmshField::tensors(std::span<const Point> x, std::span<Tensor> out) const {
     const std::lock_guard lock(only_gmsh());
     require_open();
     auto& field = *reinterpret_cast<PostViewField*>(field_);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        SMetric3 metric;
-        field(x[i].x(), x[i].y(), x[i].z(), metric, nullptr);
-        out[i] = metric.lower_triangle;
-    }
+    with_gmsh_errors([&] {
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            SMetric3 metric;
+            field(x[i].x(), x[i].y(), x[i].z(), metric, nullptr);
+            out[i] = metric.lower_triangle;
+        }
+    });
 }
 
 }  // namespace controlspace
