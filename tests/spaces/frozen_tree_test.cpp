@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -81,15 +82,13 @@ CASE_OF_EACH(tree, trees(),
         const std::vector<Metric> expected = answers(*space, x);
         CHECK(checksum(answers(*doubles, x)) == checksum(expected));
         if (s_n == 1) {
-            for (const ControlSpace* answering : {&space->built(), doubles.get()}) {
+            for (const ControlSpace* form : std::initializer_list<const ControlSpace*>{
+                     &space->built(), doubles.get(), floats.get()}) {
                 std::vector<double> lengths(x.size());
-                answering->sample_lengths(x, lengths);
-                for (std::size_t i = 0; i < x.size(); ++i) REQUIRE(lengths[i] == expected[i].xx);
+                form->sample_lengths(x, lengths);
+                const std::vector<Metric> metrics = answers(*form, x);
+                for (std::size_t i = 0; i < x.size(); ++i) REQUIRE(lengths[i] == metrics[i].xx);
             }
-            std::vector<double> lengths(x.size());
-            floats->sample_lengths(x, lengths);
-            const std::vector<Metric> metrics = answers(*floats, x);
-            for (std::size_t i = 0; i < x.size(); ++i) REQUIRE(lengths[i] == metrics[i].xx);
         }
         double most = 0;
         const std::vector<Metric> rounded = answers(*floats, x);
