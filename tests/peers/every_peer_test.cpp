@@ -4,6 +4,7 @@
 
 #include "baselines/add_structures.h"
 #include "case_of_each.h"
+#include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/sample_parallel.h"
 #include "peers/peers.h"
 
@@ -34,8 +35,10 @@ CASE_OF_EACH(entry, peers(), "one place at a time gets what many at once get") {
     const auto space = finished(entry.id, work);
     const std::vector<Point> places = places_in(work);
     const std::vector<Metric> together = answers_at(*space, places);
+    // Gmsh begins where its last search ended, and on a face either tetrahedron answers.
+    const double rounding = entry.id == "gmsh-view" ? 1e-12 : 0;
     for (std::size_t i = 0; i < places.size(); i += 7) {
-        REQUIRE(sample_at(*space, places[i]) == together[i]);
+        REQUIRE(nonconformity(sample_at(*space, places[i]), together[i]) <= rounding);
     }
 }
 
