@@ -69,7 +69,10 @@ void run_into(ResultsFolder& folder, PreparedStudy prepared, Progress& progress,
     StudyObserver observer;
     observer.case_started = [&](const Case& c) {
         progress.case_started(c);
-        load_module_of(c.structure);  // before its creation is timed
+        // Libraries are loaded and started before creation is timed.
+        load_module_of(c.structure);
+        const CatalogueEntry& entry = *find_entry(structures(), c.structure);
+        if (entry.family == "peers") entry.make({.domain = {Point::Zero(), Point::Ones()}});
     };
     observer.phase_started = [&](std::string_view phase) { progress.phase_started(phase); };
     observer.case_checked = [&](const Finished& finished, Row& row) {

@@ -285,6 +285,7 @@ AnalyticField primitives_field(std::span<const Primitive> primitives,
     assert(primitives.size() == distances.size());
     if (primitives.empty()) throw InputError("no primitives: give at least one");
     AnalyticField field;
+    field.is_isotropic = true;
     field.finest_length = std::ranges::min(primitives, {}, &Primitive::h).h;
     std::vector<PrimitivesField::Law> laws;
     for (std::size_t i = 0; i < primitives.size(); ++i) {

@@ -45,7 +45,13 @@ public:
         searches_.try_pop(search);
         return search;
     }
-    void give_back(OrderFreeCones::Search&& search) { searches_.push(std::move(search)); }
+    /// Where memory runs out, it is not kept.
+    void give_back(OrderFreeCones::Search&& search) noexcept {
+        try {
+            searches_.push(std::move(search));
+        } catch (...) {
+        }
+    }
 
 private:
     static constexpr std::size_t most_answers = 500000;  // 250 bytes each

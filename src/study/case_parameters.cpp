@@ -257,7 +257,11 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
             "target_delta", "",
             "Non-conformity to the exact field that trees and meshes are adapted to, in place of "
             "insertion and gradation; 0: not adapted",
-            target(), {0}, chooses_nodes, if_given("δ <= {:.4g}", &Case::target_delta)),
+            target(), {0}, chooses_nodes,
+            [](const Case& c) -> std::string {
+                if (c.within) return fmt::format("within {:.4g}x", *c.within);
+                return c.target_delta ? fmt::format("δ <= {:.4g}", *c.target_delta) : "";
+            }),
         {{"within", "",
           "The same as the largest factor by which a length may differ from the exact field in any "
           "direction: 1.1 is target_delta = 0.01575, with tensors 0.00909; 0: not given",

@@ -148,6 +148,11 @@ void Run::set_structures(const Values& names) {
 void Run::set(const CaseParameter& parameter, const Values& values,
               std::span<const CaseParameter> all) {
     require_fit(parameter.access.type, 0, values);
+    const bool is_second = !parameter.same_as.empty() && !parameter.is_form();
+    if (is_second && values == parameter.defaults) {  // not given
+        lists_.erase(parameter.key);
+        return;
+    }
     const auto target = parameter.is_form()
                             ? &*std::ranges::find(all, parameter.same_as, &CaseParameter::key)
                             : &parameter;

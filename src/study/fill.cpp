@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "controlspace/error.h"
-#include "controlspace/geometry/detail/place_sequence.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/study/run.h"
@@ -35,18 +34,9 @@ void add_remark(Creation& creation, const std::string& remark) {
     creation.remark.append(creation.remark.empty() ? "" : "; ").append(remark);
 }
 
-/// Whether any source is a tensor, or the continuous field at some thousand places.
+/// Whether any source is a tensor, or the continuous field may have tensors.
 bool has_tensors(const Workload& workload) {
-    const auto& field = workload.field.field;
-    std::vector<Metric> metrics;
-    if (field) {
-        std::vector<Point> x = workload.field.places;
-        constexpr std::uint64_t more = 4096;
-        for (std::uint64_t k = 0; k < more; ++k) x.push_back(place_in(workload.domain, k));
-        metrics.resize(x.size());
-        field->sample(x, metrics);
-    }
-    return !std::ranges::all_of(metrics, is_isotropic) ||
+    return (workload.field.field && !workload.field.is_isotropic) ||
            !std::ranges::all_of(workload.sources, is_isotropic, &PointSource::metric);
 }
 
@@ -66,7 +56,10 @@ void adapt(Filled& filled, const Case& c, const Workload& workload) {
     if (c.target_delta) {
         const double reached = factor_of(report.reached);
         add_remark(filled.creation, outcome_of(report, reached));
-        if (std::isfinite(report.reached)) filled.creation.within = reached;
+        if (std::isfinite(report.reached)) {
+            filled.creation.within = reached;
+            filled.creation.delta = report.reached;
+        }
         if (report.met) return;
         filled.creation.shortfall = fmt::format(
             "target {:.4g} (lengths within {:.4g}x) missed{}{}", goal.target,
@@ -124,10 +117,10 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     filled.builder = entry.make(space_options(study, c, workload, rows.parameters));
     if (is_adapted) {
         adapt(filled, c, workload);
+        const auto space = filled.builder->build();  // where forms of other systems are made
         creation.insert_s = {time.seconds()};
         creation.gradation_s = {0};
-        add_largest_ratio(creation.gradation, *filled.builder->build(), GradationLaw::cone,
-                          Neighbourhood::faces);
+        add_largest_ratio(creation.gradation, *space, GradationLaw::cone, Neighbourhood::faces);
         remark_on_gradation(creation, c.g_r);
         remark_on_settings(creation, study, c, rows);
         return filled;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "controlspace/metric/nonconformity.h"
 #include "controlspace/study/measure.h"
 
 namespace controlspace {
@@ -76,9 +77,14 @@ std::string found_by_probes(const Finished& f) {
     if (f.creation.within == 0 || f.setting.reference != &exact_reference_kind()) return "";
     constexpr double rounding = 1e-4;  // of the factor in the remark
     const double found = std::max(f.accuracy.within(), f.accuracy_fine.within());
-    if (found <= f.creation.within * (1 + rounding + f.study.reference_tolerance)) return "";
-    return fmt::format("; the probes found more: δ {:.4g}, lengths within {:.4g}x",
-                       std::max(f.accuracy.max, f.accuracy_fine.max), found);
+    const double delta = std::max(f.accuracy.max, f.accuracy_fine.max);
+    const double rest = 1 + rounding + f.study.reference_tolerance;
+    // δ as a factor of lengths, so that the tolerance means the same.
+    if (found <= f.creation.within * rest &&
+        largest_factor_within(delta) <= largest_factor_within(f.creation.delta) * rest) {
+        return "";
+    }
+    return fmt::format("; the probes found more: δ {:.4g}, lengths within {:.4g}x", delta, found);
 }
 
 std::vector<Measure> accuracy_rows() {

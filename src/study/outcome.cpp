@@ -26,6 +26,28 @@ double factor_of(const Row& row) {
                                      : std::max(coarse, fine);
 }
 
+/// The largest δ at any probe.
+double delta_of(const Row& row) {
+    return std::max(row.number("delta_R_max"), row.number("delta_R_fine_max"));
+}
+
+/// Whether lengths differ by more, along a single direction, than δ allows for lengths: of tensors.
+bool shows_tensors(const Row* row) {
+    return factor_of(*row) > largest_factor_within(delta_of(*row)) * (1 + 1e-4);
+}
+
+/// What a structure is asked for: lengths within a factor, and δ.
+struct Asked {
+    double factor = Outcome{}.factor;
+    double delta = std::numeric_limits<double>::infinity();
+
+    auto operator<=>(const Asked&) const = default;
+    bool is_met(const Row& row) const {
+        return factor_of(row) <= factor * (1 + rounding) &&
+               !(delta_of(row) > delta * (1 + rounding));
+    }
+};
+
 /// Those with the smallest number, but for a share of `tolerance`.
 template <class Number>
 Rows least(const Rows& rows, const Number& number, double tolerance = 0) {
@@ -61,16 +83,19 @@ class Judge {
 public:
     Judge(std::span<const Row> rows, const StudyRows& columns) : rows_(rows), columns_(columns) {}
 
-    Outcome outcome(const std::string& work, const Rows& measured, double factor,
+    Outcome outcome(const std::string& work, const Rows& measured, const Asked& asked,
                     bool is_asked) const {
+        const double factor = asked.factor;
         Outcome o{
             .work = work, .factor = factor, .is_asked = is_asked, .measured = measured.size()};
         Rows within = measured;
-        std::erase_if(
-            within, [&](const Row* row) { return !(factor_of(*row) <= factor * (1 + rounding)); });
+        std::erase_if(within, [&](const Row* row) { return !asked.is_met(*row); });
         o.within = indices(within);
-        const std::string error = fmt::format("within {:.4g}x of the reference's at all probes{}",
-                                              factor, is_asked ? "" : " (by default)");
+        std::string error = fmt::format("within {:.4g}x of the reference's at all probes{}", factor,
+                                        is_asked ? "" : " (by default)");
+        if (factor > largest_factor_within(asked.delta) * (1 + rounding)) {
+            error += fmt::format(", and δ <= {:.4g}", asked.delta);
+        }
         if (within.empty()) {
             o.sentences = {fmt::format("No structure has lengths {}.", error),
                            nearest(measured, factor, is_asked)};
@@ -143,17 +168,27 @@ std::vector<Outcome> outcomes(std::span<const Row> rows, const StudyRows& column
     const Judge judge(rows, columns);
     for (auto& [work, members] : grouped(
              rows, [&](const Row& row) { return work_label(row.setting, columns.parameters); })) {
-        std::set<double> targets;
-        for (const Row* row : members) {
-            if (row->setting.target_delta) targets.insert(*row->setting.target_delta);
-        }
         Rows measured = members;
         std::erase_if(measured, [](const Row* row) { return !row->is_measured(); });
         if (measured.empty()) continue;
-        for (const double target : targets) {
-            all.push_back(judge.outcome(work, measured, largest_factor_within(target), true));
+        const bool has_tensors = std::ranges::any_of(measured, shows_tensors);
+        std::set<Asked> targets;
+        for (const Row* row : members) {
+            const Case& c = row->setting;
+            if (!c.target_delta) continue;
+            const double delta = *c.target_delta;
+            if (c.within) {
+                targets.insert({.factor = *c.within});
+            } else {
+                targets.insert(
+                    {has_tensors ? largest_factor_along(delta) : largest_factor_within(delta),
+                     delta});
+            }
         }
-        if (targets.empty()) all.push_back(judge.outcome(work, measured, Outcome{}.factor, false));
+        for (const Asked& target : targets) {
+            all.push_back(judge.outcome(work, measured, target, true));
+        }
+        if (targets.empty()) all.push_back(judge.outcome(work, measured, Asked(), false));
     }
     return all;
 }

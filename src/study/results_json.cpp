@@ -161,9 +161,11 @@ Row row_from_json(const Json& json, const StudyRows& rows, const SourcesChoice& 
     row.setting.sources = sources;
     row.setting.structure = json.at("structure");
     for (const CaseParameter& p : rows.parameters) {
-        if (p.is_form() || json.at(result_key(p)).is_null()) continue;
+        // A setting that an earlier program did not have is left out.
+        const auto found = json.find(result_key(p));
+        if (p.is_form() || found == json.end() || found->is_null()) continue;
         try {
-            set_checked(p.access, row.setting, values_from(json.at(result_key(p))));
+            set_checked(p.access, row.setting, values_from(*found));
         } catch (const InputError& error) {
             throw InputError(fmt::format("{}: {}", result_key(p), error.what()));
         }

@@ -165,7 +165,8 @@ std::vector<Parameter<Study>> table() {
                                   in_file({".vtu", ".vtp", ".vti", ".msh", ".pos"})};
     const AppliesTo<Study> surface{"surfaces: .stl, .obj, .ply, .off, .step, .iges and .brep",
                                    in_file(part_endings())};
-    const AppliesTo<Study> vdb{"sources in a .vdb", in_file({".vdb"})};
+    const AppliesTo<Study> vdb{"sources in a .vdb",
+                               in_file({vdb_endings.begin(), vdb_endings.end()})};
     const AppliesTo<Study> field_sphere{"field = \"sphere\"", field_is({"sphere"})};
     const AppliesTo<Study> field_planes{"field = \"planes\"", field_is({"planes"})};
     const AppliesTo<Study> field_surface{"field = \"sphere\" or \"planes\"",

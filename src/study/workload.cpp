@@ -68,7 +68,8 @@ AnalyticField limited(const AnalyticField& field, const SourcesChoice& limits) {
         return limited(sample_at(*inner, p), limits);
     };
     return {std::make_shared<FormulaField<decltype(at)>>(at, field.field->domain()),
-            std::clamp(field.finest_length, limits.h_min, limits.h_max), field.places};
+            std::clamp(field.finest_length, limits.h_min, limits.h_max), field.places,
+            field.is_isotropic};
 }
 
 /// The analytic field and the primitives together.
@@ -81,6 +82,7 @@ AnalyticField continuous_field(const SourcesChoice& choice,
         AnalyticField own = primitives_field(choice.primitives, distances, choice.primitives_ratio);
         if (field.field) {
             own.finest_length = std::min(own.finest_length, field.finest_length);
+            own.is_isotropic = field.is_isotropic;
             own.field = mixture({field.field, own.field});
         }
         field = std::move(own);

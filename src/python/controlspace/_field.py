@@ -211,6 +211,8 @@ def build(
         structure = "K_oV"
         if delta is None and h.ndim == 1:
             delta = 0.1
+    if "g_r" in options:
+        raise ValueError("g_r: give it as growth")
     given = {"finest_length": finest, **options}
     if h_max is not None:
         given["h_max"] = _arrays.length("h_max", h_max)

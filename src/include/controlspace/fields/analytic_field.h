@@ -17,6 +17,7 @@ struct AnalyticField {
     double finest_length = 0;  ///< lower bound of its lengths, in any direction
     /// Places in what is small in the field, so that a search for it begins there; may be empty.
     std::vector<Point> places = {};
+    bool is_isotropic = false;  ///< known to be, everywhere
 };
 
 /// The field whose metric at p is formula(p), for p in `domain`. `formula` is called from several

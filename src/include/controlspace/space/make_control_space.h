@@ -16,9 +16,10 @@ const CatalogueEntry& entry_named(std::span<const CatalogueEntry> entries, std::
 ///
 /// `id`: a tree (tree_catalogue, anchored_catalogue), or one of `entries`: those of structures()
 /// are all. `options`: its `ratio` is the gradation ratio of the sources; a finest_length of 0
-/// becomes theirs. `target`: with one, the structure is adapted to the exact field until δ is at
-/// most that, which `report`, unless null, says whether it was reached; without one, sources are
-/// inserted and graded, which is faster and less accurate.
+/// becomes theirs. `target`: with one, the structure is adapted to the exact field until δ,
+/// and of tensors k + 1/k − 2 along each direction, is at most that, which `report`, unless null,
+/// says whether it was reached; without one, sources are inserted and graded, which is faster and
+/// less accurate.
 ///
 /// Throws UnknownStructure, IndexedError for a source that cannot be used, MemoryLimitError where
 /// the structure would outgrow options.max_bytes, and InputError for options out of range.

@@ -27,6 +27,7 @@ struct Creation {
     std::string shortfall;  ///< why a requested target was missed; empty where it was met
     /// The largest factor between lengths that the remark states; 0: none.
     double within = 0;
+    double delta = 0;  ///< the δ that it states
 };
 
 /// The remark on a structure: its limitations, the δ reached, and why a target was missed.

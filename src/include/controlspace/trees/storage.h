@@ -33,7 +33,8 @@ namespace controlspace {
 //   values_in(tree, leaves, x, nodes, out)
 //                                        Where value_in returns what `nodes` hold, or values_in
 //                                        writes to numbers too, lengths are asked for without
-//                                        tensors (AnswersLengths).
+//                                        tensors (AnswersLengths): name their types of results,
+//                                        `auto` is compiled for lengths too.
 //
 // and a constructor from SpaceOptions, for a tree of one leaf with largest_metric(options). A
 // single node of a leaf stands at its centre; for eight, corners() and positions() give those of
