@@ -23,6 +23,8 @@ Row row_of(const char* structure, double factor, std::int64_t bytes, std::vector
     for (const Measure& measure : measures()) row.values[measure.key] = measure.value(finished);
     row.values["within_max"] = 1.0;
     row.values["within_fine_max"] = factor;
+    row.values["delta_R_max"] = 0.0;
+    row.values["delta_R_fine_max"] = nonconformity_of_factor(factor);
     row.values["bytes_total"] = bytes;
     return row;
 }
@@ -96,6 +98,22 @@ TEST_CASE("a target is the error, with an outcome for each") {
     CHECK(all[0].within == Indices{3});
     CHECK(all[1].within == Indices{1, 3});  // at the target itself too
     CHECK_THAT(all[1].sentences[0], Contains("within 1.2x of") && !Contains("by default"));
+}
+
+TEST_CASE("of tensors, delta allows more along one direction, and is a condition of its own") {
+    std::vector<Row> rows = sample();
+    for (Row& row : rows) row.setting.target_delta = 0.1;
+    rows[1].values["within_fine_max"] = 1.36;  // along one direction
+    rows[1].values["delta_R_fine_max"] = 0.096;
+    rows[2].values["within_fine_max"] = 1.3;
+    rows[2].values["delta_R_fine_max"] = 0.11;
+    const Outcome outcome = only(rows);
+    CHECK(outcome.factor == Approx(largest_factor_along(0.1)));
+    CHECK(outcome.within == Indices{1, 3});
+    CHECK_THAT(outcome.sentences[0], Contains("within 1.37x of") && Contains(", and δ <= 0.1:"));
+    for (Row& row : rows) row.setting.within = 1.32;
+    CHECK(only(rows).factor == 1.32);
+    CHECK(only(rows).within == Indices{2, 3});
 }
 
 TEST_CASE("it is said when nothing is within the error, and what is closest") {
