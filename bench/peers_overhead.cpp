@@ -198,18 +198,6 @@ Loop bare_tets(const ControlSpace& field, std::span<const PointSource> sources) 
 #endif
 
 #ifdef PEER_p4est
-struct Search {
-    std::array<p4est_qcoord_t, 3> place;
-    p4est_locidx_t leaf;
-};
-int is_inside(p8est_t*, p4est_topidx_t, p8est_quadrant_t* q, p4est_locidx_t leaf, void* point) {
-    auto& search = *static_cast<Search*>(point);
-    const p4est_qcoord_t outside =
-        (search.place[0] ^ q->x) | (search.place[1] ^ q->y) | (search.place[2] ^ q->z);
-    if (outside >= P8EST_QUADRANT_LEN(q->level)) return 0;
-    if (leaf >= 0) search.leaf = leaf;
-    return 1;
-}
 Point centre(const p8est_quadrant_t& q) {
     const double half = 0.5 * P8EST_QUADRANT_LEN(q.level);
     return domain.low + Vector(q.x + half, q.y + half, q.z + half) * 2 / P8EST_ROOT_LEN;
@@ -229,22 +217,14 @@ Loop bare_p4est(const ControlSpace& octree) {
         lengths.push_back(sample_at(octree, centre(*p8est_quadrant_array_index(leaves, i))).xx);
     }
     return [=](std::span<const Point> x, std::span<double> out) {
-        constexpr std::size_t most = 4096;
-        std::vector<Search> found(most);
-        for (std::size_t first = 0; first < x.size(); first += most) {
-            const std::size_t count = std::min(most, x.size() - first);
-            for (std::size_t i = 0; i < count; ++i) {
-                const Vector t = (x[first + i] - domain.low) * (P8EST_ROOT_LEN / 2.0);
-                found[i].place = {static_cast<p4est_qcoord_t>(t.x()),
-                                  static_cast<p4est_qcoord_t>(t.y()),
-                                  static_cast<p4est_qcoord_t>(t.z())};
-            }
-            sc_array_t points;
-            sc_array_init_data(&points, found.data(), sizeof(Search), count);
-            p8est_search_local(forest, 0, nullptr, is_inside, &points);
-            for (std::size_t i = 0; i < count; ++i) {
-                out[first + i] = lengths[static_cast<std::size_t>(found[i].leaf)];
-            }
+        p8est_quadrant_t place{};
+        place.level = P8EST_MAXLEVEL;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const Vector t = (x[i] - domain.low) * (P8EST_ROOT_LEN / 2.0);
+            place.x = static_cast<p4est_qcoord_t>(t.x());
+            place.y = static_cast<p4est_qcoord_t>(t.y());
+            place.z = static_cast<p4est_qcoord_t>(t.z());
+            out[i] = lengths[static_cast<std::size_t>(p8est_find_higher_bound(leaves, &place, 0))];
         }
     };
 }

@@ -1,4 +1,5 @@
-// The leaves of K_oL as a forest of p4est, one octree over the domain, and its search.
+// The leaves of K_oL as a forest of p4est, one octree over the domain, and p4est's binary search of
+// them.
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
 #include <p8est.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <span>
@@ -22,22 +24,21 @@ namespace controlspace {
 
 namespace {
 
-// The first forest of a process starts MPI, which takes some tenths of a second.
+// The first builder of a process starts MPI, which takes some tenths of a second and is not part of
+// creation.
 void start_mpi() {
-    int started = 0;
-    MPI_Initialized(&started);
-    if (started) return;
-    MPI_Init(nullptr, nullptr);
-    std::atexit([] { MPI_Finalize(); });
-    sc_init(sc_MPI_COMM_SELF, 0, 0, nullptr, SC_LP_SILENT);
-    p4est_init(nullptr, SC_LP_SILENT);
+    [[maybe_unused]] static const bool once = [] {
+        int started = 0;
+        MPI_Initialized(&started);
+        if (!started) {
+            MPI_Init(nullptr, nullptr);
+            std::atexit([] { MPI_Finalize(); });
+        }
+        sc_init(sc_MPI_COMM_SELF, 0, 0, nullptr, SC_LP_SILENT);
+        p4est_init(nullptr, SC_LP_SILENT);
+        return true;
+    }();
 }
-
-struct Search {
-    p4est_topidx_t tree;
-    std::array<p4est_qcoord_t, 3> place;
-    p4est_locidx_t leaf;
-};
 
 /// A brick of trees, as many along each axis as K_oL cuts it more often than the others, so that
 /// quadrants are its boxes. In a flat domain their lowest layer alone is cut.
@@ -46,15 +47,23 @@ public:
     explicit Forest(const ControlSpace& octree)
         : octree_(&octree), domain_(octree.domain()), depth_(octree.footprint().depth) {
         if (depth_ > P8EST_QMAXLEVEL) {
-            throw InputError("p4est holds 18 levels: lower --max-depth, or leave it out");
+            throw InputError(
+                "p4est holds 18 levels: lower --max-depth, or leave p4est-octree out of "
+                "--structures");
         }
         for (int level = 0; level < depth_; ++level) {
             const auto cuts = long_axes(domain_, level);
             if (cuts == octants(domain_).cuts) break;
             for (std::size_t a = 0; a < 3; ++a) brick_[a] <<= cuts[a];
         }
-        start_mpi();
-        connectivity_.reset(p8est_connectivity_new_brick(brick_[0], brick_[1], brick_[2], 0, 0, 0));
+        constexpr std::int64_t most_trees = 1 << 16;
+        if (brick_[0] * brick_[1] * brick_[2] > most_trees) {
+            throw InputError(
+                "the domain is too oblong for p4est, more than 65536 cubes: leave p4est-octree "
+                "out of --structures");
+        }
+        const auto along = [&](std::size_t a) { return static_cast<int>(brick_[a]); };
+        connectivity_.reset(p8est_connectivity_new_brick(along(0), along(1), along(2), 0, 0, 0));
         forest_.reset(
             p8est_new_ext(sc_MPI_COMM_SELF, connectivity_.get(), 0, 0, 1, 0, nullptr, this));
         p8est_refine(forest_.get(), 1, is_cut, nullptr);
@@ -72,34 +81,30 @@ public:
         octree_ = nullptr;
     }
 
-    // libsc counts its allocations without a lock: after several threads the counts alone are
-    // wrong.
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
-        constexpr std::size_t most = 4096;
-        std::array<Search, most> found;
         const Vector most_places = trees_along() * P8EST_ROOT_LEN;
         const Vector scale = most_places.cwiseQuotient(divisible_edges(domain_));
-        for (std::size_t first = 0; first < x.size(); first += most) {
-            const std::size_t count = std::min(most, x.size() - first);
-            for (std::size_t i = 0; i < count; ++i) {
-                const Vector t = (x[first + i] - domain_.low).cwiseProduct(scale);
-                std::array<p4est_topidx_t, 3> tree;
-                for (std::size_t a = 0; a < 3; ++a) {
-                    // A face belongs to the low side.
-                    const auto axis = static_cast<Axis>(a);
-                    const auto place = static_cast<p4est_qcoord_t>(
-                        std::clamp(std::ceil(t[axis]) - 1, 0.0, most_places[axis] - 1));
-                    tree[a] = place >> P8EST_MAXLEVEL;
-                    found[i].place[a] = place & (P8EST_ROOT_LEN - 1);
-                }
-                found[i].tree = trees_[index(tree)];
+        p8est_quadrant_t place{};
+        place.level = P8EST_MAXLEVEL;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const Vector t = (x[i] - domain_.low).cwiseProduct(scale);
+            std::array<p4est_topidx_t, 3> at;
+            std::array<p4est_qcoord_t, 3> within;
+            for (std::size_t a = 0; a < 3; ++a) {
+                // A face belongs to the low side.
+                const auto axis = static_cast<Axis>(a);
+                const auto along = static_cast<std::int64_t>(
+                    std::clamp(std::ceil(t[axis]) - 1, 0.0, most_places[axis] - 1));
+                at[a] = static_cast<p4est_topidx_t>(along >> P8EST_MAXLEVEL);
+                within[a] = static_cast<p4est_qcoord_t>(along & (P8EST_ROOT_LEN - 1));
             }
-            sc_array_t points;
-            sc_array_init_data(&points, found.data(), sizeof(Search), count);
-            p8est_search_local(forest_.get(), 0, nullptr, is_inside, &points);
-            for (std::size_t i = 0; i < count; ++i) {
-                out[first + i] = metrics_[static_cast<std::size_t>(found[i].leaf)];
-            }
+            place.x = within[0];
+            place.y = within[1];
+            place.z = within[2];
+            p8est_tree_t* tree = p8est_tree_array_index(forest_->trees, trees_[index(at)]);
+            const auto leaf =
+                static_cast<std::size_t>(p8est_find_higher_bound(&tree->quadrants, &place, 0));
+            out[i] = metrics_[static_cast<std::size_t>(tree->quadrants_offset) + leaf];
         }
     }
     Box domain() const override { return domain_; }
@@ -109,11 +114,16 @@ public:
         footprint.depth = depth_;
         footprint.bytes_payload = metrics_.capacity() * sizeof(Metric);
         footprint.bytes_topology = p8est_memory_used(forest_.get());
+        if (flat_axis(domain_)) {
+            footprint.remark = "3D forest in a plane: two layers where the octree has one";
+        }
         return footprint;
     }
 
 private:
-    Vector trees_along() const { return Vector(brick_[0], brick_[1], brick_[2]); }
+    Vector trees_along() const {
+        return Eigen::Map<const Eigen::Vector<std::int64_t, 3>>(brick_.data()).cast<double>();
+    }
     std::size_t index(const std::array<p4est_topidx_t, 3>& at) const {
         return static_cast<std::size_t>(at[0] + brick_[0] * (at[1] + brick_[1] * at[2]));
     }
@@ -138,15 +148,6 @@ private:
         const Vector own = edges.cwiseQuotient(self.trees_along()) / (1 << q->level);
         return leaf.maxCoeff() < 0.75 * own.maxCoeff();
     }
-    static int is_inside(p8est_t*, p4est_topidx_t tree, p8est_quadrant_t* q, p4est_locidx_t leaf,
-                         void* point) {
-        auto& search = *static_cast<Search*>(point);
-        const p4est_qcoord_t outside =
-            (search.place[0] ^ q->x) | (search.place[1] ^ q->y) | (search.place[2] ^ q->z);
-        if (search.tree != tree || outside >= P8EST_QUADRANT_LEN(q->level)) return 0;
-        if (leaf >= 0) search.leaf = leaf;
-        return 1;
-    }
 
     template <auto destroy>
     struct Destroy {
@@ -155,7 +156,7 @@ private:
     const ControlSpace* octree_;  // while it is made
     Box domain_;
     int depth_;
-    std::array<int, 3> brick_{1, 1, 1};
+    std::array<std::int64_t, 3> brick_{1, 1, 1};
     std::unique_ptr<p8est_connectivity_t, Destroy<p8est_connectivity_destroy>> connectivity_;
     std::unique_ptr<p8est_t, Destroy<p8est_destroy>> forest_;
     std::vector<p4est_topidx_t> trees_;
@@ -169,14 +170,15 @@ std::unique_ptr<ControlSpace> converted(const ControlSpace& octree) {
 }  // namespace
 
 std::vector<CatalogueEntry> p4est_rows() {
-    return {{.id = "p4est-octree",
-             .description = "the leaves of K_oL as a forest of p4est, found by p8est_search_local",
-             .family = "peers",
-             .construct = [](const SpaceOptions& options) -> std::unique_ptr<ControlSpaceBuilder> {
-                 return std::make_unique<ConvertedBuilder>(
-                     find_entry(tree_catalogue(), "K_oL")->make(options), converted);
-             },
-             .capabilities = {SourceLeaves()}}};
+    return {
+        {.id = "p4est-octree",
+         .description = "the leaves of K_oL as a forest of p4est, found by p8est_find_higher_bound",
+         .construct = [](const SpaceOptions& options) -> std::unique_ptr<ControlSpaceBuilder> {
+             start_mpi();
+             return std::make_unique<ConvertedBuilder>(
+                 find_entry(tree_catalogue(), "K_oL")->make(options), converted);
+         },
+         .capabilities = {SourceLeaves()}}};
 }
 
 }  // namespace controlspace
