@@ -5,6 +5,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <exception>
 #include <mutex>
 #include <vector>
 
@@ -47,66 +48,88 @@ std::mutex& only_gmsh() {
     return mutex;
 }
 
-/// Gmsh, open, with the model that was current left so in the end.
-class InGmsh {
+void open_locked() {
+    if (!GModel::list.empty()) return;
+    gmsh::initialize(0, nullptr, false);  // not open, or closed again
+    gmsh::option::setNumber("General.Terminal", 0);
+}
+
+/// Leaves the model that was current so in the end.
+class KeepsCurrent {
 public:
-    InGmsh() : lock_(only_gmsh()) {
-        if (GModel::list.empty()) {  // not open, or closed again
-            gmsh::initialize(0, nullptr, false);
-            gmsh::option::setNumber("General.Terminal", 0);
-        }
-        before_ = GModel::current();
-    }
-    ~InGmsh() {
+    KeepsCurrent() : before_(GModel::current()) {}
+    ~KeepsCurrent() {
         if (std::ranges::count(GModel::list, before_) != 0) GModel::setCurrent(before_);
     }
-    InGmsh(const InGmsh&) = delete;
-    InGmsh& operator=(const InGmsh&) = delete;
+    KeepsCurrent(const KeepsCurrent&) = delete;
+    KeepsCurrent& operator=(const KeepsCurrent&) = delete;
 
 private:
-    std::lock_guard<std::mutex> lock_;
     GModel* before_;
 };
 
-/// Gmsh throws strings.
+/// Gmsh throws strings, and in places more.
 void with_gmsh_errors(const auto& action) {
     try {
         action();
     } catch (const std::string& what) {
         throw InputError("Gmsh failed: " + what);
+    } catch (const std::exception&) {
+        throw;
+    } catch (...) {
+        throw InputError("Gmsh failed");
     }
 }
 
-std::size_t allocated() {
+std::ptrdiff_t allocated() {
     const auto counts = mallinfo2();
-    return counts.uordblks + counts.hblkhd;
+    return static_cast<std::ptrdiff_t>(counts.uordblks + counts.hblkhd);
 }
 
 }  // namespace
 
-GmshField::GmshField(const std::function<Made()>& make, const Point& x, bool has_tensors) {
+void open_gmsh() {
+    const std::lock_guard lock(only_gmsh());
+    with_gmsh_errors(open_locked);
+}
+
+GmshField::GmshField(const std::function<void(Made&)>& make, const Point& x, bool has_tensors) {
     static int made = 0;
-    with_gmsh_errors([&] {
-        const InGmsh gmsh;
-        const std::size_t before = allocated();
-        name_ = fmt::format("controlspace {}", ++made);
-        gmsh::model::add(name_);
-        model_ = GModel::current();
-        made_ = make();
-        field_ = model_->getFields()->get(made_.field);
-        bytes_ = allocated() - before;
-    });
-    const std::size_t before = allocated();
+    try {
+        with_gmsh_errors([&] {
+            const std::lock_guard lock(only_gmsh());
+            open_locked();
+            const KeepsCurrent current;
+            const std::ptrdiff_t before = allocated();
+            name_ = fmt::format("controlspace {}", ++made);
+            gmsh::model::add(name_);
+            model_ = GModel::current();
+            make(made_);
+            field_ = model_->getFields()->get(made_.field);
+            bytes_ = allocated() - before;
+        });
+        ask_once(x, has_tensors);
+    } catch (...) {
+        remove();
+        throw;
+    }
+}
+
+void GmshField::ask_once(const Point& x, bool has_tensors) {
+    const std::ptrdiff_t before = allocated();
     double size = 0;
     Tensor tensor;
     has_tensors ? tensors({&x, 1}, {&tensor, 1}) : sizes({&x, 1}, {&size, 1});
     bytes_ += allocated() - before;
 }
 
-GmshField::~GmshField() {
-    if (std::ranges::count(GModel::list, model_) == 0) return;  // Gmsh was closed
-    const InGmsh gmsh;
+GmshField::~GmshField() { remove(); }
+
+void GmshField::remove() noexcept {
     try {
+        const std::lock_guard lock(only_gmsh());
+        if (std::ranges::count(GModel::list, model_) == 0) return;  // Gmsh was closed
+        const KeepsCurrent current;
         GModel::setCurrent(model_);
         gmsh::model::remove();
         if (made_.view >= 0) gmsh::view::remove(made_.view);
@@ -129,8 +152,9 @@ void GmshField::sizes(std::span<const Point> x, std::span<double> out) const {
         for (std::size_t i = 0; i < x.size(); ++i) {
             out[i] = field(x[i].x(), x[i].y(), x[i].z(), nullptr);
             if (out[i] > 0 && out[i] < nothing) continue;
-            throw InputError(fmt::format("Gmsh's field has no size at ({} {} {}): leave it out",
-                                         x[i].x(), x[i].y(), x[i].z()));
+            throw InputError(
+                fmt::format("Gmsh's field has no size at ({} {} {}): leave it out of --structures",
+                            x[i].x(), x[i].y(), x[i].z()));
         }
     };
     with_gmsh_errors([&] {

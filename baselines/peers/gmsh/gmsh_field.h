@@ -13,6 +13,9 @@ class GModel;
 
 namespace controlspace {
 
+/// Opens Gmsh, which takes some tenths of a second, if it is not open yet.
+void open_gmsh();
+
 /// A size field of Gmsh in a model of its own, evaluated as Gmsh's mesher evaluates its background
 /// field. Gmsh is one for the whole process and knows no threads: all fields share one lock. It
 /// stays open until the process ends.
@@ -22,12 +25,13 @@ namespace controlspace {
 class GmshField {
 public:
     struct Made {
-        int field;      ///< its tag
+        int field = -1;  ///< its tag
         int view = -1;  ///< of a field PostView, the view that it reads; otherwise it is Structured
     };
-    /// `make` adds the field to an empty model. It is asked once, at `x`, which builds its search:
-    /// for a tensor if it `has_tensors`. Throws InputError for what Gmsh throws.
-    GmshField(const std::function<Made()>& make, const Point& x, bool has_tensors = false);
+    /// `make` adds the field to an empty model, and its view to what is removed in the end. It is
+    /// asked once, at `x`, which builds its search: for a tensor if it `has_tensors`. Throws
+    /// InputError for what Gmsh throws.
+    GmshField(const std::function<void(Made&)>& make, const Point& x, bool has_tensors = false);
     ~GmshField();
     GmshField(const GmshField&) = delete;
     GmshField& operator=(const GmshField&) = delete;
@@ -39,16 +43,18 @@ public:
     void tensors(std::span<const Point> x, std::span<Tensor> out) const;
 
     /// Allocated while it was made, as the allocator counts.
-    std::size_t bytes() const { return bytes_; }
+    std::size_t bytes() const { return bytes_ > 0 ? static_cast<std::size_t>(bytes_) : 0; }
 
 private:
+    void ask_once(const Point& x, bool has_tensors);
+    void remove() noexcept;
     void require_open() const;
 
     std::string name_;
     Made made_{};
     GModel* model_ = nullptr;
     Field* field_ = nullptr;
-    std::size_t bytes_ = 0;
+    std::ptrdiff_t bytes_ = 0;
 };
 
 }  // namespace controlspace

@@ -23,11 +23,11 @@ namespace controlspace {
 
 namespace {
 
-Metric isotropic_alone(const Metric& m) {
+Metric only_isotropic(const Metric& m) {
     if (is_isotropic(m)) return m;
     throw InputError(
         "Gmsh's field Structured holds one length at a place, no tensor: give isotropic sources, "
-        "or leave gmsh-structured out");
+        "or leave gmsh-structured out of --structures");
 }
 
 class ScratchFile {
@@ -54,7 +54,7 @@ public:
           cells_(data.cells()),
           nodes_(data.lattice().size()),
           remark_(data.remark()),
-          field_([&] { return made(data, file_->path()); }, domain_.centre()) {
+          field_([&](auto& made) { make(made, data, file_->path()); }, domain_.centre()) {
         file_.reset();  // it was read when the field was asked
     }
 
@@ -85,13 +85,12 @@ public:
     }
 
 private:
-    static GmshField::Made made(const LatticeData& data, const std::string& path) {
+    static void make(GmshField::Made& made, const LatticeData& data, const std::string& path) {
         write(data, path);
-        const int field = gmsh::model::mesh::field::add("Structured");
+        const int field = made.field = gmsh::model::mesh::field::add("Structured");
         gmsh::model::mesh::field::setString(field, "FileName", path);
         gmsh::model::mesh::field::setNumber(field, "TextFormat", 0);
         gmsh::model::mesh::field::setNumber(field, "SetOutsideValue", 0);
-        return {field};
     }
     /// z fastest, x slowest; in a flat domain two layers.
     static void write(const LatticeData& data, const std::string& path) {
@@ -120,7 +119,7 @@ private:
                 for (int k = 0; k < counts[2]; ++k) {
                     const Metric& m =
                         data.field()[lattice.index(node(i, 0), node(j, 1), node(k, 2))];
-                    column.push_back(isotropic_alone(m).xx);
+                    column.push_back(only_isotropic(m).xx);
                 }
                 put(column.data(), column.size());
             }
@@ -139,6 +138,7 @@ private:
 
 std::unique_ptr<ControlSpaceBuilder> make(const SpaceOptions& options,
                                           Interpolation interpolation) {
+    open_gmsh();
     return std::make_unique<SharedBuilder<LatticeData>>(
         options,
         GridKind{
@@ -147,15 +147,14 @@ std::unique_ptr<ControlSpaceBuilder> make(const SpaceOptions& options,
             .finish = [](std::shared_ptr<const LatticeData> data) -> std::unique_ptr<ControlSpace> {
                 return std::make_unique<GmshStructured>(*data);
             },
-            .stored = isotropic_alone});
+            .stored = only_isotropic});
 }
 
 }  // namespace
 
 CatalogueEntry gmsh_structured_row() {
     CatalogueEntry row = grid_row<make, Interpolation::trilinear>(
-        "gmsh-structured", "Gmsh's field Structured: a grid of sizes, trilinear; isotropic alone");
-    row.family = "peers";
+        "gmsh-structured", "Gmsh's field Structured: a grid of sizes, trilinear; isotropic only");
     return row;
 }
 

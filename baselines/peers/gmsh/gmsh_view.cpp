@@ -21,7 +21,8 @@ public:
         : domain_(tets.domain()),
           counts_(tets.footprint()),
           has_tensors_(!is_isotropic(tets)),
-          field_([&] { return made(tets, has_tensors_); }, domain_.centre(), has_tensors_) {}
+          field_([&](auto& made) { make(made, tets, has_tensors_); }, domain_.centre(),
+                 has_tensors_) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         const std::vector<Point> inside = inside_of(x);
@@ -36,7 +37,9 @@ public:
         for (std::size_t i = 0; i < x.size(); ++i) {
             const auto& t = tensors[i];
             const auto metric = from_riemannian({t[0], t[2], t[5], t[1], t[3], t[4]});
-            if (!metric) throw InputError("Gmsh's view has no metric at a place: leave it out");
+            if (!metric)
+                throw InputError(
+                    "Gmsh's view has no metric at a place: leave it out of --structures");
             out[i] = *metric;
         }
     }
@@ -66,7 +69,7 @@ private:
             return controlspace::is_isotropic(tets.metric(vertex));
         });
     }
-    static GmshField::Made made(const BackgroundTets& tets, bool has_tensors) {
+    static void make(GmshField::Made& made, const BackgroundTets& tets, bool has_tensors) {
         const int corners = tets.corners_of_cell();
         std::vector<double> data;
         int cells = 0;
@@ -87,12 +90,11 @@ private:
                 }
             }
         });
-        const int view = gmsh::view::add("sizes");
+        const int view = made.view = gmsh::view::add("sizes");
         gmsh::view::addListData(
             view, std::string(has_tensors ? "T" : "S") + (corners == 4 ? "S" : "T"), cells, data);
-        const int field = gmsh::model::mesh::field::add("PostView");
+        const int field = made.field = gmsh::model::mesh::field::add("PostView");
         gmsh::model::mesh::field::setNumber(field, "ViewTag", view);
-        return {field, view};
     }
     std::vector<Point> inside_of(std::span<const Point> x) const {
         std::vector<Point> inside(x.begin(), x.end());
@@ -120,9 +122,9 @@ CatalogueEntry gmsh_view_row() {
             .description =
                 "the tetrahedra of tets-linear as a view of Gmsh, asked by its field "
                 "PostView: sizes; of tensors M^-2, linear",
-            .family = "peers",
             .order = 1,
             .construct = [](const SpaceOptions& options) -> std::unique_ptr<ControlSpaceBuilder> {
+                open_gmsh();
                 return std::make_unique<SharedBuilder<ViewedTets>>(options);
             },
             .capabilities = {MetricNodes{.rounding = 1e-6}}};
