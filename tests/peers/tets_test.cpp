@@ -264,4 +264,22 @@ CASE_OF_EACH(row, tets_rows(), "what was saved answers alike") {
     }
 }
 
+CASE_OF_EACH(row, tets_rows(), "adaptation leaves no triangles without height along a border") {
+    const Box plane{Point(0, 0, 0), Point(2, 1, 0)};
+    // Beside the border by rounding.
+    const std::vector<PointSource> sources{{Point(1.2, 7e-16, 0), Metric::isotropic(0.02)},
+                                           {Point(0.4, 1 - 3e-16, 0), Metric::isotropic(0.03)}};
+    const auto builder = made(row, plane);
+    AdaptationGoal goal;
+    goal.sources = sources;
+    goal.target = 0.02;
+    builder->adapt(goal);
+    const auto nodes = positions(nodes_of(*builder).control_nodes(Neighbourhood::faces).graph);
+    std::size_t close = 0;
+    for (const Point& a : nodes) {
+        for (const Point& b : nodes) close += a != b && (a - b).norm() < 1e-9 ? 1 : 0;
+    }
+    CHECK(close <= 2 * sources.size());
+}
+
 }  // namespace

@@ -3,11 +3,27 @@
 #include <algorithm>
 
 #include "baselines/peers/tets/background_tets.h"
+#include "cones/spatial_order.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/detail/goal_field.h"
 #include "controlspace/space/sample_parallel.h"
 
 namespace controlspace {
+
+namespace {
+
+/// A place that rounding has moved off a face of the domain is put back on it. Beside the face it
+/// would leave a tetrahedron without height there, in which the same place is missed again.
+Point on_near_faces(Point x, const Box& domain) {
+    for (Axis a = 0; a < 3; ++a) {
+        const double close = 1e-9 * (domain.high[a] - domain.low[a]);
+        if (x[a] < domain.low[a] + close) x[a] = domain.low[a];
+        if (x[a] > domain.high[a] - close) x[a] = domain.high[a];
+    }
+    return x;
+}
+
+}  // namespace
 
 /// Places where tetrahedra are compared with a goal.
 struct BackgroundTets::Comparison {
@@ -31,6 +47,10 @@ AdaptationReport BackgroundTets::adapt(const AdaptationGoal& goal) {
     Comparison named;
     for (const PointSource& source : goal.sources) named.x.push_back(source.position);
     for (const Point& place : goal.places) named.x.push_back(clamped(place));
+    // Each is searched from the one before.
+    std::vector<Point> near_the_last;
+    for (const std::uint32_t i : spatial_order(named.x)) near_the_last.push_back(named.x[i]);
+    named.x = std::move(near_the_last);
     named.ask(wanted);
     // Between the places that are compared it may miss the goal by somewhat more.
     const double allowed = 0.75 * goal.target;
@@ -76,7 +96,7 @@ bool BackgroundTets::refine(Comparison& named, const ControlSpace& goal, double 
             for (std::size_t i = 0; i < corners; ++i) {
                 x += weights[i] * position(vertices[i]);
             }
-            inside.x.push_back(clamped(x));
+            inside.x.push_back(on_near_faces(x, domain()));
             own.push_back(blended({cell, corners_of_cell(), vertices, weights}));
             cells.push_back(cell);
         };
@@ -101,18 +121,19 @@ bool BackgroundTets::refine(Comparison& named, const ControlSpace& goal, double 
 
     std::vector<double> departures(places.x.size());
     tbb::parallel_for(std::size_t{0}, departures.size(), [&](std::size_t i) {
-        departures[i] = strict_nonconformity(own[i], places.wanted[i]);
+        departures[i] = directional_nonconformity(own[i], places.wanted[i]);
     });
     for (std::uint32_t i = 0; i < departures.size(); ++i) {
         if (departures[i] <= allowed) continue;
         std::uint32_t& worst = cells[i]->info().worst;
-        if (worst == TetState::settled || departures[i] > departures[worst]) worst = i;
+        if (worst >= TetState::settled || departures[i] > departures[worst]) worst = i;
     }
     Comparison chosen;
     for (std::uint32_t i = 0; i < departures.size(); ++i) {
         if (cells[i]->info().worst != i) continue;
         chosen.x.push_back(places.x[i]);
         chosen.wanted.push_back(places.wanted[i]);
+        cells[i]->info().worst = TetState::settled;  // numbers are those of this pass
     }
     return add(chosen.x, chosen.wanted) > 0;
 }
