@@ -150,7 +150,8 @@ def tensors(folder, x, *components):
 
 def part(folder, quick):
     if not (folder.parent / f"{folder.name}.step").exists():
-        subprocess.run([sys.executable, HERE / "parts.py", folder.parent], check=True, capture_output=True)
+        subprocess.run([sys.executable, HERE / "parts.py", folder.parent], check=True,
+                       stdout=subprocess.DEVNULL)
     return {"sources": f"../{folder.name}.step", "isotropic": True,
             "surface_angle": 45 if quick else 15}
 

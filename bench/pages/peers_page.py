@@ -53,7 +53,8 @@ def structures_in(works):
 
 
 def is_foreign(structure):
-    return not structure.startswith("K_") and structure != "direct"
+    """Not of this project: neither its trees and grids nor the sources themselves."""
+    return not structure.startswith(("K_", "uniform-")) and structure != "direct"
 
 
 def largest_delta(row):
@@ -178,6 +179,8 @@ def rows_table(work):
 
     def time(row, cost, digits):
         low, high = quartiles(row, cost)
+        if cost == "creation_s" and len(row["t_creation_s_samples"]) == 1:
+            return fixed(row[cost], digits)
         return f"{fixed(row[cost], digits)} ({fixed(low, digits)}–{fixed(high, digits)})"
 
     def remark(row):
@@ -236,9 +239,10 @@ def front_figure(work, styles):
 
 def origin(works, command):
     first = works[0].results
-    sources = {w.results.rows[0].sources for w in works}
-    text = (f"{len(works)} works of {min(sources)} to {max(sources)} sources, {len(structures_in(works))} "
-            f"systems. Made by `{command}` with controlspace {first.version}, {first.head['cpu']} "
+    sources = sorted({w.results.rows[0].sources for w in works if w.results.rows})
+    number = " to ".join(str(n) for n in dict.fromkeys([*sources[:1], *sources[-1:]])) or "no"
+    text = (f"{counted(len(works), 'work')} of {number} sources, "
+            f"{counted(len(structures_in(works)), 'system')}. Made by `{command}` with controlspace {first.version}, {first.head['cpu']} "
             f"({first.head['cores']} cores), {first.head['date']}.")
     unfinished = [w.title for w in works if not w.results.complete]
     return text + (f" Not complete: {', '.join(unfinished)}." if unfinished else "")
@@ -248,8 +252,10 @@ def write_pages(works, folder, command, note):
     styles = figures.Styles([row for w in works for row in w.results.rows])
     drawn = dict(zip((w.name for w in works if w.rows),
                      figures.draw([front_figure(w, styles) for w in works if w.rows])))
+    once = all(len(row["t_creation_s_samples"]) == 1 for w in works for row in w.rows)
+    times = "Access times" if once else "Times"
     sentences, intro = choices(works), [origin(works, command), *([note] if note else []),
-                                        "Times whose quartiles overlap count as equal."]
+                                        f"{times} whose quartiles overlap count as equal."]
     tables = [choice_table(works), systems_table(works)]
     lines = ["# Foreign systems", "", *(f"{text}\n" for text in intro), "## What to choose", "",
              *(f"{i}. {text}" for i, text in enumerate(sentences, 1)), ""]

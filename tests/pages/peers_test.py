@@ -72,10 +72,34 @@ class Page(WithFolder):
         work, = self.works(sphere=[row("uniform-nearest", 0.0712, 12.345, (10.0, 20.0, 30.0), 0.25)])
         line, = peers_page.rows_table(work).rows
         self.assertEqual(line[2:5], ["0.0712", "0.0726", "12.345"])
-        self.assertEqual(line[5:7], ["0.2500 (0.2500–0.2500)", "20.0 (15.0–25.0)"])
+        self.assertEqual(line[5:7], ["0.2500", "20.0 (15.0–25.0)"])
+
+    def test_results_without_rows_are_a_page(self):
+        self.works(sphere=[], planes=[row("K_oL")])
+        self.assertEqual(run("peers_page", self.folder).returncode, 0)
+        self.assertIn("2 works of 36186 sources, 1 system.", (self.folder / "README.md").read_text())
+        self.works(sphere=[], planes=[])
+        self.assertEqual(run("peers_page", self.folder).returncode, 0)
+        self.assertIn("2 works of no sources, 0 systems.", (self.folder / "README.md").read_text())
+
+    def test_one_creation_has_no_quartiles(self):
+        def intro(*creation):
+            once, = self.works(sphere=[row("K_oL") | times("t_creation_s", *creation)])
+            self.assertEqual(run("peers_page", self.folder).returncode, 0)
+            text = (self.folder / "README.md").read_text()
+            return peers_page.rows_table(once).rows[0][5], "Access times whose quartiles" in text
+
+        self.assertEqual(intro(0.25), ("0.2500", True))
+        self.assertEqual(intro(1.0, 2.0, 3.0), ("2.0000 (1.5000–2.5000)", False))
 
 
 class Choice(WithFolder):
+    def test_grids_of_this_project_are_not_foreign(self):
+        own = ["K_oL", "uniform-nearest", "uniform-trilinear", "direct"]
+        self.assertEqual([s for s in own if peers_page.is_foreign(s)], [])
+        foreign = ["openvdb-uniform-nearest", "nanovdb-nearest", "tets-linear", "kd-nearest-all"]
+        self.assertEqual([s for s in foreign if peers_page.is_foreign(s)], foreign)
+
     def test_sentences_follow_from_the_numbers(self):
         small = [row("K_V", megabytes=1, random=(9.0,)), row("tets-linear", megabytes=3, random=(18.0,)),
                  row("uniform-nearest", megabytes=5, random=(3.0,)), row("kd-nearest", 0.5, 0.1)]
