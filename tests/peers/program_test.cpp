@@ -6,6 +6,16 @@
 
 namespace controlspace {
 
+namespace {
+
+bool has_nanoflann() {
+    if (find_entry(peer_rows(), "kd-nearest") != nullptr) return true;
+    WARN("skipped: this build has no nanoflann");
+    return false;
+}
+
+}  // namespace
+
 TEST_CASE("controlspace-peers lists and compares foreign systems") {
     const Sandbox sandbox("peers");
     const Outcome listed = sandbox.run("list");
@@ -16,6 +26,7 @@ TEST_CASE("controlspace-peers lists and compares foreign systems") {
     CHECK(unknown.status == 2);
     CHECK(unknown.err.find("a family (trees, further, anchored, baselines, peers)") !=
           std::string::npos);
+    if (!has_nanoflann()) return;
     sandbox.write("s.csv", "x,y,z,h\n0,0,0,0.1\n1,0,0,0.2\n0,1,1,0.2\n");
     const Outcome compared = sandbox.run(
         "compare s.csv --structures kd-nearest-all,direct --access-points 1000 --access-repeats 1 "
@@ -25,6 +36,7 @@ TEST_CASE("controlspace-peers lists and compares foreign systems") {
 }
 
 TEST_CASE("a tensor stops a system of lengths, and the others go on") {
+    if (!has_nanoflann()) return;
     const Sandbox sandbox("peers-tensor");
     sandbox.write(
         "s.csv",
