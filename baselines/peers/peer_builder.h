@@ -78,9 +78,10 @@ private:
     void append(const PointSource& source, std::size_t index) {
         require_valid(source, index, domain());
         if (value_ == PeerValue::length && !is_isotropic(source.metric)) {
-            throw IndexedError(index, "source " + std::to_string(index) +
-                                          ": this system stores one length at a place, no tensor: "
-                                          "give isotropic sources, or leave it out");
+            throw IndexedError(index,
+                               "source " + std::to_string(index) +
+                                   ": this system stores one length at a place, no tensor: "
+                                   "give isotropic sources, or leave it out of --structures");
         }
         input_.sources.push_back(source);
     }
@@ -95,7 +96,6 @@ template <MakePeer make, PeerValue value>
 CatalogueEntry peer_row(std::string id, std::string description, int order) {
     return {.id = std::move(id),
             .description = std::move(description),
-            .family = "peers",
             .order = order,
             .construct = [](const SpaceOptions& options) -> std::unique_ptr<ControlSpaceBuilder> {
                 return std::make_unique<PeerBuilder>(options, make, value);

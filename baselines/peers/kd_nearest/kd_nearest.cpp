@@ -135,7 +135,7 @@ CatalogueEntry row(std::string id, const std::string& which) {
 }  // namespace
 
 std::vector<CatalogueEntry> kd_nearest_rows() {
-    return {row<8>("kd-nearest", "the 8 nearest"), row<1>("kd-nearest-1", "the nearest alone"),
+    return {row<8>("kd-nearest", "the 8 nearest"), row<1>("kd-nearest-1", "only the nearest"),
             row<64>("kd-nearest-64", "the 64 nearest"), row<all>("kd-nearest-all", "all: exact")};
 }
 

@@ -131,10 +131,13 @@ CatalogueEntry row(std::string id, std::string description) {
 }  // namespace
 
 std::vector<CatalogueEntry> nanovdb_rows() {
-    return {row<Interpolation::nearest>("nanovdb-nearest",
-                                        "two of NanoVDB's Vec3f grids, dense, constant"),
-            row<Interpolation::trilinear>("nanovdb-trilinear",
-                                          "two of NanoVDB's Vec3f grids, dense, trilinear")};
+    return {
+        row<Interpolation::nearest>("nanovdb-nearest",
+                                    "two of NanoVDB's Vec3f grids, dense, six floats a voxel, "
+                                    "also of lengths; constant"),
+        row<Interpolation::trilinear>("nanovdb-trilinear",
+                                      "two of NanoVDB's Vec3f grids, dense, six floats a voxel, "
+                                      "also of lengths; trilinear")};
 }
 
 }  // namespace controlspace

@@ -34,7 +34,7 @@ BackgroundTets::BackgroundTets(const SpaceOptions& options, TetBlend blend)
     : options_(options), blend_(blend) {
     require_valid(options);
     if (options.takes_later_sources) {
-        throw InputError("a background mesh takes no later sources: give all of them at once");
+        throw InputError("a background mesh cannot be extended: give all sources at once");
     }
     clear(largest_metric(options));
 }

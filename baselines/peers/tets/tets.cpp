@@ -13,7 +13,6 @@ CatalogueEntry row(std::string id, std::string what) {
                 "background mesh: Delaunay tetrahedra of the sources and the box's "
                 "corners (CGAL), " +
                 what + " linear in each; with schedule queue graded along its edges",
-            .family = "peers",
             .order = 1,
             .construct = [](const SpaceOptions& options) -> std::unique_ptr<ControlSpaceBuilder> {
                 return std::make_unique<SharedBuilder<BackgroundTets>>(options, blend);
