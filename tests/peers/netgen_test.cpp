@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 
 #include "controlspace/input_errors.h"
 #include "peers/peers.h"
@@ -62,6 +63,19 @@ TEST_CASE("Netgen's own law departs from the exact field more than its octree do
     CAPTURE(own, stored);
     CHECK(stored < 0.15);
     CHECK(own > 1.5 * stored);
+}
+
+TEST_CASE("Netgen's boxes of a plane across z are those of a quadtree") {
+    const Work across_y = flat_box();
+    Work across_z = across_y;
+    const auto turn = [](Point& p) { std::swap(p.y(), p.z()); };
+    turn(across_z.domain.low);
+    turn(across_z.domain.high);
+    for (PointSource& source : across_z.sources) turn(source.position);
+    const auto cells = [](const Work& work) {
+        return finished("netgen-localh", work)->footprint().cells;
+    };
+    CHECK(2 * cells(across_z) < cells(across_y));
 }
 
 TEST_CASE("Netgen's sizes refuse tensors") {

@@ -39,15 +39,29 @@ struct ShowLength {
 template struct ShowBoxes<&netgen::LocalH::boxes>;
 template struct ShowLength<&netgen::GradingBox::hopt>;
 
+// A corner of LocalH's box. It ignores places outside, and those of a plane across x or y would be
+// so by rounding: such a box is as thick as long.
+netgen::Point<3> corner(const Box& domain, double side) {
+    const Vector edges = domain.edges();
+    Point p = side < 0 ? domain.low : domain.high;
+    for (Axis a = 0; a < 2; ++a) {
+        if (edges[a] == 0) p[a] += side * edges.maxCoeff();
+    }
+    return netgen_point(p);
+}
+
 enum class Law { own, exact };
 
+/// The box of LocalH is a little larger than the domain, in some versions by a random amount: with
+/// std::srand the structure is the same each time. Of a plane across z it is a quadtree.
 template <Law law>
 class NetgenSizes final : public LengthSpace {
 public:
     explicit NetgenSizes(const PeerInput& input)
         : LengthSpace(input.options.domain),
           longest_(input.longest()),
-          sizes_((std::srand(1), netgen_point(domain().low)), netgen_point(domain().high), 0) {
+          sizes_((std::srand(1), corner(domain(), -0.5)), corner(domain(), 0.5), 0,
+                 domain().edges().z() == 0 ? 2 : 3) {
         for (const PointSource& source : input.sources) {
             sizes_.SetGrading(cone_growth(source, input.options.ratio) - 1);
             sizes_.SetH(netgen_point(source.position), source.metric.xx);
