@@ -72,7 +72,8 @@ void run_into(ResultsFolder& folder, PreparedStudy prepared, Progress& progress,
         // Libraries are loaded and started before creation is timed.
         load_module_of(c.structure);
         const CatalogueEntry& entry = *find_entry(structures(), c.structure);
-        if (entry.family == "peers") entry.make({.domain = {Point::Zero(), Point::Ones()}});
+        if (entry.family == "peers")
+            entry.make({.domain = {Point::Zero(), Point::Ones()}, .finest_length = 1});
     };
     observer.phase_started = [&](std::string_view phase) { progress.phase_started(phase); };
     observer.case_checked = [&](const Finished& finished, Row& row) {
