@@ -80,8 +80,8 @@ typedef struct cspace_options {
     size_t struct_size; /**< sizeof(cspace_options), as the caller knows it */
     double growth;      /**< gradation ratio g_r of the sources, >= 1 (default: 1.25) */
     double delta;       /**< largest non-conformity to the exact field that the structure is adapted
-                             to, above 0, of tensors also of each direction alone; 0: sources are inserted
-                           and graded, which is faster and       less accurate */
+                             to, above 0, of tensors also of each direction alone; 0: sources are
+                             inserted and graded, which is faster and less accurate */
     double max_memory;  /**< [GiB] (default: 4) */
     const char* further; /**< others, as of cspace_create(); may be NULL. Growth is g_r there, and
                             is given once */

@@ -47,7 +47,7 @@ struct Case {
     std::optional<int> max_depth = {};       ///< trees only
     std::optional<double> voxel = {};        ///< grids only; none: by tau and the sources
     std::optional<double> prune_delta = {};  ///< OpenVDB only; none: nothing is pruned
-    /// Trees only: adapted to this δ in place of insertion and gradation; none: they are not.
+    /// Trees and meshes: adapted to this δ in place of insertion and gradation; none: they are not.
     std::optional<double> target_delta = {};
     /// Where the target was given as the largest factor between lengths in any direction.
     std::optional<double> within = {};
