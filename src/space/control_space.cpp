@@ -7,15 +7,24 @@
 
 namespace controlspace {
 
+namespace {
+
+double smallest_length(const Metric& m) {
+    return is_isotropic(m) ? m.xx : eigen_frame(m).lengths[0];
+}
+
+}  // namespace
+
 void ControlSpace::sample_lengths(std::span<const Point> x, std::span<double> out) const {
+    if (x.size() == 1) {  // as meshers ask: no array to clear
+        out[0] = smallest_length(sample_at(*this, x[0]));
+        return;
+    }
     std::array<Metric, 128> metrics;
     for (std::size_t first = 0; first < x.size(); first += metrics.size()) {
         const std::size_t n = std::min(metrics.size(), x.size() - first);
         sample(x.subspan(first, n), std::span(metrics).first(n));
-        for (std::size_t i = 0; i < n; ++i) {
-            const Metric& m = metrics[i];
-            out[first + i] = is_isotropic(m) ? m.xx : eigen_frame(m).lengths[0];
-        }
+        for (std::size_t i = 0; i < n; ++i) out[first + i] = smallest_length(metrics[i]);
     }
 }
 

@@ -62,6 +62,12 @@ private:
     mutable std::atomic<Known> known_ = Known::no;
 };
 
+/// Data whose control nodes carry metrics: their builder is a NodeBuilder.
+template <class Data>
+concept HoldsMetrics = requires(Data& data, std::span<const Metric> metrics) {
+    data.assign(metrics);
+};
+
 /// A builder around `Data`, which can be copied, read and changed: sample, domain, footprint,
 /// cell_at, control_nodes, save, and, with has_lengths(), sample_lengths; insert(sources),
 /// grade(options), adapt, load; for a NodeBuilder assign, options and grade(NodeGradation), and it
@@ -71,13 +77,10 @@ private:
 /// What it builds shares the data, which are copied before the next change as long as they are
 /// shared.
 template <class Data>
-    class SharedBuilder final
-    : public std::conditional_t < requires(Data& data, std::span<const Metric> metrics) {
-    data.assign(metrics);
-}, NodeBuilder, ControlSpaceBuilder >, public SavedBuilder {
-    static constexpr bool has_nodes = requires(Data & data, std::span<const Metric> metrics) {
-        data.assign(metrics);
-    };
+class SharedBuilder final
+    : public std::conditional_t<HoldsMetrics<Data>, NodeBuilder, ControlSpaceBuilder>,
+      public SavedBuilder {
+    static constexpr bool has_nodes = HoldsMetrics<Data>;
     using Base = std::conditional_t<has_nodes, NodeBuilder, ControlSpaceBuilder>;
 
 public:
@@ -153,7 +156,7 @@ public:
         }
     }
 
-    void save(StateWriter & state) const override { data_->save(state); }
+    void save(StateWriter& state) const override { data_->save(state); }
     void load(const StateReader& state) override { edit().load(state); }
 
 private:
