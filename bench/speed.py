@@ -13,10 +13,6 @@ import matplotlib.pyplot as plt
 
 ORDERS = ["random", "grid", "elements", "morton", "walk"]
 WORKS = ["rho:1/tau:1", "rho:1/tau:0.2", "rho:0.2/tau:1", "rho:0.2/tau:0.2", "layered/tau:1"]
-# Of the paper's own implementation at random places, on an idle core where uniform-nearest-fine
-# took 33 ns, and what is aimed at.
-PAPER_NS = {"K_L": (747, 25), "K_L-s_G": (662, 25), "K_V": (941, 8), "K_Li": (3311, 25),
-            "K_oL": (315, 15), "K_oV": (446, 8)}
 LIMITS = {"K_oL": 3, "K_oLB": 3, "K_L": 4, "K_L-s_G": 4, "K_V": 2.5, "K_oV": 2.5}
 BYTES = {"K_L": (64, 40), "K_oL": (64, 40), "K_V": (160, 105), "K_oV": (160, 105)}
 CREATION_S = {"K_L": 0.09, "K_oL": 0.09, "K_V": 0.2, "K_oV": 0.2}
@@ -135,14 +131,7 @@ def access_targets(report):
             for peer, peer_ns in fine.items():
                 ratio = over(ns, peer_ns)
                 rows.append([name, peer + "-fine", number(ratio), "<= 1", verdict(ratio, 1)])
-        if base in PAPER_NS:
-            paper_ns, times = PAPER_NS[base]
-            ratio = over(ns, paper_ns)
-            rows.append([name, f"the paper's own ({paper_ns} ns)", number(ratio), f"<= 1/{times}",
-                         verdict(ratio, 1 / times)])
     report.table(["structure", "against", "ratio", "target", ""], rows)
-    report.lines += ["", f"uniform-nearest-fine took {number(fine['uniform-nearest'])} ns here, and "
-                     "33 ns where the paper's own implementation took what is given."]
 
 
 def memory(report):

@@ -257,15 +257,17 @@ def paper_figures(evidence, styles):
 # ---- Times
 
 ACCESS = [("at random places", "t_access_ns_random_samples", "#0072B2"),
-          ("in the order of a grid", "t_access_ns_grid_samples", "#E69F00")]
+          ("in the order of a grid", "t_access_ns_grid_samples", "#E69F00"),
+          ("at random places, one a call", "t_access_ns_single_samples", "#009E73")]
 
 
 def access_figures(rows):
-    """For each group one at random places and one in the order of a grid, on the same axis."""
+    """For each group and each order of places one, on the same axis; older results lack the last."""
     for group, members in grouped(rows, group_of).items():
-        all_samples = [x for row in members for _, key, _ in ACCESS for x in row[key]]
+        orders = [order for order in ACCESS if all(order[1] in row.measures for row in members)]
+        all_samples = [x for row in members for _, key, _ in orders for x in row[key]]
         limits = 0.8 * min(all_samples), 1.25 * max(all_samples)
-        for title, key, colour in ACCESS:
+        for title, key, colour in orders:
             def plot(figure, key=key, colour=colour, members=members, limits=limits):
                 ax = figure.subplots()
                 places = range(len(members), 0, -1)

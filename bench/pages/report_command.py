@@ -105,14 +105,16 @@ def front_tables(rows):
 
 def measure_cells(row):
     if row.measures is None:
-        return ["–"] * 12  # as many as below
+        return ["–"] * 13  # as many as below
     # Older results do not have these.
     share = row.measures.get("coarser_fine_share")
     within = row.measures.get("within_fine_max")
-    numbers = [("memory_MB", 2), ("creation_s", 3), ("t_access_ns_random", 1),
-               ("t_access_ns_grid", 1), ("delta_R_max", 4), ("delta_R_mean", 4), ("delta_R_p99", 4),
-               ("delta_R_fine_max", 4)]
-    return [str(row["cells"] or "–"), *(fixed(row[key], digits) for key, digits in numbers),
+    single = row.measures.get("t_access_ns_single")
+    costs = [("memory_MB", 2), ("creation_s", 3), ("t_access_ns_random", 1), ("t_access_ns_grid", 1)]
+    errors = [(key, 4) for key in ("delta_R_max", "delta_R_mean", "delta_R_p99", "delta_R_fine_max")]
+    return [str(row["cells"] or "–"), *(fixed(row[key], digits) for key, digits in costs),
+            "–" if single is None else fixed(single, 1),
+            *(fixed(row[key], digits) for key, digits in errors),
             "–" if share is None else f"{100 * share:.2f} %",
             "–" if within is None else f"{fixed(within, 3)}x", fixed(row["gradation_max_left"], 4)]
 

@@ -20,7 +20,7 @@ ERRORS = """delta_S_max delta_R_max delta_R_mean delta_R_p95 delta_R_p99 delta_R
 KNOWN = {*NUMBERS, *ERRORS, "access_batch", "bytes_published_accounting", *(
     f"coarser_{key}" for key in ("max", "share", "fine_max", "fine_share")), "finer_max",
     "finer_share", "finer_fine_max", "finer_fine_share", "within_max", "within_fine_max", *(
-    f"{time}{quartile}" for time in ("t_insert_s", "t_gradation_s") for quartile in (
+    f"{time}{quartile}" for time in ("t_insert_s", "t_gradation_s", "t_access_ns_single") for quartile in (
         "", "_q1", "_q3")), "size_MB", "memory_MB", "metrics_MB", "creation_s", "access_us"}
 # Times under the names of the paper's: the median, and its unit in that of the paper.
 PAPER_TIMES = {"access_us": ("t_access_ns_random", 1e-3), "creation_s": ("t_creation_s", 1)}

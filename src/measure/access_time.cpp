@@ -16,10 +16,13 @@ namespace controlspace {
 namespace {
 
 double duration_s(const ControlSpace& space, std::span<const Point> points,
-                  std::span<Metric> answers) {
+                  std::span<Metric> answers, Calls calls) {
     using Clock = std::chrono::steady_clock;
+    const std::size_t at_once = calls == Calls::one ? points.size() : 1;
     const Clock::time_point start = Clock::now();
-    space.sample(points, answers);
+    for (std::size_t i = 0; i < points.size(); i += at_once) {
+        space.sample(points.subspan(i, at_once), answers.subspan(i, at_once));
+    }
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
@@ -63,7 +66,7 @@ double quartile(std::vector<double> samples, int number) {
 
 std::vector<AccessTime> access_times(std::span<const ControlSpace* const> spaces,
                                      std::span<const Point> points, int repeats,
-                                     double shortest_s) {
+                                     Calls calls, double shortest_s) {
     if (points.empty()) throw InputError("access time at no places: give at least one point");
     if (repeats < 1) throw InputError(fmt::format("{} timed repeats: give at least one", repeats));
 
@@ -82,7 +85,7 @@ std::vector<AccessTime> access_times(std::span<const ControlSpace* const> spaces
             double seconds = 0;
             std::uint64_t runs = 0;
             do {
-                seconds += duration_s(*spaces[i], points, answers);
+                seconds += duration_s(*spaces[i], points, answers, calls);
                 ++runs;
                 require_same();
             } while (seconds < shortest_s);
@@ -96,7 +99,7 @@ std::vector<AccessTime> access_times(std::span<const ControlSpace* const> spaces
 AccessTime access_time(const ControlSpace& space, std::span<const Point> points, int repeats,
                        double shortest_s) {
     const ControlSpace* const one[] = {&space};
-    return std::move(access_times(one, points, repeats, shortest_s).front());
+    return std::move(access_times(one, points, repeats, Calls::one, shortest_s).front());
 }
 
 }  // namespace controlspace

@@ -68,6 +68,8 @@ std::vector<Measure> time_rows() {
         {"random ns", "{:.1f}", 1, "fastest access at random places"});
     add("t_access_ns_grid", "ns", [](const Finished& f) { return f.access_grid.samples_ns; },
         {"grid ns", "{:.1f}", 1, "fastest access in grid order"});
+    add("t_access_ns_single", "ns", [](const Finished& f) { return f.access_single.samples_ns; },
+        {"single ns", "{:.1f}"});
     rows.push_back(counted("access_batch", "", [](const Finished& f) { return f.access_batch; }));
     return rows;
 }

@@ -206,10 +206,12 @@ private:
         const auto places = random_points(any.workload.domain, study_.access_points, study_.seed);
         const auto random = access_times(spaces, places, study_.access_repeats);
         const auto grid = access_times(spaces, any.probes.coarse.points, study_.access_repeats);
+        const auto single = access_times(spaces, places, study_.access_repeats, Calls::each);
         const double each = time.seconds() / static_cast<double>(timed.size());
         for (std::size_t i = 0; i < timed.size(); ++i) {
             timed[i]->finished->access_random = random[i];
             timed[i]->finished->access_grid = grid[i];
+            timed[i]->finished->access_single = single[i];
             timed[i]->row.seconds += each;
         }
     }

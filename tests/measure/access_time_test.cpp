@@ -81,6 +81,28 @@ TEST_CASE("Access time gives one sample a repeat, and the answers' checksum") {
     CHECK(time.checksum == checksum(answers));
 }
 
+TEST_CASE("Places are passed to a structure all at once, or one in each call") {
+    /// Keeps the largest number of places in a call.
+    class Counting final : public ControlSpace {
+    public:
+        void sample(std::span<const Point> x, std::span<Metric> out) const override {
+            most = std::max(most, x.size());
+            calls += x.size() == 1 ? 1 : 0;
+            std::ranges::fill(out, Metric::isotropic(1));
+        }
+        mutable std::size_t most = 0, calls = 0;
+    };
+    const Counting space;
+    const ControlSpace* const spaces[] = {&space};
+    const auto points = random_points(box, 100, 3);
+    const auto times = access_times(spaces, points, 2, Calls::each, 0);
+    CHECK(times[0].samples_ns.size() == 2);
+    CHECK(space.calls == 2 * points.size());
+    CHECK(space.most == points.size());  // the untimed run
+    access_times(spaces, points, 2, Calls::one, 0);
+    CHECK(space.calls == 2 * points.size());
+}
+
 TEST_CASE("A repeat goes on until it has lasted long enough") {
     int calls = 0;
     const FunctionSpace space([&](const Point&) {

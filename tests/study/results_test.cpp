@@ -69,6 +69,10 @@ const std::vector<std::string> row_fields{"structure",
                                           "t_access_ns_grid_q1",
                                           "t_access_ns_grid_q3",
                                           "t_access_ns_grid_samples",
+                                          "t_access_ns_single",
+                                          "t_access_ns_single_q1",
+                                          "t_access_ns_single_q3",
+                                          "t_access_ns_single_samples",
                                           "access_batch",
                                           "delta_S_max",
                                           "delta_R_max",
@@ -165,6 +169,7 @@ TEST_CASE("each field of a row has its own measure") {
     CHECK(json["t_access_ns_random"] == 51);
     CHECK(json["t_access_ns_random_samples"] == std::vector<double>{52, 50, 51});
     CHECK(json["t_access_ns_grid"] == 11);
+    CHECK(json["t_access_ns_single"] == 71);
     CHECK(json["delta_S_max"] == 0.19);
     CHECK(json["delta_R_max"] == 1.78);
     CHECK(json["delta_R_p95"] == 0.3);

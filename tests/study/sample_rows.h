@@ -36,6 +36,7 @@ inline Finished sample_finished(const Case& setting) {
                    .remark = ""};
     f.access_random = {.samples_ns = {52, 50, 51}, .checksum = 0xff00000000000001};
     f.access_grid = {.samples_ns = {12, 10, 11}, .checksum = 2};
+    f.access_single = {.samples_ns = {72, 70, 71}, .checksum = 0xff00000000000001};
     f.access_batch = 3;
     f.accuracy = {.max = 1.78,
                   .mean = 0.08,

@@ -50,6 +50,7 @@ struct Finished {
     Steepness steepness = {};       ///< G_det and G_dir
     AccessTime access_random = {};  ///< at random places
     AccessTime access_grid = {};    ///< at the coarse probes, x fastest
+    AccessTime access_single = {};  ///< at random places, one a call
     /// First case of its batch, whose structures were timed in turns.
     std::size_t access_batch = 0;
 };
