@@ -315,7 +315,7 @@ class Page(unittest.TestCase):
              failed_row("no memory", structure="direct")]).rows).values())
         self.assertEqual(len(tables), 2)
         self.assertEqual(tables[0].rows[0], [
-            "K_oL", "103", "1.23", "1.750", "51.0", "11.0", "1.7800", "0.1000", "0.4000",
+            "K_oL", "103", "1.23", "1.750", "51.0", "11.0", "71.0", "1.7800", "0.1000", "0.4000",
             "2.7800", "7.00 %", "1.400x", "1.2499", ""])
         self.assertEqual(tables[0].rows[1][-1], "failed: no memory")
         # A measure of somebody's own.
