@@ -1,0 +1,200 @@
+// Small random scenes over the whole catalogue, judged by sums in long double. CONTROLSPACE_SCENES
+// is the number of scenes for each structure (20 unless it is set), CONTROLSPACE_FIRST_SCENE the
+// seed of the first.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+
+#include "contract/structure_case.h"
+#include "controlspace/error.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/space/control_space_file.h"
+#include "scenes/oracle.h"
+#include "scenes/scene.h"
+#include "scratch_directory.h"
+
+using namespace controlspace;
+
+namespace {
+
+std::uint64_t number_from(const char* variable, std::uint64_t otherwise) {
+    const char* text = std::getenv(variable);
+    return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
+}
+
+/// Calls check(scene, places, seed) for each seed.
+template <class Check>
+void for_each_scene(const Structure& structure, Check&& check) {
+    const std::uint64_t first = number_from("CONTROLSPACE_FIRST_SCENE", 1);
+    const std::uint64_t count = number_from("CONTROLSPACE_SCENES", 20);
+    for (std::uint64_t seed = first; seed < first + count; ++seed) {
+        Scene scene = random_scene(seed);
+        scene.options.split = structure.split;
+        CAPTURE(seed, scene.name);
+        check(scene, places_in(scene, seed), seed);
+    }
+}
+
+std::unique_ptr<EditableSpace> inserted(const Structure& structure, const Scene& scene) {
+    auto space = editable(structure.entry->make(scene.options));
+    space->insert(std::span(scene.sources));
+    return space;
+}
+
+// Floats, and rounding of metrics of 1e4.
+double rounding(const Structure& structure) { return does_not_round(structure) ? 1e-7 : 1e-4; }
+
+// The greatest excess of an answer over M_max.
+Real excess_over_largest(const std::vector<Metric>& m, const Scene& scene) {
+    const Metric largest = largest_metric(scene.options);
+    Real most = 0;
+    for (const Metric& metric : m) most = std::max(most, oracle_excess(metric, largest));
+    return most;
+}
+
+// How much a source's cone at `x` may be exceeded by what is linear between places of the cell of
+// `x`, each of them within the cone: its factor is convex, so that it is largest at corners.
+Real allowed_excess(const ControlSpace& space, const PointSource& source, double g, const Point& x,
+                    Real at_x) {
+    const std::optional<Box> cell = space.cell_at(x);
+    if (!cell) return 1;
+    Real most = at_x;
+    for (int c = 0; c < 8; ++c) {
+        const Point corner((c & 1 ? cell->high : cell->low).x(),
+                           (c & 2 ? cell->high : cell->low).y(),
+                           (c & 4 ? cell->high : cell->low).z());
+        most = std::max(most, oracle_factor(source, g, corner));
+    }
+    return most / at_x;
+}
+
+// Answers of leaves with one metric, or linear between several.
+bool has_bounds(const Structure& structure) {
+    return keeps_values(*structure.entry) && structure.entry->order < 2;
+}
+
+void check_bounds(const Structure& structure, const ControlSpace& space, const Scene& scene,
+                  const std::vector<Point>& x) {
+    const std::vector<Metric> m = answers(space, x);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        CAPTURE(i, x[i].transpose(), to_string(m[i]));
+        REQUIRE(oracle_is_positive_definite(m[i]));
+        if (!has_bounds(structure)) continue;
+        for (const PointSource& source : scene.sources) {
+            const Real factor = oracle_factor(source, scene.options.ratio, x[i]);
+            const Metric cone = static_cast<double>(factor) * source.metric;
+            const Real allowed = allowed_excess(space, source, scene.options.ratio, x[i], factor);
+            const Real excess = oracle_excess(m[i], cone);
+            if (excess > allowed * (1 + rounding(structure))) {
+                CAPTURE(source.position.transpose(), to_string(source.metric));
+                CHECK(static_cast<double>(excess) <= static_cast<double>(allowed));
+            }
+        }
+    }
+}
+
+double isotropic_delta(Real a, Real b) {
+    const Real k = a / b;
+    return static_cast<double>(std::sqrt(Real{3}) * (k + 1 / k - 2));
+}
+
+// Adapted trees of isotropic sources that promise a bound.
+bool is_proved(const Structure& structure) {
+    return does_not_round(structure) && structure.entry->has<SourceLeaves>() &&
+           structure.entry->order < 2;
+}
+
+}  // namespace
+
+STRUCTURE_CASE(every_structure, "inserted scenes: positive definite, within M_max, sources met") {
+    for_each_scene(structure, [&](const Scene& scene, const auto& x, std::uint64_t) {
+        const auto space = inserted(structure, scene);
+        const std::vector<Metric> m = answers(*space, x);
+        REQUIRE(std::ranges::all_of(m, oracle_is_positive_definite));
+        if (!has_bounds(structure)) return;
+        CHECK(static_cast<double>(excess_over_largest(m, scene)) <= 1 + rounding(structure));
+        if (!scene.is_isotropic()) return;
+        for (const PointSource& source : scene.sources) {
+            const double held = sample_at(*space, source.position).xx;
+            if (held <= source.metric.xx) continue;
+            CAPTURE(source.position.transpose(), held, source.metric.xx);
+            CHECK(isotropic_delta(held, source.metric.xx) <=
+                  scene.options.tolerance * (1 + rounding(structure)));
+        }
+    });
+}
+
+STRUCTURE_CASE(every_structure,
+               "graded scenes are within the cones, and no control node is longer") {
+    for_each_scene(structure, [&](const Scene& scene, const auto& x, std::uint64_t) {
+        const auto space = inserted(structure, scene);
+        const auto before = space->control_nodes(Neighbourhood::faces).metrics;
+        space->grade(scene.gradation());
+        check_bounds(structure, *space, scene, x);
+        if (!keeps_values(*structure.entry) || is_direct(*structure.entry)) return;
+        const auto after = space->control_nodes(Neighbourhood::faces).metrics;
+        REQUIRE(after.size() == before.size());
+        for (std::size_t i = 0; i < after.size(); ++i) {
+            CAPTURE(i, to_string(before[i]), to_string(after[i]));
+            CHECK(static_cast<double>(oracle_excess(after[i], before[i])) <=
+                  1 + rounding(structure));
+        }
+    });
+}
+
+STRUCTURE_CASE(is_proved, "adapted scenes of isotropic sources keep the δ that they report") {
+    for_each_scene(structure, [&](Scene scene, const auto& x, std::uint64_t) {
+        if (!scene.is_isotropic()) return;
+        scene.options.octree_depth = 6;
+        scene.options.kd_depth = 18;
+        const auto space = editable(structure.entry->make(scene.options));
+        const AdaptationReport report = space->adapt({.sources = scene.sources,
+                                                      .continuous = nullptr,
+                                                      .ratio = scene.options.ratio,
+                                                      .target = 0.1});
+        CAPTURE(report.reached, report.met, report.is_bound);
+        CHECK(report.met == (report.reached <= 0.1));
+        if (!report.is_bound) return;
+        const double largest = largest_metric(scene.options).xx;
+        for (const Point& p : x) {
+            const double held = sample_at(*space, p).xx;
+            const Real exact = oracle_length(scene.sources, scene.options.ratio, largest, p);
+            CAPTURE(p.transpose(), held, static_cast<double>(exact));
+            REQUIRE(isotropic_delta(held, exact) <= report.reached * (1 + 1e-9) + 1e-12);
+        }
+    });
+}
+
+STRUCTURE_CASE(every_structure, "scenes saved, loaded and compact answer the same bits") {
+    const ScratchDirectory scratch("scenes");
+    for_each_scene(structure, [&](const Scene& scene, const auto& x, std::uint64_t seed) {
+        const auto space = inserted(structure, scene);
+        if (seed % 2 == 0) space->grade(scene.gradation());
+        save_control_space(scratch / "field.ctrl", *space);
+        const auto loaded = load_editable(scratch / "field.ctrl", structures());
+        const std::vector<Metric> m = answers(*space, x);
+        CHECK(answers(*loaded, x) == m);
+        if (has_compact_form(structure))
+            CHECK(answers(*space->compact(Precision::doubles), x) == m);
+        std::vector<double> lengths(x.size());
+        space->built().sample_lengths(x, lengths);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            if (is_isotropic(m[i])) CHECK(lengths[i] == m[i].xx);
+        }
+    });
+}
+
+STRUCTURE_CASE(keeps_node_values, "scenes whose sources come in two parts end as those at once") {
+    for_each_scene(structure, [&](Scene scene, const auto& x, std::uint64_t) {
+        scene.options.takes_later_sources = true;
+        const auto at_once = inserted(structure, scene);
+        at_once->grade(scene.gradation());
+        const auto in_parts = editable(structure.entry->make(scene.options));
+        const std::span<const PointSource> all(scene.sources);
+        in_parts->insert(all.first(all.size() / 2));
+        in_parts->grade(scene.gradation());
+        in_parts->insert(all.subspan(all.size() / 2));
+        in_parts->grade(scene.gradation());
+        CHECK(answers(*in_parts, x) == answers(*at_once, x));
+    });
+}
