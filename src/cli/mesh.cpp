@@ -89,12 +89,12 @@ private:
     void require_runnable() {
         for (const Case& c : cases_) require_set_voxels(c);
         const Reference& reference = reference_of(cases_.front());
-        if (!folder_.settings().body) require_volume(reference.workload.domain);
+        if (!folder_.settings().gmsh.part) require_volume(reference.workload.domain);
         for (const Case& c : cases_) {
             if (c.sources == reference.first.sources) space_options(study_, c, reference.workload);
         }
         if (reference.mesher == Mesher::mmg) {
-            require_mmg(mmg_options(folder_.settings(), folder_.path()));
+            require_mmg(folder_.settings().mmg);
         }
     }
 
@@ -140,13 +140,13 @@ private:
 /// Meshes a control space that was saved; it is the reference too.
 void mesh_saved(const std::filesystem::path& file, const ControlSpace& space, int probe_grid,
                 MeshFolder& folder, Interruption& interruption) {
-    if (!folder.settings().body) require_volume(space.domain());
+    if (!folder.settings().gmsh.part) require_volume(space.domain());
     MeshRow row;
     row.saved = file;
     row.setting.structure = recipe_of(space)->structure;
     const auto probes = make_probes(space, cell_centres(space.domain(), probe_grid));
     row.mesher = chosen_mesher(folder.settings().mesher, probes.reference);
-    if (row.mesher == Mesher::mmg) require_mmg(mmg_options(folder.settings(), folder.path()));
+    if (row.mesher == Mesher::mmg) require_mmg(folder.settings().mmg);
     folder.begin();
     folder.add(
         std::move(row), space.domain(), space,
@@ -196,7 +196,7 @@ int mesh(const MeshJob& job, const std::string& command_line) {
     if (study.name == Study{}.name) study.name = "mesh";
     MeshSettings settings;
     apply(given, mesh_parameters(), settings);
-    settings.body = part_of(settings, job.input, study);
+    settings.gmsh.part = part_of(settings, job.input, study);
     const auto threads = limit_threads(study.threads);
     Interruption interruption;
     const auto saved = is_saved ? load_control_space(job.input, structures()) : nullptr;

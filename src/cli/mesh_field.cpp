@@ -27,24 +27,33 @@ auto coarse_field(const Box& domain) {
     return FormulaField([edge](const Point&) { return Metric::isotropic(edge); });
 }
 
-GmshOptions gmsh_options(const MeshSettings& settings, GmshAlgorithm algorithm) {
-    return {.algorithm = algorithm,
-            .factor = settings.factor,
-            .optimize = settings.optimize,
-            .threads = settings.threads,
-            .max_tets = settings.max_tets,
-            .part = settings.body};
+GmshOptions gmsh_options(const MeshSettings& settings, bool hxt) {
+    GmshOptions options = settings.gmsh;
+    options.algorithm = hxt ? GmshAlgorithm::hxt : GmshAlgorithm::delaunay;
+    return options;
 }
 
-GmshRun start_mesh(const Box& domain, const ControlSpace& field, const MeshSettings& settings) {
+/// The mesh that MMG starts from.
+MeshRun start_mesh(const Box& domain, const ControlSpace& field, const MeshSettings& settings) {
     if (settings.start == MeshStart::coarse) {
-        return mesh_with_gmsh(domain, coarse_field(domain), {.part = settings.body});
+        return mesh_with_gmsh(domain, coarse_field(domain), {.part = settings.gmsh.part});
     }
-    const bool hxt = settings.start == MeshStart::hxt;
-    GmshOptions options =
-        gmsh_options(settings, hxt ? GmshAlgorithm::hxt : GmshAlgorithm::delaunay);
+    GmshOptions options = gmsh_options(settings, settings.start == MeshStart::hxt);
     options.factor.reset();
     return mesh_with_gmsh(domain, field, options);
+}
+
+MeshRun mesh_by_mmg(const Box& domain, const ControlSpace& field, const MeshSettings& settings,
+                    const std::filesystem::path& folder) {
+    if (!settings.gmsh.part) require_few_tets(domain, field, settings.gmsh.max_tets);
+    const MeshRun start = start_mesh(domain, field, settings);
+    MmgOptions options = settings.mmg;
+    options.factor = settings.gmsh.factor.value_or(mmg_factor);
+    options.folder = folder;
+    if (settings.gmsh.part) options.hausdorff = 1e-3 * domain.edges().norm();
+    MeshRun run = mesh_with_mmg(start.mesh, field, options);
+    run.cost += start.cost;
+    return run;
 }
 
 }  // namespace
@@ -55,36 +64,13 @@ Mesher chosen_mesher(Mesher requested, std::span<const Metric> metrics) {
     return anisotropic ? Mesher::mmg : Mesher::delaunay;
 }
 
-MmgOptions mmg_options(const MeshSettings& settings, const std::filesystem::path& folder) {
-    return {.program = settings.mmg,
-            .factor = settings.factor.value_or(mmg_factor),
-            .rounds = settings.rounds,
-            .time_limit_s = settings.time_limit_s,
-            .folder = folder};
-}
-
 TetMesh make_mesh(const Box& domain, const ControlSpace& field, const MeshSettings& settings,
                   const std::filesystem::path& folder, MeshRow& row) {
-    if (row.mesher == Mesher::mmg) {
-        if (!settings.body) require_few_tets(domain, field, settings.max_tets);
-        const GmshRun start = start_mesh(domain, field, settings);
-        MmgOptions options = mmg_options(settings, folder);
-        if (settings.body) options.hausdorff = 1e-3 * domain.edges().norm();
-        MmgRun run = mesh_with_mmg(start.mesh, field, options);
-        row.seconds = start.seconds + run.seconds + run.query_seconds;
-        row.processor_seconds = start.processor_seconds + run.processor_seconds + run.query_seconds;
-        row.queries = start.queries + run.queries;
-        row.query_seconds = start.query_seconds + run.query_seconds;
-        row.peak_bytes = run.peak_bytes;
-        return std::move(run.mesh);
-    }
-    const bool hxt = row.mesher == Mesher::hxt;
-    GmshRun run = mesh_with_gmsh(
-        domain, field, gmsh_options(settings, hxt ? GmshAlgorithm::hxt : GmshAlgorithm::delaunay));
-    row.seconds = run.seconds;
-    row.processor_seconds = run.processor_seconds;
-    row.queries = run.queries;
-    row.query_seconds = run.query_seconds;
+    MeshRun run =
+        row.mesher == Mesher::mmg
+            ? mesh_by_mmg(domain, field, settings, folder)
+            : mesh_with_gmsh(domain, field, gmsh_options(settings, row.mesher == Mesher::hxt));
+    row.cost = run.cost;
     if (run.anisotropic) {
         spdlog::warn(
             "{}: the field is anisotropic, and Gmsh uses only its smallest lengths: use --mesher "

@@ -15,9 +15,6 @@ namespace controlspace {
 /// The requested mesher; for `auto`, the one that suits a field of `metrics`.
 Mesher chosen_mesher(Mesher requested, std::span<const Metric> metrics);
 
-/// Options of MMG; its own files are written to `folder`.
-MmgOptions mmg_options(const MeshSettings& settings, const std::filesystem::path& folder);
-
 /// Meshes the box by the row's mesher, and enters times and memory into the row. Exceptions of the
 /// mesher pass through.
 TetMesh make_mesh(const Box& domain, const ControlSpace& field, const MeshSettings& settings,

@@ -41,7 +41,7 @@ void MeshFolder::add(MeshRow row, const Box& domain, const ControlSpace& referen
     try {
         const ControlSpace& meshed = field(row);
         const TetMesh mesh = make_mesh(domain, meshed, settings_, path_, row);
-        row.peak_bytes = std::max(row.peak_bytes, peak_memory());
+        row.cost.peak_bytes = std::max(row.cost.peak_bytes, peak_memory());
         row.conformity = conformity(mesh, reference);
         // The structure's name; what follows, "δ <= 0.1", is in the table.
         const std::string label = mesh_label(row);
@@ -64,7 +64,7 @@ void MeshFolder::add(MeshRow row, const Box& domain, const ControlSpace& referen
     if (row.error.empty() && !quiet_) {
         print_error(fmt::format("mesh {}: {}, {}: {} tets, L_R {:.4f}, {:.1f} s\n", rows_.size(),
                                 mesh_label(row), mesh_setting(row), row.conformity.tets,
-                                row.conformity.l_r, row.seconds));
+                                row.conformity.l_r, row.cost.seconds));
     }
 }
 

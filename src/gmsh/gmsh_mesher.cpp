@@ -175,11 +175,11 @@ double standard_optimize(GmshAlgorithm algorithm) {
     return algorithm == GmshAlgorithm::hxt ? 0.6 : 0.75;
 }
 
-GmshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshOptions& options) {
+MeshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshOptions& options) {
     require_valid(domain, field, options);
     const UnitFrame frame(domain);
     SizeQuery query(field, frame, options.factor.value_or(standard_factor(options.algorithm)));
-    GmshRun run;
+    MeshRun run;
     in_gmsh_session(options.threads, [&] {
         add_geometry(options.part.get(), frame);
         set_options(options);
@@ -196,11 +196,11 @@ GmshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshO
             query.rethrow_failure();  // the cause, if it is ours
             throw;
         }
-        run.seconds = watch.seconds();
-        run.processor_seconds = watch.processor_seconds();
+        run.cost.seconds = watch.seconds();
+        run.cost.processor_seconds = watch.processor_seconds();
         query.rethrow_failure();
-        run.queries = query.count();
-        run.query_seconds = query.seconds();
+        run.cost.queries = query.count();
+        run.cost.query_seconds = query.seconds();
         run.anisotropic = query.anisotropic();
         run.mesh = take_mesh(frame);
         if (run.mesh.tets.empty()) {

@@ -65,7 +65,7 @@ std::string reason(const ChildOutcome& outcome, const MmgOptions& options) {
 
 /// One call of MMG on `mesh`.
 TetMesh remesh(const TetMesh& mesh, const std::vector<Metric>& metrics, const fs::path& program,
-               const MmgOptions& options, MmgRun& run) {
+               const MmgOptions& options, MeshCost& cost) {
     TemporaryFolder folder(options.folder);
     const fs::path log = folder.path() / "log", out = folder.path() / "out.mesh";
     write_medit_mesh(folder.path() / "in.mesh", mesh);
@@ -77,9 +77,9 @@ TetMesh remesh(const TetMesh& mesh, const std::vector<Metric>& metrics, const fs
     }
     const Stopwatch watch;
     const ChildOutcome outcome = run_child(words, folder.path(), log, options.time_limit_s);
-    run.seconds += watch.seconds();
-    run.processor_seconds += outcome.processor_seconds;
-    run.peak_bytes = std::max(run.peak_bytes, outcome.peak_bytes);
+    cost += {.seconds = watch.seconds(),
+             .processor_seconds = outcome.processor_seconds,
+             .peak_bytes = outcome.peak_bytes};
     std::string unreadable;
     if (outcome.succeeded()) {
         try {
@@ -121,7 +121,7 @@ fs::path require_mmg(const MmgOptions& options) {
     return found;
 }
 
-MmgRun mesh_with_mmg(const TetMesh& start, const ControlSpace& field, const MmgOptions& options) {
+MeshRun mesh_with_mmg(const TetMesh& start, const ControlSpace& field, const MmgOptions& options) {
     if (options.rounds < 1) {
         throw InputError(fmt::format("{} rounds of MMG: give 1 or more", options.rounds));
     }
@@ -133,15 +133,15 @@ MmgRun mesh_with_mmg(const TetMesh& start, const ControlSpace& field, const MmgO
             fmt::format("a time limit of {} s: give a positive one", options.time_limit_s));
     }
     const fs::path program = require_mmg(options);
-    MmgRun run;
+    MeshRun run;
     run.mesh = start;
     for (int round = 0; round < options.rounds; ++round) {
         const Stopwatch watch;
         std::vector<Metric> metrics = metrics_at(run.mesh, field);
-        run.query_seconds += watch.seconds();
+        const double seconds = watch.seconds();
+        run.cost += {seconds, seconds, metrics.size(), seconds};
         for (Metric& m : metrics) m = options.factor * m;
-        run.queries += metrics.size();
-        run.mesh = remesh(run.mesh, metrics, program, options, run);
+        run.mesh = remesh(run.mesh, metrics, program, options, run.cost);
     }
     return run;
 }

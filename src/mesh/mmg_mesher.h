@@ -1,9 +1,8 @@
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 
-#include "controlspace/mesh/tet_mesh.h"
+#include "controlspace/mesh/mesh_run.h"
 #include "controlspace/space/control_space.h"
 
 namespace controlspace {
@@ -25,16 +24,6 @@ struct MmgOptions {
     std::filesystem::path folder = ".";
 };
 
-/// A mesh, and what it took.
-struct MmgRun {
-    TetMesh mesh;
-    double seconds = 0;  ///< in MMG, its reading and writing of files included, by the clock
-    double processor_seconds = 0;  ///< the same, of processors
-    std::size_t queries = 0;
-    double query_seconds = 0;    ///< in the field, by the clock
-    std::size_t peak_bytes = 0;  ///< most memory that MMG held
-};
-
 /// mmg3d_O3 or mmg3d in PATH; empty if neither is there.
 std::filesystem::path find_mmg();
 
@@ -48,6 +37,6 @@ std::filesystem::path require_mmg(const MmgOptions& options);
 /// Throws InputError if MMG is missing, fails, leaves no mesh or takes too long, with its last
 /// words and the folder where its files are left; for options out of range; and for a field that is
 /// not positive definite somewhere. What the field throws passes through.
-MmgRun mesh_with_mmg(const TetMesh& start, const ControlSpace& field, const MmgOptions& options);
+MeshRun mesh_with_mmg(const TetMesh& start, const ControlSpace& field, const MmgOptions& options);
 
 }  // namespace controlspace

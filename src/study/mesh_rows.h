@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "controlspace/mesh/conformity.h"
+#include "controlspace/mesh/mesh_run.h"
 #include "controlspace/study/case.h"
 #include "controlspace/study/provenance.h"
 #include "controlspace/study/study.h"
@@ -21,15 +22,11 @@ struct MeshRow {
     std::filesystem::path saved;  ///< the control space of this file was meshed: the reference too
     Mesher mesher = Mesher::delaunay;
     std::string error;
-    std::string shortfall;         ///< why a requested target was missed; empty where it was met
-    Conformity conformity;         ///< to the reference
-    double creation_s = 0;         ///< of the structure
-    double seconds = 0;            ///< of meshing, by the clock
-    double processor_seconds = 0;  ///< the same, of processors
-    std::size_t queries = 0;       ///< of sizes
-    double query_seconds = 0;      ///< spent in them
-    std::size_t peak_bytes = 0;    ///< of the program and, if that is more, of MMG
-    double delta_r_max = 0;        ///< δ_R of the structure
+    std::string shortfall;   ///< why a requested target was missed; empty where it was met
+    Conformity conformity;   ///< to the reference
+    double creation_s = 0;   ///< of the structure
+    MeshCost cost;           ///< memory: of the program and, if that is more, of MMG
+    double delta_r_max = 0;  ///< δ_R of the structure
     double delta_r_mean = 0;
 };
 

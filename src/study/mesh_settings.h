@@ -1,13 +1,12 @@
 #pragma once
 
-#include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "controlspace/mesh/part.h"
+#include "controlspace/gmsh/gmsh_mesher.h"
 #include "controlspace/study/parameter.h"
+#include "mesh/mmg_mesher.h"
 
 namespace controlspace {
 
@@ -25,17 +24,11 @@ enum class MeshStart { coarse, delaunay, hxt };
 struct MeshSettings {
     Mesher mesher = Mesher::automatic;
     MeshStart start = MeshStart::coarse;
-    std::optional<double> factor;    ///< of lengths
-    std::optional<double> optimize;  ///< Gmsh: quality to improve up to
-    int threads = 1;                 ///< Gmsh
-    double max_tets = 5e7;
-    std::string mmg;  ///< MMG's program; empty: from PATH
-    int rounds = 3;   ///< MMG
-    double time_limit_s = 900;
+    GmshOptions gmsh;  ///< its factor is MMG's too, and its part what the part's file holds
+    MmgOptions mmg;
     bool exact = true;  ///< mesh the exact field too
     std::string part;   ///< a file; "box": the domain; empty: the input, if it is a part
     double part_crease = 30;
-    std::shared_ptr<const Part> body;  ///< what the part's file holds; none: the domain
     std::vector<std::string> files{"msh", "mesh", "vtu"};
 };
 

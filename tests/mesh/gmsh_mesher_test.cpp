@@ -56,7 +56,7 @@ bool same(const List& a, const List& b) {
 TEST_CASE("Gmsh fills the box with tetrahedra of the size that is asked for") {
     const GmshAlgorithm algorithm = GENERATE(GmshAlgorithm::delaunay, GmshAlgorithm::hxt);
     CAPTURE(static_cast<int>(algorithm));
-    const GmshRun run = mesh_with_gmsh(two_cube, sphere, {.algorithm = algorithm});
+    const MeshRun run = mesh_with_gmsh(two_cube, sphere, {.algorithm = algorithm});
     CHECK(volume(run.mesh) == Approx(8));
     CHECK(area(run.mesh) == Approx(24));
     for (const Tetrahedron& tet : run.mesh.tets) REQUIRE(signed_volume(run.mesh, tet) > 0);
@@ -65,36 +65,36 @@ TEST_CASE("Gmsh fills the box with tetrahedra of the size that is asked for") {
     CHECK(c.mean_length == Approx(1).epsilon(0.1));
     CHECK(c.l_r > 0.55);
     CHECK(c.quality_min > 0.1);
-    CHECK(run.queries > c.nodes / 4);
-    CHECK(run.query_seconds < run.seconds);
+    CHECK(run.cost.queries > c.nodes / 4);
+    CHECK(run.cost.query_seconds < run.cost.seconds);
     CHECK_FALSE(run.anisotropic);
 }
 
 TEST_CASE("one thread makes the same mesh again") {
-    const GmshRun run = mesh_with_gmsh(two_cube, sphere);
-    const GmshRun again = mesh_with_gmsh(two_cube, sphere);
+    const MeshRun run = mesh_with_gmsh(two_cube, sphere);
+    const MeshRun again = mesh_with_gmsh(two_cube, sphere);
     CHECK(same(again.mesh.vertices, run.mesh.vertices));
     CHECK(same(again.mesh.tets, run.mesh.tets));
-    CHECK(again.queries == run.queries);
+    CHECK(again.cost.queries == run.cost.queries);
 }
 
 TEST_CASE("place and size of the domain do not change the mesh") {
     const Box box{Point::Zero(), Point::Constant(2)};
-    const GmshRun large = mesh_with_gmsh(box, sphere);
+    const MeshRun large = mesh_with_gmsh(box, sphere);
     SECTION("a tiny one, by a power of two") {
         const double size = 0x1p-40;
         const Box tiny{box.low, size * box.high};
         const FormulaField field(
             [size](const Point& p) { return size * around_sphere(p / size, 0.2); });
-        const GmshRun small = mesh_with_gmsh(tiny, field);
-        CHECK(small.queries == large.queries);
+        const MeshRun small = mesh_with_gmsh(tiny, field);
+        CHECK(small.cost.queries == large.cost.queries);
         CHECK(same(small.mesh.tets, large.mesh.tets));
         CHECK(volume(small.mesh) / (size * size * size) == Approx(8));
     }
     SECTION("a far one") {
         const Point low(1e6, -1e6, 5e5);
         const FormulaField field([&](const Point& p) { return around_sphere(p - low, 0.2); });
-        const GmshRun far = mesh_with_gmsh({low, low + box.edges()}, field);
+        const MeshRun far = mesh_with_gmsh({low, low + box.edges()}, field);
         CHECK(volume(far.mesh) == Approx(8));
         CHECK(static_cast<double>(far.mesh.tets.size()) ==
               Approx(static_cast<double>(large.mesh.tets.size())).epsilon(0.05));
@@ -104,7 +104,7 @@ TEST_CASE("place and size of the domain do not change the mesh") {
 TEST_CASE("of an anisotropic field, Gmsh is given the smallest length, and it is said") {
     const FormulaField thin([](const Point&) { return Metric{0.2, 0.4, 0.8, 0, 0, 0}; });
     const FormulaField smallest([](const Point&) { return Metric::isotropic(0.2); });
-    const GmshRun run = mesh_with_gmsh(unit_box, thin);
+    const MeshRun run = mesh_with_gmsh(unit_box, thin);
     CHECK(run.anisotropic);
     CHECK(same(run.mesh.tets, mesh_with_gmsh(unit_box, smallest).mesh.tets));
 }
@@ -148,7 +148,7 @@ TEST_CASE("Gmsh fills a part that is given by its surface") {
     constexpr VertexIndex n = 48;
     const auto part = std::make_shared<const Part>(strips(n));
     const FormulaField field([](const Point& p) { return Metric::isotropic(2 + 0.1 * p.z()); });
-    const GmshRun run = mesh_with_gmsh(around_strips, field, {.part = part});
+    const MeshRun run = mesh_with_gmsh(around_strips, field, {.part = part});
     // The mesh is coarse: its edges cut off a part.
     CHECK(volume(run.mesh) == Approx(15 * n * 100 * std::sin(2 * M_PI / n)).epsilon(0.015));
     for (const Point& p : run.mesh.vertices) {
@@ -181,7 +181,7 @@ TEST_CASE("Gmsh fills a solid of a CAD file") {
     part.cad = path;
     const FormulaField field([](const Point&) { return Metric::isotropic(3); });
     const auto solid = std::make_shared<const Part>(part);
-    const GmshRun run = mesh_with_gmsh(around_strips, field, {.part = solid});
+    const MeshRun run = mesh_with_gmsh(around_strips, field, {.part = solid});
     CHECK(volume(run.mesh) == Approx(M_PI * 3000).epsilon(0.03));
     CHECK(conformity(run.mesh, field).l_r > 0.7);
     CHECK_THAT(error_of([&] { mesh_with_gmsh(two_cube, field, {.part = solid}); }),

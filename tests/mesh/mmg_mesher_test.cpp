@@ -68,13 +68,13 @@ TEST_CASE("each round goes on from the mesh of the one before, and no file is le
     const ScratchDirectory folder;
     // Gives back what it was given, and counts how often it was called.
     const auto program = fake_mmg(folder, "echo x >> ../calls; cp in.mesh out.mesh");
-    const MmgRun run = mesh_with_mmg(start_mesh(), uniform,
-                                     {.program = program, .rounds = 2, .folder = folder.path()});
+    const MeshRun run = mesh_with_mmg(start_mesh(), uniform,
+                                      {.program = program, .rounds = 2, .folder = folder.path()});
     CHECK(fs::file_size(folder.path() / "calls") == 2 * 2);
     CHECK(run.mesh.vertices == start_mesh().vertices);
     CHECK(run.mesh.triangles == start_mesh().triangles);
     CHECK(run.mesh.tets == start_mesh().tets);
-    CHECK(run.queries == 2 * run.mesh.vertices.size());
+    CHECK(run.cost.queries == 2 * run.mesh.vertices.size());
     CHECK(left_folders(folder).empty());
 }
 
@@ -155,7 +155,7 @@ TEST_CASE("MMG follows an anisotropic field") {
         const double across = 0.06 + 0.1 * std::abs((p - Point::Constant(0.5)).dot(normal));
         return layer_metric(normal, across, 4 * across);
     });
-    const MmgRun run =
+    const MeshRun run =
         mesh_with_mmg(kuhn_mesh(3), thin, {.program = program, .folder = folder.path()});
     CHECK(volume(run.mesh) == Approx(1));
     CHECK(area(run.mesh) == Approx(6));

@@ -16,9 +16,9 @@ MeshRow row_of(const std::string& structure, double l_r, double delta_r) {
     row.conformity.tets = 350000;
     row.conformity.edges = 400;
     row.conformity.histogram = {0, 0, 40, 0, 360};
-    row.seconds = 20;
-    row.processor_seconds = 10;
-    row.query_seconds = 0.5;
+    row.cost.seconds = 20;
+    row.cost.processor_seconds = 10;
+    row.cost.query_seconds = 0.5;
     row.delta_r_max = delta_r;
     row.delta_r_mean = delta_r / 10;
     return row;
@@ -65,7 +65,7 @@ TEST_CASE("a mesh that failed is a row with its reason") {
 
 TEST_CASE("meshes.json keeps rows and settings") {
     MeshSettings settings;
-    settings.factor = 0.8;
+    settings.gmsh.factor = 0.8;
     const auto json = nlohmann::json::parse(mesh_json({}, {}, settings, sample_rows(), false));
     CHECK(json["complete"] == false);
     CHECK(json["settings"]["factor"] == "0.8");

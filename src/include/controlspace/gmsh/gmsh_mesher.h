@@ -1,12 +1,11 @@
 #pragma once
 
-#include <cstddef>
 #include <memory>
 #include <optional>
 
 #include "controlspace/geometry/box.h"
+#include "controlspace/mesh/mesh_run.h"
 #include "controlspace/mesh/part.h"
-#include "controlspace/mesh/tet_mesh.h"
 #include "controlspace/space/control_space.h"
 
 namespace controlspace {
@@ -39,25 +38,13 @@ struct GmshOptions {
     std::shared_ptr<const Part> part = {};
 };
 
-/// A mesh, and what it took.
-struct GmshRun {
-    TetMesh mesh;
-    double seconds = 0;            ///< meshing alone, by the clock
-    double processor_seconds = 0;  ///< the same, of the program's processors
-    std::size_t queries = 0;
-    double query_seconds = 0;  ///< in the field, of all threads together; from a sample of queries
-    /// The field asked for different lengths in different directions, of which Gmsh was given the
-    /// smallest.
-    bool anisotropic = false;
-};
-
 /// Fills `domain`, or the part in it, with tetrahedra of the size that `field` asks for.
 ///
 /// Runs in a GmshSession: what else a program has open in Gmsh is closed. Throws InputError for
 /// options out of range, a part that is not closed or not inside `domain`, a field that is not
 /// positive definite somewhere or asks for too many tetrahedra, and what Gmsh could not do, in its
 /// words. What the field throws passes through.
-GmshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field,
+MeshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field,
                        const GmshOptions& options = {});
 
 }  // namespace controlspace
