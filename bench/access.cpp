@@ -15,11 +15,11 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/metric/blend.h"
+#include "geometry/point_order.h"
 #include "trees/values/trilinear_in_leaves.h"
 #include "works.h"
 
@@ -89,14 +89,7 @@ public:
     NodeIndex operator()(const Point& x) const { return numbers_.at(x); }
 
 private:
-    struct Hash {
-        std::size_t operator()(const Point& x) const {
-            std::size_t sum = 0;
-            for (Axis a = 0; a < 3; ++a) sum = sum * 0x9e3779b97f4a7c15 + std::hash<double>()(x[a]);
-            return sum ^ sum >> 29;
-        }
-    };
-    std::unordered_map<Point, NodeIndex, Hash> numbers_;
+    std::map<Point, NodeIndex, decltype(&precedes)> numbers_{precedes};
 };
 
 /// What governs each place of a batch: one metric, or eight and their weights.
@@ -179,9 +172,7 @@ void time_batch(benchmark::State& state, std::size_t n, Answer&& answer) {
         benchmark::DoNotOptimize(out.data());
         benchmark::ClobberMemory();
     }
-    state.counters["per_query"] =
-        benchmark::Counter(static_cast<double>(n), benchmark::Counter::kIsIterationInvariantRate |
-                                                       benchmark::Counter::kInvert);
+    count_queries(state, n);
 }
 
 void access(benchmark::State& state, const ControlSpace& space, const std::vector<Point>& x) {

@@ -28,12 +28,6 @@ const ControlSpace& space_of(const CatalogueEntry& entry) {
     return *space;
 }
 
-void count_queries(benchmark::State& state, std::size_t n) {
-    state.counters["per_query"] =
-        benchmark::Counter(static_cast<double>(n), benchmark::Counter::kIsIterationInvariantRate |
-                                                       benchmark::Counter::kInvert);
-}
-
 void batch(benchmark::State& state, const CatalogueEntry& entry, std::size_t n, int threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(threads));

@@ -9,9 +9,8 @@
 #include <memory>
 #include <string>
 
-#include "controlspace/sources/sampled_surfaces.h"
-#include "controlspace/space/catalogue.h"
 #include "controlspace/space/control_space_file.h"
+#include "works.h"
 
 using namespace controlspace;
 
@@ -19,15 +18,11 @@ namespace {
 
 const char* const file = "bench_saving.ctrl";
 
-const ControlSpaceBuilder& graded(const CatalogueEntry& entry) {
-    static std::map<std::string, std::unique_ptr<ControlSpaceBuilder>> made;
-    auto& space = made[entry.id];
-    if (!space) {
-        space = entry.make({.domain = {Point::Constant(-1), Point::Constant(1)}, .l_min = 0.2});
-        space->insert(sample_sphere({.rho = 0.2}));
-        space->grade({.ratio = 1.25});
-    }
-    return *space;
+const ControlSpaceBuilder& made(const CatalogueEntry& entry) {
+    static std::map<std::string, std::unique_ptr<ControlSpaceBuilder>> all;
+    auto& builder = all[entry.id];
+    if (!builder) builder = graded(entry, {"", 0.2, {.rho = 0.2}});
+    return *builder;
 }
 
 void count(benchmark::State& state) {
@@ -38,13 +33,13 @@ void count(benchmark::State& state) {
 }
 
 void save(benchmark::State& state, const CatalogueEntry& entry) {
-    const ControlSpaceBuilder& space = graded(entry);
+    const ControlSpaceBuilder& space = made(entry);
     for (auto _ : state) save_control_space(file, space);
     count(state);
 }
 
 void load(benchmark::State& state, const CatalogueEntry& entry) {
-    const ControlSpaceBuilder& space = graded(entry);
+    const ControlSpaceBuilder& space = made(entry);
     save_control_space(file, space);
     for (auto _ : state) benchmark::DoNotOptimize(load_builder(file, tree_catalogue()));
     count(state);
@@ -54,14 +49,12 @@ void load(benchmark::State& state, const CatalogueEntry& entry) {
 
 int main(int argc, char** argv) {
     for (const CatalogueEntry& entry : tree_catalogue()) {
-        benchmark::RegisterBenchmark(("saving/" + entry.id).c_str(), save, entry)
-            ->Unit(benchmark::kMillisecond)
-            ->MeasureProcessCPUTime()
-            ->UseRealTime();
-        benchmark::RegisterBenchmark(("loading/" + entry.id).c_str(), load, entry)
-            ->Unit(benchmark::kMillisecond)
-            ->MeasureProcessCPUTime()
-            ->UseRealTime();
+        for (const auto& [name, run] : {std::pair("saving/", save), std::pair("loading/", load)}) {
+            benchmark::RegisterBenchmark((name + entry.id).c_str(), run, entry)
+                ->Unit(benchmark::kMillisecond)
+                ->MeasureProcessCPUTime()
+                ->UseRealTime();
+        }
     }
     benchmark::Initialize(&argc, argv);
     benchmark::RunSpecifiedBenchmarks();

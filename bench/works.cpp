@@ -79,14 +79,16 @@ const Box& bench_domain() {
     return domain;
 }
 
+SpaceOptions options_of(const Work& work, std::span<const PointSource> sources) {
+    return {.domain = bench_domain(), .l_min = work.tau, .finest_length = finest_length(sources)};
+}
+
 std::unique_ptr<ControlSpaceBuilder> graded(const CatalogueEntry& entry, const Work& work,
                                             SplitRule split, double voxel) {
     const std::vector<PointSource> sources = sample_sphere(work.sampling);
-    const SpaceOptions options{.domain = bench_domain(),
-                               .split = split,
-                               .l_min = work.tau,
-                               .finest_length = finest_length(sources),
-                               .voxel = voxel};
+    SpaceOptions options = options_of(work, sources);
+    options.split = split;
+    options.voxel = voxel;
     auto builder = entry.make(options);
     builder->insert(sources);
     builder->grade({.ratio = options.ratio});

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <benchmark/benchmark.h>
+
 #include <memory>
 #include <span>
 #include <string>
@@ -20,6 +22,16 @@ std::span<const Work> works();
 
 /// [-1, 1]^3.
 const Box& bench_domain();
+
+/// What structures with these sources of the work are made with.
+SpaceOptions options_of(const Work& work, std::span<const PointSource> sources);
+
+/// Counts `n` queries an iteration: the counter per_query is the seconds of one.
+inline void count_queries(benchmark::State& state, std::size_t n) {
+    state.counters["per_query"] =
+        benchmark::Counter(static_cast<double>(n), benchmark::Counter::kIsIterationInvariantRate |
+                                                       benchmark::Counter::kInvert);
+}
 
 /// A structure with the work's sources, inserted and graded. Kd-trees cut as `split` says; grids
 /// have the given `voxel`, 0 as SpaceOptions has it.

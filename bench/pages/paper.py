@@ -6,6 +6,8 @@ import tomllib
 from collections import namedtuple
 from pathlib import Path
 
+import numpy as np
+
 from .results import InputError, plain
 
 HERE = Path(__file__).resolve().parent
@@ -309,7 +311,7 @@ def all_rounder(entries):
     if len(labels) < 9:  # among a few, a good rank says little
         return None
     ranks = [average_ranks([entries[label][measure][0] for label in labels]) for measure in UNITS]
-    means = sorted((sum(r) / len(r), i) for i, r in enumerate(zip(*ranks)))
+    means = sorted((mean, i) for i, mean in enumerate(np.mean(ranks, axis=0)))
     best = [(labels[i], mean) for mean, i in means[:3]]
     return (any(label.startswith("K_L ") for label, _ in best),
             "mean ranks: " + ", ".join(f"{label} {mean:.2f}" for label, mean in best))
@@ -399,18 +401,12 @@ def judge_claims(evidence):
 
 def average_ranks(values):
     """From 1 for the smallest; equal values share the mean of their ranks."""
-    ordered = sorted(values)
-    count = {v: ordered.count(v) for v in set(values)}
-    return [ordered.index(v) + (count[v] + 1) / 2 for v in values]
+    _, place, count = np.unique(values, return_inverse=True, return_counts=True)
+    return (np.cumsum(count) - (count - 1) / 2)[place].tolist()
 
 
 def spearman(a, b):
     """Spearman's rho; None where there is nothing to order."""
     if len(a) < 3 or len(set(a)) == 1 or len(set(b)) == 1:
         return None
-    x, y = average_ranks(a), average_ranks(b)
-    mean = (len(a) + 1) / 2
-    xy = sum((p - mean) * (q - mean) for p, q in zip(x, y))
-    xx = sum((p - mean) ** 2 for p in x)
-    yy = sum((q - mean) ** 2 for q in y)
-    return xy / math.sqrt(xx * yy)
+    return float(np.corrcoef(average_ranks(a), average_ranks(b))[0, 1])

@@ -3,18 +3,11 @@
 #include <fmt/format.h>
 
 #include "controlspace/error.h"
+#include "study/member_of.h"
 
 namespace controlspace {
 namespace {
 
-template <class M>
-auto of_gmsh(M GmshOptions::*member) {
-    return [member](auto& s) -> auto& { return s.gmsh.*member; };
-}
-template <class M>
-auto of_mmg(M MmgOptions::*member) {
-    return [member](auto& s) -> auto& { return s.mmg.*member; };
-}
 template <class Place>
 Access<MeshSettings> number_of(Place place, const Check& check = positive) {
     return number<MeshSettings>(place, check);
@@ -57,6 +50,8 @@ Access<MeshSettings> kinds_of_files() {
 }  // namespace
 
 std::span<const Parameter<MeshSettings>> mesh_parameters() {
+    constexpr auto gmsh = &MeshSettings::gmsh;
+    constexpr auto mmg = &MeshSettings::mmg;
     static const std::vector<Parameter<MeshSettings>> all{
         {"part", "",
          "What is meshed: a closed surface (.stl, .obj, .ply, .off) or a solid (.step, .stp, "
@@ -73,27 +68,27 @@ std::span<const Parameter<MeshSettings>> mesh_parameters() {
         {"factor", "",
          "Factor of lengths, as meshers make longer edges than requested; left out: 0.77 for "
          "delaunay, 0.7 for hxt, 0.96 for mmg",
-         number_of(of_gmsh(&GmshOptions::factor),
+         number_of(of(gmsh, &GmshOptions::factor),
                    [](double x) { return within(0, 100)(positive(x)); })},
         {"optimize", "",
          "Gmsh: quality below which tetrahedra are improved, 0 to 0.95; left out: 0.75 for "
          "delaunay, 0.6 for hxt",
-         number_of(of_gmsh(&GmshOptions::optimize), within(0, 0.95))},
+         number_of(of(gmsh, &GmshOptions::optimize), within(0, 0.95))},
         {"mesh_threads", "", "Gmsh: threads; with more than one, meshes differ in detail",
-         number_of(of_gmsh(&GmshOptions::threads), within(1, 1024))},
+         number_of(of(gmsh, &GmshOptions::threads), within(1, 1024))},
         {"max_tets", "", "Most tetrahedra that a field may request, by estimate",
-         number_of(of_gmsh(&GmshOptions::max_tets))},
+         number_of(of(gmsh, &GmshOptions::max_tets))},
         {"mmg", "", "MMG's program mmg3d_O3; left out: as found in PATH",
-         text<MeshSettings>(of_mmg(&MmgOptions::program))},
+         text<MeshSettings>(of(mmg, &MmgOptions::program))},
         {"start", "",
          "MMG: the mesh it starts from: coarse; or one that Gmsh made for the field's smallest "
          "lengths, delaunay, hxt, which MMG only finishes",
          word<MeshSettings>(&MeshSettings::start)},
         {"rounds", "",
          "MMG: number of times that the mesh is made anew, each time by the field at its vertices",
-         number_of(of_mmg(&MmgOptions::rounds), within(1, 100))},
+         number_of(of(mmg, &MmgOptions::rounds), within(1, 100))},
         {"time_limit", "s", "MMG: time limit of each round",
-         number_of(of_mmg(&MmgOptions::time_limit_s))},
+         number_of(of(mmg, &MmgOptions::time_limit_s))},
         {"exact", "", "yes or no: mesh the exact field too, to compare with", yes_or_no()},
         {"files", "",
          "Files of each mesh: msh (Gmsh), mesh (Medit, with its .sol), vtu (VTK); or none",

@@ -1,40 +1,30 @@
 #include "study/rank_correlation.h"
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <numeric>
 
 namespace controlspace {
 
 std::vector<double> average_ranks(std::span<const double> values) {
-    std::vector<std::size_t> order(values.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t i, std::size_t j) { return values[i] < values[j]; });
-    std::vector<double> ranks(values.size());
-    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-        while (end < order.size() && values[order[end]] == values[order[begin]]) ++end;
-        // Ranks begin + 1 to end.
-        const double mean = 0.5 * static_cast<double>(begin + 1 + end);
-        for (std::size_t k = begin; k < end; ++k) ranks[order[k]] = mean;
+    std::vector<double> ranks;
+    for (const double x : values) {
+        const auto below = std::ranges::count_if(values, [&](double y) { return y < x; });
+        const auto equal = std::ranges::count(values, x);
+        ranks.push_back(static_cast<double>(below) + 0.5 * static_cast<double>(equal + 1));
     }
     return ranks;
 }
 
 std::optional<double> spearman(std::span<const double> a, std::span<const double> b) {
     if (a.size() < 3) return std::nullopt;
-    const std::vector<double> x = average_ranks(a);
-    const std::vector<double> y = average_ranks(b);
-    const double mean = 0.5 * static_cast<double>(a.size() + 1);
-    double xy = 0, xx = 0, yy = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        xy += (x[i] - mean) * (y[i] - mean);
-        xx += (x[i] - mean) * (x[i] - mean);
-        yy += (y[i] - mean) * (y[i] - mean);
-    }
-    if (xx == 0 || yy == 0) return std::nullopt;
-    return xy / std::sqrt(xx * yy);
+    const auto centred = [](const std::vector<double>& ranks) -> Eigen::VectorXd {
+        const Eigen::Map<const Eigen::ArrayXd> all(ranks.data(),
+                                                   static_cast<Eigen::Index>(ranks.size()));
+        return all - all.mean();
+    };
+    const Eigen::VectorXd x = centred(average_ranks(a)), y = centred(average_ranks(b));
+    if (x.isZero() || y.isZero()) return std::nullopt;
+    return x.dot(y) / (x.norm() * y.norm());
 }
 
 }  // namespace controlspace

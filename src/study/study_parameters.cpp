@@ -7,37 +7,17 @@
 #include "controlspace/io/read_sources.h"
 #include "controlspace/study/study.h"
 #include "study/file_endings.h"
+#include "study/member_of.h"
 #include "study/sources_access.h"
 
 namespace controlspace {
 namespace {
 
-// Members of members of a study.
-template <class M>
-auto of_sources(M SourcesChoice::*member) {
-    return [member](auto& s) -> auto& { return s.sources.*member; };
-}
-template <class M>
-auto of_field(M FieldChoice::*member) {
-    return [member](auto& s) -> auto& { return s.sources.field.*member; };
-}
-template <class M>
-auto of_lengths(M SurfaceLengths::*member) {
-    return [member](auto& s) -> auto& { return s.sources.field.lengths.*member; };
-}
-template <class M>
-auto of_vdb(M VdbSurface::*member) {
-    return [member](auto& s) -> auto& { return s.sources.surface.*member; };
-}
-template <class M>
-auto of_curvature(M CurvatureSizes::*member) {
-    return [member](auto& s) -> auto& { return s.sources.in_file.curvature.*member; };
-}
+// Members on the way to those of the members of a study.
+constexpr auto sources = &Study::sources;
+constexpr auto field = &SourcesChoice::field;
+constexpr auto curvature = &FileSources::curvature;
 
-template <class Place>
-Access<Study> number_of(Place place, const Check& check = any_number) {
-    return number<Study>(place, check);
-}
 /// A length of which 0 means that it is not given, as does `none`, which is stored then.
 template <class Place>
 Access<Study> length_or_none(Place place, double none = 0) {
@@ -52,13 +32,17 @@ Access<Study> length_or_none(Place place, double none = 0) {
     };
     return access;
 }
-template <class Place>
-Access<Study> text_of(Place place) {
-    return text<Study>(place);
-}
-template <class Place>
-Access<Study> point_of(Place place) {
-    return point<Study>(place);
+/// Several numbers at once; `what` they are is said where there are others.
+template <class Set, class Get>
+Access<Study> numbers(std::size_t count, const char* what, const Set& set, const Get& get) {
+    Access<Study> access;
+    access.at_most = count;
+    access.set = [=](Study& s, const Values& v) {
+        if (v.size() != count) throw InputError(fmt::format("give {}", what));
+        set(s, [&](std::size_t i) { return v[i].number(); });
+    };
+    access.get = get;
+    return access;
 }
 
 Access<Study> name() {
@@ -76,37 +60,33 @@ Access<Study> name() {
 }
 
 Access<Study> domain() {
-    Access<Study> access;
-    access.at_most = 6;
-    access.set = [](Study& s, const Values& v) {
-        if (v.size() != 6) throw InputError("give six numbers: x0 x1 y0 y1 z0 z1");
-        const auto x = [&](std::size_t i) { return v[i].number(); };
-        s.domain = require_extent({{x(0), x(2), x(4)}, {x(1), x(3), x(5)}});
-    };
-    access.get = [](const Study& s) -> Values {
-        if (!s.domain) return {};
-        const Point &a = s.domain->low, &b = s.domain->high;
-        return {a.x(), b.x(), a.y(), b.y(), a.z(), b.z()};
-    };
-    return access;
+    return numbers(
+        6, "six numbers: x0 x1 y0 y1 z0 z1",
+        [](Study& s, const auto& x) {
+            s.domain = require_extent({{x(0), x(2), x(4)}, {x(1), x(3), x(5)}});
+        },
+        [](const Study& s) -> Values {
+            if (!s.domain) return {};
+            const Point &a = s.domain->low, &b = s.domain->high;
+            return {a.x(), b.x(), a.y(), b.y(), a.z(), b.z()};
+        });
 }
 
 Access<Study> field_lengths() {
-    Access<Study> access;
-    access.at_most = 2;
-    access.set = [](Study& s, const Values& v) {
-        if (v.size() != 2) throw InputError("give two numbers: across along");
-        s.sources.field.lengths.across = positive(v[0].number());
-        s.sources.field.lengths.along = positive(v[1].number());
-    };
-    access.get = [](const Study& s) -> Values {
-        return {s.sources.field.lengths.across, s.sources.field.lengths.along};
-    };
-    return access;
+    return numbers(
+        2, "two numbers: across along",
+        [](Study& s, const auto& x) {
+            s.sources.field.lengths.across = positive(x(0));
+            s.sources.field.lengths.along = positive(x(1));
+        },
+        [](const Study& s) -> Values {
+            return {s.sources.field.lengths.across, s.sources.field.lengths.along};
+        });
 }
 
 Access<Study> field_largest() {
-    Access<Study> access = number_of(of_lengths(&SurfaceLengths::largest), positive);
+    Access<Study> access = number<Study>(
+        of(sources, field, &FieldChoice::lengths, &SurfaceLengths::largest), positive);
     access.get = [get = access.get](const Study& s) {
         return s.sources.field.lengths.largest == SurfaceLengths{}.largest ? Values{} : get(s);
     };
@@ -143,8 +123,8 @@ std::function<bool(const Study&)> field_is(std::vector<std::string> kinds) {
     return [=](const Study& s) {
         return std::ranges::any_of(s.runs, [&](const Run& run) {
             const Values* fields = run.find("field");
-            return fields != nullptr && std::ranges::any_of(*fields, [&](const Value& field) {
-                       return std::ranges::count(kinds, field.text()) > 0;
+            return fields != nullptr && std::ranges::any_of(*fields, [&](const Value& kind) {
+                       return std::ranges::count(kinds, kind.text()) > 0;
                    });
         });
     };
@@ -188,78 +168,83 @@ std::vector<Parameter<Study>> table() {
          "H + (g - 1) d at the distance d, by g_r or with g=G by G",
          sources_access()},
         {"h_min", length, "Smallest length: what is requested to be shorter, is this long",
-         length_or_none(of_sources(&Sources::h_min))},
+         length_or_none(of(sources, &Sources::h_min))},
         {"h_max", length,
          "Largest length anywhere (between the nodes of K_Li and K_oLi some per cent more); left "
          "out: half of the domain's diagonal, and no length of sources is limited",
-         length_or_none(of_sources(&Sources::h_max), largest_magnitude)},
-        {"centre", length, "x y z: centre of the sphere", point_of(of_sources(&Sources::centre)),
-         making, sphere, paper},
+         length_or_none(of(sources, &Sources::h_max), largest_magnitude)},
+        {"centre", length, "x y z: centre of the sphere",
+         point<Study>(of(sources, &Sources::centre)), making, sphere, paper},
         {"radius", length, "Radius of the sphere",
-         number_of(of_sources(&Sources::radius), positive), making, sphere, paper},
+         number<Study>(of(sources, &Sources::radius), positive), making, sphere, paper},
         {"slope", "", "Slope a of the second plane (u, -0.2 + a u, v)",
-         number_of(of_sources(&Sources::slope)), making, planes, paper},
+         number<Study>(of(sources, &Sources::slope)), making, planes, paper},
         {"h", length, "Length that the sampling of a surface starts from",
-         number_of(of_sources(&Sources::h), positive), making, sampled, paper},
+         number<Study>(of(sources, &Sources::h), positive), making, sampled, paper},
         {"domain", length,
          "x0 x1 y0 y1 z0 z1; left out: where the field is defined; -1 1 along each axis for other "
          "fields and sampled surfaces; otherwise the box of the sources and a margin",
          domain()},
         {"margin", "longest extent of the sources", "Margin around sources from a file",
-         number_of(&Study::margin, within(0, 1000))},
+         number<Study>(&Study::margin, within(0, 1000))},
         {"max_memory", "GiB",
          "Maximum memory of a structure, gradation included; a grid is made coarser, a tree that "
          "exceeds it fails",
-         number_of(&Study::max_memory_gib,
-                   [](double x) { return within(0, 1 << 20)(positive(x)); }),
+         number<Study>(&Study::max_memory_gib,
+                       [](double x) { return within(0, 1 << 20)(positive(x)); }),
          making, always, performance},
         {"seed", "", "Seed of the random places, and of sources that are not regular",
-         number_of(&Study::seed, within(0, exact_integers)), making, always, performance},
+         number<Study>(&Study::seed, within(0, exact_integers)), making, always, performance},
         {"threads", "",
          "Threads for creation, probes and accuracy; access is timed on one; 0: all processors",
-         number_of(&Study::threads, within(0, 4096)), making, always, performance},
+         number<Study>(&Study::threads, within(0, 4096)), making, always, performance},
         {"access_points", "", "Number of random places at which access is timed",
-         number_of(&Study::access_points, within(1, 1e8)), Use::timing, always, performance},
+         number<Study>(&Study::access_points, within(1, 1e8)), Use::timing, always, performance},
         {"access_repeats", "", "Number of samples of the access time; results contain the median",
-         number_of(&Study::access_repeats, within(1, 1000)), Use::timing, always, performance},
+         number<Study>(&Study::access_repeats, within(1, 1000)), Use::timing, always, performance},
         {"creation_repeats", "",
          "Number of times that each structure is made; results contain the median times",
-         number_of(&Study::creation_repeats, within(1, 1000)), Use::timing, always, performance},
+         number<Study>(&Study::creation_repeats, within(1, 1000)), Use::timing, always,
+         performance},
         {"probe_grid", "",
          "n: accuracy is sampled at the centres of an n x n x n grid, and access timed in their "
          "order",
-         number_of(&Study::probe_grid, within(1, 300)), Use::accuracy, always, Topic::accuracy},
+         number<Study>(&Study::probe_grid, within(1, 300)), Use::accuracy, always, Topic::accuracy},
         {"fine_probe_grid", "", "The same for the finer probes of delta_R_fine and coarser_fine",
-         number_of(&Study::fine_probe_grid, within(1, 300)), Use::timing, always, Topic::accuracy},
+         number<Study>(&Study::fine_probe_grid, within(1, 300)), Use::timing, always,
+         Topic::accuracy},
         {"reference_tolerance", "",
          "t of the exact reference of anisotropic sources. Order-free: log det within 3 ln(1 + t) "
          "of the best. In turn: skip those that would shorten a length by less than this fraction: "
          "faster, with an error of about delta = 2 t^2",
-         number_of(&Study::reference_tolerance, within(0, 0.1)), making, always, Topic::accuracy},
+         number<Study>(&Study::reference_tolerance, within(0, 0.1)), making, always,
+         Topic::accuracy},
         {"output", "", "New folder for the results; left out: results/NAME-DATE-TIME",
-         text_of(&Study::output), Use::results, always, Topic::output},
+         text<Study>(&Study::output), Use::results, always, Topic::output},
         {"field_centre", length, "x y z: centre of the field sphere",
-         point_of(of_field(&FieldChoice::centre)), making, field_sphere, fields},
+         point<Study>(of(sources, field, &FieldChoice::centre)), making, field_sphere, fields},
         {"field_radius", length, "Radius of the field sphere",
-         number_of(of_field(&FieldChoice::radius), positive), making, field_sphere, fields},
+         number<Study>(of(sources, field, &FieldChoice::radius), positive), making, field_sphere,
+         fields},
         {"field_slope", "", "Slope a of the second plane (u, -0.2 + a u, v) of the field planes",
-         number_of(of_field(&FieldChoice::slope)), making, field_planes, fields},
+         number<Study>(of(sources, field, &FieldChoice::slope)), making, field_planes, fields},
         {"field_lengths", length,
          "Lengths across and along the surface of the field sphere or planes, there",
          field_lengths(), making, field_surface, fields},
         {"field_growth", "length / length",
          "Growth of those lengths with the distance from the surface",
-         number_of(of_lengths(&SurfaceLengths::growth), at_least(0)), making, field_surface,
-         fields},
+         number<Study>(of(sources, field, &FieldChoice::lengths, &SurfaceLengths::growth),
+                       at_least(0)),
+         making, field_surface, fields},
         {"field_largest", length,
          "Length up to which they grow; left out: half of the domain's diagonal", field_largest(),
          making, field_surface, fields},
         {"field_file", "", "The file of the field file: a .vdb, or the cells of a .vtu or .vti",
-         text_of(of_field(&FieldChoice::file)), making, field_file, fields},
+         text<Study>(of(sources, field, &FieldChoice::file)), making, field_file, fields},
         {"field_grid", "",
          "Its grid of lengths, or of densities; left out: metric_diag and metric_off. Of a .vtu or "
          ".vti its array of sizes or metrics; left out: the one named :metric",
-         text_of([](auto& s) -> auto& { return s.sources.field.vdb.grid; }), making, field_file,
+         text<Study>(of(sources, field, &FieldChoice::vdb, &VdbLengths::grid)), making, field_file,
          fields},
         {"field_density_sizes", length,
          "Lengths at densities 1 and 0 of that grid; left out: the grid contains lengths",
@@ -268,40 +253,48 @@ std::vector<Parameter<Study>> table() {
          "Sources of a .vtu, .vtp, .vti, .msh or .pos: the array or view of sizes (1 component) or "
          "Riemannian metrics (6 or 9), at points, or else of cells, for their centres; left out: "
          "the array named :metric, the only view",
-         text_of([](auto& s) -> auto& { return s.sources.in_file.array; }), reading, arrays},
+         text<Study>(of(sources, &Sources::in_file, &FileSources::array)), reading, arrays},
         {"surface_angle", "degrees",
          "Sources of a surface (.stl, .obj, .ply, .off): part of the circle of curvature that an "
          "edge spans",
-         number_of(of_curvature(&CurvatureSizes::angle), angle), reading, surface, Topic::sizes},
+         number<Study>(of(sources, &Sources::in_file, curvature, &CurvatureSizes::angle), angle),
+         reading, surface, Topic::sizes},
         {"surface_crease", "degrees",
          "Sources of a surface: edges where the normal turns by more bound its smooth patches, and "
          "are not curvature",
-         number_of(of_curvature(&CurvatureSizes::crease), angle), reading, surface},
+         number<Study>(of(sources, &Sources::in_file, curvature, &CurvatureSizes::crease), angle),
+         reading, surface},
         {"elements_across", "",
          "Sources of a surface: number of lengths across walls and gaps, thickness / length",
-         number_of(of_curvature(&CurvatureSizes::elements_across), positive), reading, surface,
-         Topic::sizes},
+         number<Study>(of(sources, &Sources::in_file, curvature, &CurvatureSizes::elements_across),
+                       positive),
+         reading, surface, Topic::sizes},
         {"isotropic", "",
          "Sources of a surface: the shortest length in all directions; left out: lengths by both "
          "principal curvatures and across walls",
-         flag<Study>(of_curvature(&CurvatureSizes::isotropic)), reading, surface},
+         flag<Study>(of(sources, &Sources::in_file, curvature, &CurvatureSizes::isotropic)),
+         reading, surface},
         {"surface_h_min", length,
          "Sources of a surface: smallest length; left out: a thousandth of the diagonal of its box",
-         length_or_none(of_curvature(&CurvatureSizes::h_min)), reading, surface, Topic::sizes},
+         length_or_none(of(sources, &Sources::in_file, curvature, &CurvatureSizes::h_min)), reading,
+         surface, Topic::sizes},
         {"surface_h_max", length,
          "Sources of a surface: largest length; left out: a tenth of that diagonal",
-         length_or_none(of_curvature(&CurvatureSizes::h_max)), reading, surface, Topic::sizes},
+         length_or_none(of(sources, &Sources::in_file, curvature, &CurvatureSizes::h_max)), reading,
+         surface, Topic::sizes},
         {"vdb_size", length, "Sources of a .vdb: length at its surface",
-         length_or_none(of_vdb(&VdbSurface::h)), reading, vdb, Topic::sizes},
+         length_or_none(of(sources, &Sources::surface, &VdbSurface::h)), reading, vdb,
+         Topic::sizes},
         {"vdb_size_per_radius", "smaller radius of curvature",
          "Sources of a .vdb: length at its surface",
-         length_or_none(of_vdb(&VdbSurface::per_radius)), reading, vdb, Topic::sizes},
+         length_or_none(of(sources, &Sources::surface, &VdbSurface::per_radius)), reading, vdb,
+         Topic::sizes},
         {"vdb_grid", "",
          "Sources of a .vdb: the level set or fog; left out: the only grid of the file",
-         text_of(of_vdb(&VdbSurface::grid)), reading, vdb},
+         text<Study>(of(sources, &Sources::surface, &VdbSurface::grid)), reading, vdb},
         {"vdb_isovalue", "",
          "Sources of a .vdb: where its surface is; left out: at 0 of a level set, 0.5 of a fog",
-         number_of(of_vdb(&VdbSurface::isovalue)), reading, vdb},
+         number<Study>(of(sources, &Sources::surface, &VdbSurface::isovalue)), reading, vdb},
     };
 }
 
