@@ -19,74 +19,61 @@ RAMP = [(0.0, (0.05, 0.01, 0.16)), (0.3, (0.25, 0.02, 0.27)), (0.55, (0.65, 0.10
         (0.8, (0.95, 0.36, 0.03)), (1.0, (0.97, 0.90, 0.30))]
 
 
-def volume_material():
-    material = bpy.data.materials.new("cut")
-    material.use_nodes = True
-    nodes, link = material.node_tree.nodes, material.node_tree.links.new
-    nodes.clear()
-    out = nodes.new("ShaderNodeOutputMaterial")
-    attribute = nodes.new("ShaderNodeAttribute")
-    attribute.attribute_name = "h_min"
-    logarithm = nodes.new("ShaderNodeMath")
-    logarithm.operation = "LOGARITHM"
-    logarithm.inputs[1].default_value = math.e
-    scale = nodes.new("ShaderNodeMapRange")
-    scale.inputs["From Min"].default_value = math.log(COARSEST)
-    scale.inputs["From Max"].default_value = math.log(FINEST)
-    ramp = nodes.new("ShaderNodeValToRGB")
-    elements = ramp.color_ramp.elements
+# Nodes of a material: {name: (type, {attribute: value}, {input: value})}, and links from outputs to
+# inputs. The cut: a colour by the logarithm of h_min, where y > 0 and there is a field.
+CUT = {
+    "h_min": ("Attribute", {"attribute_name": "h_min"}, {}),
+    "log": ("Math", {"operation": "LOGARITHM"}, {1: math.e}),
+    "scale": ("MapRange", {}, {"From Min": math.log(COARSEST), "From Max": math.log(FINEST)}),
+    "ramp": ("ValToRGB", {}, {}),
+    "place": ("TexCoord", {}, {}),
+    "split": ("SeparateXYZ", {}, {}),
+    "behind": ("Math", {"operation": "GREATER_THAN"}, {1: 0}),
+    "ratio": ("Attribute", {"attribute_name": "anisotropy"}, {}),
+    "inside": ("Math", {"operation": "GREATER_THAN"}, {1: 0.99}),
+    "shown": ("Math", {"operation": "MULTIPLY"}, {}),
+    "opacity": ("Math", {"operation": "MULTIPLY"}, {1: OPACITY}),
+    "emission": ("Emission", {}, {}),
+    "absorption": ("VolumeAbsorption", {}, {"Color": (0, 0, 0, 1)}),
+    "both": ("AddShader", {}, {}),
+    "out": ("OutputMaterial", {}, {})}
+CUT_LINKS = [
+    ("h_min", "Fac", "log", 0), ("log", 0, "scale", "Value"), ("scale", 0, "ramp", "Fac"),
+    ("place", "Object", "split", "Vector"), ("split", "Y", "behind", 0), ("ratio", "Fac", "inside", 0),
+    ("behind", 0, "shown", 0), ("inside", 0, "shown", 1), ("shown", 0, "opacity", 0),
+    ("ramp", "Color", "emission", "Color"), ("opacity", 0, "emission", "Strength"),
+    ("opacity", 0, "absorption", "Density"), ("emission", 0, "both", 0), ("absorption", 0, "both", 1),
+    ("both", 0, "out", "Volume")]
+INK = {"emission": ("Emission", {}, {"Color": (0.02, 0.02, 0.02, 1)}), "out": ("OutputMaterial", {}, {})}
+INK_LINKS = [("emission", 0, "out", "Surface")]
+
+
+def material(nodes, links):
+    made = bpy.data.materials.new("material")
+    made.use_nodes = True
+    tree = made.node_tree
+    tree.nodes.clear()
+    for name, (kind, attributes, inputs) in nodes.items():
+        node = tree.nodes.new(f"ShaderNode{kind}")
+        node.name = name
+        for key, value in attributes.items():
+            setattr(node, key, value)
+        for key, value in inputs.items():
+            node.inputs[key].default_value = value
+    for source, output, target, place in links:
+        tree.links.new(tree.nodes[source].outputs[output], tree.nodes[target].inputs[place])
+    return made
+
+
+def cut_material():
+    made = material(CUT, CUT_LINKS)
+    elements = made.node_tree.nodes["ramp"].color_ramp.elements
     while len(elements) < len(RAMP):
         elements.new(0.5)
     for element, (position, colour) in zip(elements, RAMP):
         element.position = position
         element.color = (*colour, 1)
-    place = nodes.new("ShaderNodeTexCoord")
-    split = nodes.new("ShaderNodeSeparateXYZ")
-    behind = nodes.new("ShaderNodeMath")
-    behind.operation = "GREATER_THAN"
-    behind.inputs[1].default_value = 0
-    ratio = nodes.new("ShaderNodeAttribute")
-    ratio.attribute_name = "anisotropy"
-    inside = nodes.new("ShaderNodeMath")
-    inside.operation = "GREATER_THAN"
-    inside.inputs[1].default_value = 0.99
-    shown = nodes.new("ShaderNodeMath")
-    shown.operation = "MULTIPLY"
-    opacity = nodes.new("ShaderNodeMath")
-    opacity.operation = "MULTIPLY"
-    opacity.inputs[1].default_value = OPACITY
-    emission = nodes.new("ShaderNodeEmission")
-    absorption = nodes.new("ShaderNodeVolumeAbsorption")
-    absorption.inputs["Color"].default_value = (0, 0, 0, 1)
-    both = nodes.new("ShaderNodeAddShader")
-    link(attribute.outputs["Fac"], logarithm.inputs[0])
-    link(logarithm.outputs[0], scale.inputs["Value"])
-    link(scale.outputs[0], ramp.inputs["Fac"])
-    link(place.outputs["Object"], split.inputs["Vector"])
-    link(split.outputs["Y"], behind.inputs[0])
-    link(ratio.outputs["Fac"], inside.inputs[0])
-    link(behind.outputs[0], shown.inputs[0])
-    link(inside.outputs[0], shown.inputs[1])
-    link(shown.outputs[0], opacity.inputs[0])
-    link(ramp.outputs["Color"], emission.inputs["Color"])
-    link(opacity.outputs[0], emission.inputs["Strength"])
-    link(opacity.outputs[0], absorption.inputs["Density"])
-    link(emission.outputs[0], both.inputs[0])
-    link(absorption.outputs[0], both.inputs[1])
-    link(both.outputs[0], out.inputs["Volume"])
-    return material
-
-
-def text_material():
-    material = bpy.data.materials.new("text")
-    material.use_nodes = True
-    nodes = material.node_tree.nodes
-    nodes.clear()
-    emission = nodes.new("ShaderNodeEmission")
-    emission.inputs["Color"].default_value = (0.02, 0.02, 0.02, 1)
-    out = nodes.new("ShaderNodeOutputMaterial")
-    material.node_tree.links.new(emission.outputs[0], out.inputs["Surface"])
-    return material
+    return made
 
 
 def add(file, x, cut, ink):
@@ -105,7 +92,7 @@ def add(file, x, cut, ink):
 def main(out, files):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
-    cut, ink = volume_material(), text_material()
+    cut, ink = cut_material(), material(INK, INK_LINKS)
     for i, file in enumerate(files):
         add(file, SPACING * (i - (len(files) - 1) / 2), cut, ink)
     camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))

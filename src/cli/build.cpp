@@ -7,7 +7,6 @@
 #include "cli/command.h"
 #include "cli/filled_space.h"
 #include "cli/options.h"
-#include "cli/progress.h"
 #include "cli/standard_output.h"
 #include "controlspace/error.h"
 #include "controlspace/space/control_space_file.h"
@@ -15,25 +14,14 @@
 namespace controlspace {
 namespace {
 
-struct Build {
-    std::filesystem::path input, output;
-    WordsByKey given;
-    bool quiet = false;
-};
-
-int build(const Build& job) {
+int build(const Job& job) {
     const std::filesystem::path& output = job.output;
     if (!is_control_space(output)) {
         throw InputError(
             fmt::format("cannot save to {}: name a file that ends in .ctrl", output.string()));
     }
-    FilledSpace filled;
-    {
-        StepProgress progress(job.quiet, output);
-        filled = filled_space(job.input, output, given_settings(job.given), progress.observer());
-        progress.started("writing");
-        save_control_space(output, *filled.space);
-    }
+    const FilledSpace filled = filled_space(
+        job, "writing", [&](const auto& made, auto&) { save_control_space(output, *made.space); });
     const Footprint footprint = filled.space->footprint();
     print(fmt::format("{}: {} with {} control nodes, {:.3g} MB in memory, {:.3g} MB in the file\n",
                       output.string(), filled.structure, footprint.control_nodes,
@@ -45,11 +33,10 @@ int build(const Build& job) {
 }  // namespace
 
 Action add_build(Options& options) {
-    const auto job = std::make_shared<Build>();
+    const auto job = std::make_shared<Job>();
     add_study_input(options, job->input);
     options.add({"-o,--output", "FILE.ctrl", "File to write", "", true}, job->output);
-    add_making_options(options, job->given);
-    add_quiet(options, job->quiet);
+    add_making_options(options, *job);
     return [job](const std::string&) { return build(*job); };
 }
 

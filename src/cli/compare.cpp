@@ -31,13 +31,11 @@
 namespace controlspace {
 namespace {
 
-struct Compare {
-    std::filesystem::path input;  ///< study file or sources; empty: one run, on the sphere
-    WordsByKey given;             ///< they override the study file in all of its runs
+/// The settings given override the study file in all of its runs.
+struct Compare : Job {
     bool as_published = false;
     std::filesystem::path resume;  ///< folder of an interrupted run to continue, or empty
     bool dry_run = false;          ///< list the cases instead of running them
-    bool quiet = false;
 };
 
 /// The study that the options request. Throws InputError.
@@ -50,7 +48,7 @@ Study study_of(const Compare& job) {
     const bool is_named =
         is_study || std::ranges::any_of(given, [](const auto& s) { return s.first == "name"; });
     if (!is_named && study.sources.kind == SourcesKind::file) {
-        apply({{"name", {study.sources.file.stem().string()}}}, study);
+        apply({{"name", {study.sources.files.front().stem().string()}}}, study);
     }
     if (job.as_published) {
         for (Run& run : study.runs) {
@@ -106,15 +104,10 @@ std::pair<Provenance, std::vector<Row>> go_on_from(const std::filesystem::path& 
     }
 }
 
-/// The outcome of a study that ran to its end.
-struct FinishedStudy {
-    std::vector<Row> rows;
-    std::filesystem::path folder;  ///< of its results
-};
-
 /// Runs the study on all structures that it names, with progress on standard error unless quiet,
-/// and its rows into a folder of results. Throws InputError for what cannot be run.
-FinishedStudy run(const Compare& job, const std::string& command_line) {
+/// its rows into a folder of results, and its tables to standard output. Returns the exit status;
+/// throws InputError for what cannot be run.
+int run(const Compare& job, const std::string& command_line) {
     Interruption interruption;
     const Study study = study_of(job);
     const auto threads = limit_threads(study.threads);
@@ -132,32 +125,31 @@ FinishedStudy run(const Compare& job, const std::string& command_line) {
     const std::size_t all = folder.rows().size() + prepared.cases().size();
     Progress progress(prepared.cases(), prepared.source_counts(),
                       job.quiet ? ProgressStyle::none : progress_style_of_stderr());
-    const Interruption::Watch watch(
-        interruption, [&] { progress.show(); },
-        [&] {
-            progress.finish();
-            folder.finish(false);
-            print_error(
-                fmt::format("controlspace: interrupted: {} of {} done, in {}; to continue, run the "
-                            "same command with "
-                            "--resume {} in place of --output\n",
-                            folder.rows().size(), counted(all, "case"), folder.path().string(),
-                            folder.path().string()));
-        });
-    run_into(folder, std::move(prepared), progress, interruption);
-    return {{folder.rows().begin(), folder.rows().end()}, folder.path()};
+    {
+        const Interruption::Watch watch(
+            interruption, [&] { progress.show(); },
+            [&] {
+                progress.finish();
+                folder.finish(false);
+                print_error(fmt::format(
+                    "controlspace: interrupted: {} of {} done, in {}; to continue, run the "
+                    "same command with "
+                    "--resume {} in place of --output\n",
+                    folder.rows().size(), counted(all, "case"), folder.path().string(),
+                    folder.path().string()));
+            });
+        run_into(folder, std::move(prepared), progress, interruption);
+    }
+    print(tables_text(folder.rows(), rows, /*markdown=*/false));
+    print(fmt::format("\nResults: {}\n", folder.path().string()));
+    return std::ranges::all_of(folder.rows(), &Row::is_as_requested) ? 0 : some_failed;
 }
 
 int compare(const Compare& job, const std::string& command_line) {
-    if (job.dry_run) {
-        const PreparedStudy prepared(study_of(job), program_rows(), file_readers());
-        print(forecast_text(prepared, forecast(prepared)));
-        return 0;
-    }
-    const FinishedStudy finished = run(job, command_line);
-    print(tables_text(finished.rows, program_rows(), /*markdown=*/false));
-    print(fmt::format("\nResults: {}\n", finished.folder.string()));
-    return std::ranges::all_of(finished.rows, &Row::is_as_requested) ? 0 : some_failed;
+    if (!job.dry_run) return run(job, command_line);
+    const PreparedStudy prepared(study_of(job), program_rows(), file_readers());
+    print(forecast_text(prepared, forecast(prepared)));
+    return 0;
 }
 
 }  // namespace

@@ -13,10 +13,8 @@
 namespace controlspace {
 
 Action add_convert(Options& options) {
-    struct Convert {
-        std::filesystem::path input, out, output;
-        WordsByKey given;
-        bool quiet = false;
+    struct Convert : Job {
+        std::filesystem::path out;
     };
     const auto job = std::make_shared<Convert>();
     options.add({"IN", "FILE", source_formats_help(), "", true}, job->input);
@@ -26,8 +24,7 @@ Action add_convert(Options& options) {
                 job->out);
     options.add({"-o,--output", "FILE", "The same as OUT"}, job->output);
     options.exclude("--output", "OUT");
-    add_reading_options(options, job->given);
-    add_quiet(options, job->quiet);
+    add_reading_options(options, *job);
     return [job](const std::string&) {
         const std::filesystem::path& output = job->out.empty() ? job->output : job->out;
         if (output.empty()) throw InputError("no OUT: name the file to write");

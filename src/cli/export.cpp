@@ -16,10 +16,7 @@
 namespace controlspace {
 namespace {
 
-struct ExportJob {
-    std::filesystem::path input, output;
-    WordsByKey given;
-    bool quiet = false;
+struct ExportJob : Job {
     int samples = 0;
     std::vector<FieldFormat> formats;
 };
@@ -77,14 +74,10 @@ int export_field(const ExportJob& job, const Options& options, const std::string
     if (!options.given_of(samples_group).empty()) samples = job.samples;
     format.check(job.output, samples);
     std::string what;
-    FilledSpace filled;
-    {
-        StepProgress progress(job.quiet, job.output);
-        filled =
-            filled_space(job.input, job.output, given_settings(job.given), progress.observer());
-        progress.started("sampling and writing");
-        what = format.write({job.input, job.output, command_line, filled, progress, samples});
-    }
+    const FilledSpace filled =
+        filled_space(job, "sampling and writing", [&](const auto& made, auto& progress) {
+            what = format.write({job.input, job.output, command_line, made, progress, samples});
+        });
     print(what);
     return report_remark(filled);
 }
@@ -115,8 +108,7 @@ Action add_export(Options& options) {
          "File to write; its ending names the format: " + all_endings(job->formats), "", true},
         job->output);
     // --voxel is the file's, not that of a grid that is exported.
-    add_making_options(options, job->given, "voxel");
-    add_quiet(options, job->quiet);
+    add_making_options(options, *job, "voxel");
     return [job, &options](const std::string& command_line) {
         return export_field(*job, options, command_line);
     };

@@ -36,10 +36,8 @@ double largest_factor(const Origin& made, const ControlSpace& space) {
         .within();
 }
 
-}  // namespace
-
-FilledSpace filled_space(const std::filesystem::path& input, const std::filesystem::path& output,
-                         const GivenSettings& given, const StudyObserver& observer) {
+FilledSpace made_or_loaded(const std::filesystem::path& input, const std::filesystem::path& output,
+                           const GivenSettings& given, const StudyObserver& observer) {
     require_no_input(output, {input});
     FilledSpace filled;
     if (observer.phase_started) observer.phase_started("reading");
@@ -69,6 +67,18 @@ FilledSpace filled_space(const std::filesystem::path& input, const std::filesyst
         if (observer.phase_started) observer.phase_started("comparing");
         filled.within = largest_factor(*filled.origin, *filled.space);
     }
+    return filled;
+}
+
+}  // namespace
+
+FilledSpace filled_space(const Job& job, std::string_view step,
+                         const std::function<void(const FilledSpace&, StepProgress&)>& use) {
+    StepProgress progress(job.quiet, job.output);
+    FilledSpace filled =
+        made_or_loaded(job.input, job.output, given_settings(job.given), progress.observer());
+    progress.started(step);
+    use(filled, progress);
     return filled;
 }
 

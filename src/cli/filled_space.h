@@ -3,11 +3,14 @@
 #include <tbb/global_control.h>
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
-#include "cli/given_settings.h"
+#include "cli/options.h"
+#include "cli/progress.h"
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/control_space_builder.h"
 #include "controlspace/study/run.h"
@@ -41,12 +44,11 @@ bool is_control_space(const std::filesystem::path& input);
 /// saved.
 void require_no_settings(const std::filesystem::path& space, const GivenSettings& given);
 
-/// The one structure of `input` (see study_of_input) and the settings, made and graded; or loaded
-/// from a .ctrl. Throws InputError, also for a .ctrl with settings, and if `output` is one of the
-/// files that are read. `observer` is notified of the steps.
-FilledSpace filled_space(const std::filesystem::path& input, const std::filesystem::path& output,
-                         const GivenSettings& given, const StudyObserver& observer);
-
+/// The one structure of the job's input (see study_of_input) and settings, made and graded; or
+/// loaded from a .ctrl. Then calls `use`, in a step of the progress that is called `step`. Throws
+/// InputError, also for a .ctrl with settings, and if the output is one of the files that are read.
+FilledSpace filled_space(const Job& job, std::string_view step,
+                         const std::function<void(const FilledSpace&, StepProgress&)>& use);
 /// Writes the remark on the structure, and how far its lengths are from the exact field's, to
 /// standard error. Returns the exit status: some_failed where the requested target was missed.
 int report_remark(const FilledSpace& filled);

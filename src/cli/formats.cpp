@@ -5,7 +5,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -33,72 +32,65 @@ using Sources = std::vector<PointSource>;
 struct SourceFormat {
     std::span<const std::string_view> endings;
     const char* module;  ///< that reads them
-    Sources (*read)(const SourcesChoice& choice);
+    Sources (*read)(const std::filesystem::path& file, const SourcesChoice& choice);
     /// The part of `read` that may crash, if the rest starts threads, which a forked process must
-    /// not.
-    void (*try_read)(const SourcesChoice& choice) = nullptr;
+    /// not: of surfaces.
+    SurfaceMesh (*read_mesh)(const std::filesystem::path& file) = nullptr;
 };
 
-Sources read_vdb(const SourcesChoice& choice) {
-    return read_vdb_sources(choice.file, choice.surface);
+Sources read_vdb(const std::filesystem::path& file, const SourcesChoice& choice) {
+    return read_vdb_sources(file, choice.surface);
 }
-Sources read_vtk(const SourcesChoice& choice) {
-    return read_vtk_sources(choice.file, choice.in_file.array);
+Sources read_vtk(const std::filesystem::path& file, const SourcesChoice& choice) {
+    return read_vtk_sources(file, choice.in_file.array);
 }
-Sources sources_on(const SurfaceMesh& surface, const SourcesChoice& choice) {
+template <SurfaceMesh (*read_mesh)(const std::filesystem::path&)>
+Sources read_surface(const std::filesystem::path& file, const SourcesChoice& choice) {
+    const SurfaceMesh surface = read_mesh(file);
     load_module("cgal");
-    SurfaceSources found = surface_sources(surface, choice.in_file.curvature, choice.file);
+    SurfaceSources found = surface_sources(surface, choice.in_file.curvature, file);
     if (found.skipped > 0) {
-        spdlog::warn("{}: {} vertices are skipped: no triangle there has an area",
-                     choice.file.string(), found.skipped);
+        spdlog::warn("{}: {} vertices are skipped: no triangle there has an area", file.string(),
+                     found.skipped);
     }
     if (found.fitted > 0 && !surface.curvatures.empty()) {
         spdlog::warn(
             "{}: at {} of {} vertices the CAD file gives no curvature: "
             "it is fitted to triangles",
-            choice.file.string(), found.fitted, surface.vertices.size());
+            file.string(), found.fitted, surface.vertices.size());
     }
     return std::move(found.sources);
 }
-Sources read_surface(const SourcesChoice& choice) {
-    return sources_on(read_surface_mesh(choice.file), choice);
-}
-void try_surface(const SourcesChoice& choice) { read_surface_mesh(choice.file); }
-Sources read_cad(const SourcesChoice& choice) {
-    return sources_on(read_cad_surface(choice.file), choice);
-}
-void try_cad(const SourcesChoice& choice) { read_cad_surface(choice.file); }
 
 constexpr SourceFormat formats[] = {
     {vdb_endings, "openvdb", read_vdb},
     {vtk_endings, "vtk", read_vtk},
-    {triangle_endings, "cgal", read_surface, try_surface},
-    {cad_endings, "gmsh", read_cad, try_cad},
+    {triangle_endings, "cgal", read_surface<read_surface_mesh>, read_surface_mesh},
+    {cad_endings, "gmsh", read_surface<read_cad_surface>, read_cad_surface},
 };
 
-// Whether this is a Medit mesh without a solution beside it.
-bool is_mesh_alone(std::filesystem::path file) {
-    const std::string ending = lower_case_extension(file);
-    if (ending != ".mesh" && ending != ".meshb") return false;
+/// A Medit mesh, with a solution beside it or alone.
+Sources read_mesh(const std::filesystem::path& file, const SourcesChoice&) {
+    Sources sources = read_sources(file);
+    std::filesystem::path solution = file;
     std::error_code none;
-    return std::ranges::none_of(std::array{".sol", ".solb"}, [&](const char* solution) {
-        return std::filesystem::exists(file.replace_extension(solution), none);
-    });
-}
-
-Sources read_by(const SourceFormat& format, const SourcesChoice& choice) {
-    load_module(format.module);  // here, as the child's time and memory are limited
-    require_readable(choice.file, [&] {
-        format.try_read ? format.try_read(choice) : static_cast<void>(format.read(choice));
-    });
-    Sources sources = format.read(choice);
-    if (is_mesh_alone(choice.file)) {
+    if (!std::filesystem::exists(solution.replace_extension(".sol"), none) &&
+        !std::filesystem::exists(solution.replace_extension(".solb"), none)) {
         spdlog::warn(
-            "{} has no solution beside it: lengths of its required edges are taken, at {} "
-            "vertices",
-            choice.file.string(), sources.size());
+            "{} has no solution beside it: lengths of its required edges are taken, at {} vertices",
+            file.string(), sources.size());
     }
     return sources;
+}
+
+Sources read_by(const SourceFormat& format, const std::filesystem::path& file,
+                const SourcesChoice& choice) {
+    load_module(format.module);  // here, as the child's time and memory are limited
+    require_readable(file, [&] {
+        format.read_mesh ? static_cast<void>(format.read_mesh(file))
+                         : static_cast<void>(format.read(file, choice));
+    });
+    return format.read(file, choice);
 }
 
 const SourceFormat* format_of(const std::filesystem::path& file) {
@@ -116,7 +108,7 @@ const SourceFormat& checked_part(const std::filesystem::path& file) {
     }
     const SourceFormat& format = *format_of(file);
     load_module(format.module);
-    require_readable(file, [&] { format.try_read({.file = file}); });
+    require_readable(file, [&] { format.read_mesh(file); });
     return format;
 }
 
@@ -124,21 +116,23 @@ const SourceFormat& checked_part(const std::filesystem::path& file) {
 
 bool is_part(const std::filesystem::path& file) {
     const SourceFormat* format = format_of(file);
-    return format != nullptr && format->try_read != nullptr;
+    return format != nullptr && format->read_mesh != nullptr;
 }
 
 Part read_part(const std::filesystem::path& file, double crease) {
-    if (checked_part(file).read == read_cad) return {.cad = file};
-    SurfaceMesh surface = read_surface_mesh(file);
+    const SourceFormat& format = checked_part(file);
+    if (has_ending(cad_endings, lower_case_extension(file))) return {.cad = file};
+    SurfaceMesh surface = format.read_mesh(file);
     return {std::move(surface.vertices), std::move(surface.triangles), crease};
 }
 
 FileReaders file_readers() {
     FileReaders readers;
+    readers.sources = {{".mesh", read_mesh}, {".meshb", read_mesh}};
     for (const SourceFormat& format : formats) {
         for (const std::string_view ending : format.endings) {
-            readers.sources[std::string(ending)] = [&format](const SourcesChoice& choice) {
-                return read_by(format, choice);
+            readers.sources[std::string(ending)] = [&format](const auto& file, const auto& choice) {
+                return read_by(format, file, choice);
             };
         }
     }
@@ -161,8 +155,7 @@ FileReaders file_readers() {
         return read();
     };
     readers.surface_distance = [](const std::filesystem::path& file) {
-        const bool is_cad = checked_part(file).read == read_cad;
-        const SurfaceMesh mesh = is_cad ? read_cad_surface(file) : read_surface_mesh(file);
+        const SurfaceMesh mesh = checked_part(file).read_mesh(file);
         load_module("cgal");
         return surface_distance(mesh);
     };

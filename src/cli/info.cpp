@@ -139,18 +139,12 @@ std::string info_text(const std::filesystem::path& input, const GivenSettings& s
 }  // namespace
 
 Action add_info(Options& options) {
-    struct Info {
-        std::filesystem::path input, output = "/dev/stdout";
-        WordsByKey given;
-        bool quiet = false;
-    };
-    const auto job = std::make_shared<Info>();
+    const auto job = std::make_shared<Job>(Job{.output = "/dev/stdout"});
     options.add(
         {"FILE", "FILE", source_formats_help() + "; or a saved control space (.ctrl)", "", true},
         job->input);
     options.add({"-o,--output", "FILE", "File to write; left out: standard output"}, job->output);
-    add_reading_options(options, job->given);
-    add_quiet(options, job->quiet);
+    add_reading_options(options, *job);
     options.set_statuses(
         "Exit status:\n"
         "  0    the file was read; tensors that are not positive definite are counted\n"

@@ -19,23 +19,6 @@ namespace controlspace {
 
 namespace {
 
-std::string name_of(SourcesKind kind) {
-    SourcesChoice choice;
-    choice.kind = kind;
-    return sources_name(choice);
-}
-
-/// The files before the others.
-void add_files(const std::vector<std::filesystem::path>& files, SourcesChoice& sources) {
-    std::vector<std::filesystem::path> all = files;
-    for (const std::filesystem::path& file : files_of(sources)) {
-        if (std::ranges::count(all, file) == 0) all.push_back(file);
-    }
-    sources.kind = SourcesKind::file;
-    sources.file = all.front();
-    sources.further_files.assign(all.begin() + 1, all.end());
-}
-
 /// Of an input and of --sources: all of both.
 void add_sources(const SourcesChoice& input, SourcesChoice& sources) {
     const auto may_join = [](const SourcesChoice& choice) {
@@ -46,7 +29,14 @@ void add_sources(const SourcesChoice& input, SourcesChoice& sources) {
         throw InputError(fmt::format("--sources {} does not go with {}: leave one out",
                                      sources_name(sources), sources_name(input)));
     }
-    if (input.kind == SourcesKind::file) add_files(files_of(input), sources);
+    if (input.kind == SourcesKind::file) {
+        std::vector<std::filesystem::path> files = input.files;  // before the others
+        for (const std::filesystem::path& file : sources.files) {
+            if (std::ranges::count(files, file) == 0) files.push_back(file);
+        }
+        sources.kind = SourcesKind::file;
+        sources.files = std::move(files);
+    }
     for (const Primitive& primitive : input.primitives) {
         if (std::ranges::count(sources.primitives, primitive) == 0) {
             sources.primitives.push_back(primitive);
@@ -66,21 +56,19 @@ void set_sources(Study& study, const std::filesystem::path& input) {
     std::error_code none;
     if (std::filesystem::exists(input, none) && !std::filesystem::is_directory(input, none)) {
         study.sources.kind = SourcesKind::file;
-        study.sources.file = input;
+        study.sources.files = {input};
         return;
     }
     apply(given_settings({{"sources", {input.string()}}}), study_parameters(), study);
     if (study.sources.kind != SourcesKind::file) return;
-    for (const std::filesystem::path& file : files_of(study.sources)) {
+    for (const std::filesystem::path& file : study.sources.files) {
         // Of a name with an ending, its reader tells what is wrong.
         if (file.has_extension() || std::filesystem::exists(file, none)) continue;
-        std::string names;
-        for (const auto kind : {SourcesKind::sphere, SourcesKind::planes, SourcesKind::none}) {
-            names.append(names.empty() ? "" : ", ").append(name_of(kind));
-        }
+        std::vector<std::string_view> names;
+        for (const auto& word : Words<SourcesKind>::table) names.push_back(word.name);
         throw InputError(
             fmt::format("there is no file '{}', and it names no sources: give a file, or one of {}",
-                        file.string(), names));
+                        file.string(), fmt::join(names, ", ")));
     }
 }
 

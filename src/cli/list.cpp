@@ -43,11 +43,7 @@ std::string list_text() {
 }  // namespace
 
 Action add_list(Options& options) {
-    struct List {
-        std::filesystem::path output = "/dev/stdout";
-        bool quiet = false;
-    };
-    const auto job = std::make_shared<List>();
+    const auto job = std::make_shared<Job>(Job{.output = "/dev/stdout"});
     options.add({"-o,--output", "FILE", "File to write; left out: standard output"}, job->output);
     add_quiet(options, job->quiet);
     return [job](const std::string&) {

@@ -25,13 +25,6 @@
 namespace controlspace {
 namespace {
 
-struct MeshJob {
-    /// Study file, file of sources, or a control space that was saved; empty: the paper's sphere.
-    std::filesystem::path input;
-    WordsByKey given;  ///< settings of the study, of its runs, and of the meshing
-    bool quiet = false;
-};
-
 /// What cases with the same exact field share.
 struct Reference {
     Case first;  ///< of these cases
@@ -50,107 +43,65 @@ Reference make_shared_reference(const Study& study, const Case& c, Mesher reques
     return reference;
 }
 
+/// Meshes the structure of a case.
+void mesh_case(const Study& study, const Case& c, const Reference& reference, MeshFolder& folder) {
+    std::unique_ptr<ControlSpace> space;
+    const auto make = [&](MeshRow& made) -> const ControlSpace& {
+        load_module_of(c.structure);  // before its creation is timed
+        const Filled filled = make_and_fill(study, c, program_rows(), reference.workload);
+        space = filled.build(c);
+        made.shortfall = filled.creation.shortfall;
+        made.creation_s = filled.creation.insert_s.front() + filled.creation.gradation_s.front();
+        const Accuracy delta_r = accuracy(*space, reference.probes);
+        made.delta_r_max = delta_r.max;
+        made.delta_r_mean = delta_r.mean;
+        return *space;
+    };
+    folder.add({.setting = c, .mesher = reference.mesher}, reference.workload.domain,
+               *reference.field, make);
+}
+
 /// Meshes the cases of a study, and their exact fields.
-class StudyMeshes {
-public:
-    StudyMeshes(const Study& study, const DefaultTarget& target, MeshFolder& folder,
-                Interruption& interruption)
-        : study_(study),
-          target_(target),
-          folder_(folder),
-          interruption_(interruption),
-          cases_(expand(study, program_rows())) {}
-
-    void run() {
-        require_runnable();
-        folder_.begin();
-        std::optional<Case> last;
-        for (Case c : cases_) {
-            const Reference& reference = reference_of(c);
-            target_.set(c, reference.workload.sources);
-            const bool new_field = !last || !share_probes(*last, c);
-            if (folder_.settings().exact && new_field) mesh_exact(c, reference);
-            mesh_case(c, reference);
-            last = std::move(c);
-        }
-        folder_.end();
-    }
-
-private:
-    const Reference& reference_of(const Case& c) {
-        if (!reference_ || !share_probes(reference_->first, c)) {
-            reference_.reset();  // its memory first
-            reference_ = make_shared_reference(study_, c, folder_.settings().mesher);
-        }
-        return *reference_;
-    }
-
+void mesh_study(const Study& study, const DefaultTarget& target, MeshFolder& folder) {
+    const MeshSettings& settings = folder.settings();
+    const std::vector<Case> cases = expand(study, program_rows());
+    for (const Case& c : cases) require_set_voxels(c);
+    std::optional reference = make_shared_reference(study, cases.front(), settings.mesher);
     // What is wrong from the start leaves no folder; what is wrong with a later case makes a row.
-    void require_runnable() {
-        for (const Case& c : cases_) require_set_voxels(c);
-        const Reference& reference = reference_of(cases_.front());
-        if (!folder_.settings().gmsh.part) require_volume(reference.workload.domain);
-        for (const Case& c : cases_) {
-            if (c.sources == reference.first.sources) space_options(study_, c, reference.workload);
+    if (!settings.gmsh.part) require_volume(reference->workload.domain);
+    for (const Case& c : cases) {
+        if (c.sources == cases.front().sources) space_options(study, c, reference->workload);
+    }
+    if (reference->mesher == Mesher::mmg) require_mmg(settings.mmg);
+    folder.begin();
+    bool is_new_field = true;
+    for (Case c : cases) {
+        if (!share_probes(reference->first, c)) {
+            reference.reset();  // its memory first
+            reference = make_shared_reference(study, c, settings.mesher);
+            is_new_field = true;
         }
-        if (reference.mesher == Mesher::mmg) {
-            require_mmg(folder_.settings().mmg);
+        target.set(c, reference->workload.sources);
+        if (settings.exact && std::exchange(is_new_field, false)) {
+            folder.add({.setting = c, .exact = true, .mesher = reference->mesher},
+                       reference->workload.domain, *reference->field);
         }
+        mesh_case(study, c, *reference, folder);
     }
-
-    void mesh_exact(const Case& c, const Reference& reference) {
-        MeshRow row;
-        row.setting = c;
-        row.exact = true;
-        row.mesher = reference.mesher;
-        folder_.add(
-            std::move(row), reference.workload.domain, *reference.field,
-            [&](MeshRow&) -> const ControlSpace& { return *reference.field; }, interruption_);
-    }
-
-    void mesh_case(const Case& c, const Reference& reference) {
-        MeshRow row;
-        row.setting = c;
-        row.mesher = reference.mesher;
-        std::unique_ptr<ControlSpace> space;
-        const auto make = [&](MeshRow& made) -> const ControlSpace& {
-            load_module_of(c.structure);  // before its creation is timed
-            const Filled filled = make_and_fill(study_, c, program_rows(), reference.workload);
-            space = filled.build(c);
-            made.shortfall = filled.creation.shortfall;
-            made.creation_s =
-                filled.creation.insert_s.front() + filled.creation.gradation_s.front();
-            const Accuracy delta_r = accuracy(*space, reference.probes);
-            made.delta_r_max = delta_r.max;
-            made.delta_r_mean = delta_r.mean;
-            return *space;
-        };
-        folder_.add(std::move(row), reference.workload.domain, *reference.field, make,
-                    interruption_);
-    }
-
-    const Study& study_;
-    const DefaultTarget target_;
-    MeshFolder& folder_;
-    Interruption& interruption_;
-    const std::vector<Case> cases_;
-    std::optional<Reference> reference_;
-};
+    folder.end();
+}
 
 /// Meshes a control space that was saved; it is the reference too.
 void mesh_saved(const std::filesystem::path& file, const ControlSpace& space, int probe_grid,
-                MeshFolder& folder, Interruption& interruption) {
+                MeshFolder& folder) {
     if (!folder.settings().gmsh.part) require_volume(space.domain());
-    MeshRow row;
-    row.saved = file;
+    MeshRow row{.saved = file};
     row.setting.structure = recipe_of(space)->structure;
     const auto probes = make_probes(space, cell_centres(space.domain(), probe_grid));
     row.mesher = chosen_mesher(folder.settings().mesher, probes.reference);
     if (row.mesher == Mesher::mmg) require_mmg(folder.settings().mmg);
     folder.begin();
-    folder.add(
-        std::move(row), space.domain(), space,
-        [&](MeshRow&) -> const ControlSpace& { return space; }, interruption);
+    folder.add(std::move(row), space.domain(), space);
     folder.end();
 }
 
@@ -188,7 +139,7 @@ std::shared_ptr<const Part> part_of(const MeshSettings& settings,
     return std::make_shared<const Part>(read_part(file, settings.part_crease));
 }
 
-int mesh(const MeshJob& job, const std::string& command_line) {
+int mesh(const Job& job, const std::string& command_line) {
     const GivenSettings given = given_settings(job.given);
     const bool is_saved = is_control_space(job.input);
     if (is_saved) require_no_settings(job.input, without_settings_of_meshing(given));
@@ -200,16 +151,16 @@ int mesh(const MeshJob& job, const std::string& command_line) {
     const auto threads = limit_threads(study.threads);
     Interruption interruption;
     const auto saved = is_saved ? load_control_space(job.input, structures()) : nullptr;
-    MeshFolder folder(study, std::move(settings), command_line, job.quiet);
+    MeshFolder folder(study, std::move(settings), command_line, job.quiet, interruption);
     {
         const Interruption::Watch watch(interruption, nullptr, [&] {
             print_error(fmt::format("controlspace: interrupted: meshes in {}: {}\n",
                                     folder.path().string(), folder.rows().size()));
         });
         if (saved) {
-            mesh_saved(job.input, *saved, study.probe_grid, folder, interruption);
+            mesh_saved(job.input, *saved, study.probe_grid, folder);
         } else {
-            StudyMeshes(study, {job.input, given}, folder, interruption).run();
+            mesh_study(study, {job.input, given}, folder);
         }
     }
     print(mesh_tables(folder.rows(), TableStyle::terminal));
@@ -223,7 +174,7 @@ int mesh(const MeshJob& job, const std::string& command_line) {
 }  // namespace
 
 Action add_mesh(Options& options) {
-    const auto job = std::make_shared<MeshJob>();
+    const auto job = std::make_shared<Job>();
     add_filled_input(options, job->input);
     options.add_parameters(mesh_parameters(), MeshSettings{}, "Meshing", job->given);
     options.set_note("Of settings with lists, all combinations are meshed.");

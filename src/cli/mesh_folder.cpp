@@ -20,10 +20,11 @@ constexpr const char* results_file = "meshes.json";
 }  // namespace
 
 MeshFolder::MeshFolder(const Study& study, MeshSettings settings, const std::string& command_line,
-                       bool quiet)
+                       bool quiet, Interruption& interruption)
     : study_(study),
       settings_(std::move(settings)),
       quiet_(quiet),
+      interruption_(interruption),
       provenance_(current_provenance()) {
     provenance_.command_line = command_line;
     path_ = results_path(study, provenance_);
@@ -35,11 +36,10 @@ void MeshFolder::begin() {
 }
 
 void MeshFolder::add(MeshRow row, const Box& domain, const ControlSpace& reference,
-                     const std::function<const ControlSpace&(MeshRow&)>& field,
-                     Interruption& interruption) {
+                     const std::function<const ControlSpace&(MeshRow&)>& field) {
     restart_peak_memory();
     try {
-        const ControlSpace& meshed = field(row);
+        const ControlSpace& meshed = field ? field(row) : reference;
         const TetMesh mesh = make_mesh(domain, meshed, settings_, path_, row);
         row.cost.peak_bytes = std::max(row.cost.peak_bytes, peak_memory());
         row.conformity = conformity(mesh, reference);
@@ -48,14 +48,14 @@ void MeshFolder::add(MeshRow row, const Box& domain, const ControlSpace& referen
         std::string name = fmt::format("{:02}-{}", rows_.size(), label.substr(0, label.find(',')));
         const auto unfit = [](char c) { return c == ' ' || c == '/'; };
         std::replace_if(name.begin(), name.end(), unfit, '-');
-        const auto whole = interruption.postpone();
+        const auto whole = interruption_.postpone();
         write_mesh(path_ / name, mesh, meshed, settings_);
     } catch (const std::bad_alloc&) {
         row.error = "out of memory: request larger lengths";
     } catch (const std::exception& error) {
         row.error = error.what();
     }
-    const auto whole = interruption.postpone();
+    const auto whole = interruption_.postpone();
     rows_.push_back(row);
     record(false);
     for (const std::string& why : {row.error, row.shortfall}) {

@@ -21,15 +21,16 @@ public:
     /// The folder is that of the study; it is not made yet. Progress goes to standard error unless
     /// `quiet`.
     MeshFolder(const Study& study, MeshSettings settings, const std::string& command_line,
-               bool quiet);
+               bool quiet, Interruption& interruption);
 
     /// Makes the folder. Throws InputError.
     void begin();
     /// Meshes the box by the row's mesher, measures how the mesh conforms to `reference`, and
     /// writes both. `field` returns the field to be meshed, which must live as long as itself, and
-    /// may enter the times into the row. Errors are entered into the row.
+    /// may enter the times into the row; without it `reference` is meshed. Errors are entered into
+    /// the row.
     void add(MeshRow row, const Box& domain, const ControlSpace& reference,
-             const std::function<const ControlSpace&(MeshRow&)>& field, Interruption& interruption);
+             const std::function<const ControlSpace&(MeshRow&)>& field = {});
     /// Writes the summary.
     void end();
 
@@ -43,6 +44,7 @@ private:
     Study study_;
     MeshSettings settings_;
     bool quiet_;
+    Interruption& interruption_;
     Provenance provenance_;
     std::filesystem::path path_;
     std::vector<MeshRow> rows_;

@@ -194,16 +194,18 @@ void add_quiet(Options& options, bool& quiet) {
 
 Run one_structure() { return {{structures_key, {"K_oV"}}, {"splits", {"s_L"}}}; }
 
-void add_making_options(Options& options, WordsByKey& given, std::string_view another) {
+void add_making_options(Options& options, Job& job, std::string_view another) {
     options.set_note(
         "Of isotropic sources, without tau, epsilon, law, schedule or a target, K_oV is adapted "
         "until lengths are within 1.1x of the exact field's; --target-delta 0: inserted and "
         "graded.");
-    options.add_settings(one_structure(), Study{}, given, {Use::making, Use::reading}, another);
+    options.add_settings(one_structure(), Study{}, job.given, {Use::making, Use::reading}, another);
+    add_quiet(options, job.quiet);
 }
 
-void add_reading_options(Options& options, WordsByKey& given) {
-    options.add_parameters(study_parameters(), Study{}, "", given, {Use::reading});
+void add_reading_options(Options& options, Job& job) {
+    options.add_parameters(study_parameters(), Study{}, "", job.given, {Use::reading});
+    add_quiet(options, job.quiet);
 }
 
 }  // namespace controlspace

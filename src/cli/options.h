@@ -24,6 +24,13 @@ inline const Uses all_uses{Use::making, Use::reading, Use::results, Use::accurac
 /// Words given for each parameter, by key.
 using WordsByKey = std::map<std::string_view, std::vector<std::string>>;
 
+/// What commands share: what they read and write, settings, and --quiet.
+struct Job {
+    std::filesystem::path input = {}, output = {};
+    WordsByKey given = {};
+    bool quiet = false;
+};
+
 /// An option of a command as the help shows it.
 struct OptionText {
     std::string name;   ///< "--samples", "-o,--output"; without dashes, an argument by its position
@@ -102,13 +109,12 @@ void add_filled_input(Options& options, std::filesystem::path& input, bool requi
 void add_quiet(Options& options, bool& quiet);
 
 /// The parameters of a study that builds one structure, except those of its measurements, and
-/// `another`.
-void add_making_options(Options& options, WordsByKey& given, std::string_view another = {});
-
+/// `another`; and --quiet.
+void add_making_options(Options& options, Job& job, std::string_view another = {});
 /// The structure of commands that make one, where none is given: K_oV, with the split s_L.
 Run one_structure();
 
-/// The settings of a study for reading files of sources.
-void add_reading_options(Options& options, WordsByKey& given);
+/// The settings of a study for reading files of sources; and --quiet.
+void add_reading_options(Options& options, Job& job);
 
 }  // namespace controlspace

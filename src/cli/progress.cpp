@@ -73,11 +73,6 @@ void Progress::finish() {
     over_ = true;
 }
 
-std::size_t Progress::finished() const {
-    const std::lock_guard lock(mutex_);
-    return finished_;
-}
-
 void Progress::clear_line() {
     if (style_ == ProgressStyle::live && !over_) clear_live_line();
 }

@@ -41,9 +41,6 @@ public:
     /// Clears the live line for good.
     void finish();
 
-    std::size_t finished() const;
-    std::size_t count() const { return count_; }
-
 private:
     void clear_line();
 

@@ -16,7 +16,6 @@
 #include "cli/filled_space.h"
 #include "cli/input_study.h"
 #include "cli/options.h"
-#include "cli/progress.h"
 #include "cli/standard_output.h"
 #include "controlspace/error.h"
 #include "io/text/csv.h"
@@ -84,27 +83,20 @@ void answer_places(const ControlSpace& space) {
     }
 }
 
-struct Query {
-    std::filesystem::path input, points, output = "/dev/stdout";
+struct Query : Job {
+    std::filesystem::path points;
     bool pipe = false;
-    WordsByKey given;
-    bool quiet = false;
 };
 
 int answer_pipe(const Query& job) {
     if (!job.points.empty()) throw InputError("--pipe reads the points: leave out POINTS");
-    const GivenSettings given = given_settings(job.given);
     const auto files = is_control_space(job.input)
                            ? std::vector{job.input}
-                           : files_of(study_of_input(job.input, given).sources);
+                           : study_of_input(job.input, given_settings(job.given)).sources.files;
     if (std::ranges::count(files, std::filesystem::path("/dev/stdin")) > 0) {
         throw InputError("--pipe reads the points from standard input: name a file of sources");
     }
-    FilledSpace filled;
-    {
-        StepProgress progress(job.quiet, {});
-        filled = filled_space(job.input, {}, given, progress.observer());
-    }
+    const FilledSpace filled = filled_space(job, "starting", [](const auto&, auto&) {});
     const int status = report_remark(filled);
     answer_places(*filled.space);
     return status;
@@ -122,14 +114,8 @@ int query(const Query& job) {
     }
     const std::vector<Point> points = read_csv_points(job.points);
     std::vector<Metric> metrics(points.size());
-    FilledSpace filled;
-    {
-        StepProgress progress(job.quiet, job.output);
-        filled =
-            filled_space(job.input, job.output, given_settings(job.given), progress.observer());
-        progress.started("sampling");
-        filled.space->sample(points, metrics);
-    }
+    const FilledSpace filled = filled_space(
+        job, "sampling", [&](const auto& made, auto&) { made.space->sample(points, metrics); });
     std::vector<PointSource> answers(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) answers[i] = {points[i], metrics[i]};
     write_csv_sources(job.output, answers);
@@ -149,6 +135,7 @@ int query(const Query& job) {
 
 Action add_query(Options& options) {
     const auto job = std::make_shared<Query>();
+    job->output = "/dev/stdout";
     add_filled_input(options, job->input, true);
     options.add({"POINTS", "FILE.csv", "Points: columns x, y and z; other columns are ignored"},
                 job->points);
@@ -161,8 +148,7 @@ Action add_query(Options& options) {
                  "binary; NaN ends"},
                 job->pipe);
     options.exclude("--pipe", "--output");
-    add_making_options(options, job->given);
-    add_quiet(options, job->quiet);
+    add_making_options(options, *job);
     return [job](const std::string&) { return query(*job); };
 }
 

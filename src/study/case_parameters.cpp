@@ -245,11 +245,9 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
     };
     named("reference").use = Use::accuracy;
     named("within").same_as = "target_delta";
-    // One label of both forms of the target.
-    named("target_delta").label = [of_delta = named("target_delta").label,
-                                   of_factor =
-                                       std::exchange(named("within").label, {})](const Case& c) {
-        return c.within ? of_factor(c) : of_delta(c);
+    CaseParameter& target_delta = named("target_delta");
+    target_delta.label = [label = target_delta.label](const Case& c) {
+        return c.within ? std::string() : label(c);  // the target has the label of its other form
     };
     for (CaseParameter& p : rows) p.topic = topic_of(p);
     return rows;

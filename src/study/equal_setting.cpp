@@ -34,63 +34,52 @@ struct Goal {
     }
 };
 
-/// All trials of one case, whose voxels alone vary.
-class Trials {
-public:
-    /// Voxels of `too_many_bytes` end the search.
-    Trials(const Case& c, double too_many_bytes, const std::function<Trial(const Case&)>& attempt)
-        : case_(c), too_many_bytes_(too_many_bytes), attempt_(attempt), goal_(c) {}
+/// All trials of one case, whose voxels alone vary, and the error that ended them.
+struct Trials {
+    std::vector<EqualSetting> tried;
+    std::string refusal;
+};
 
-    void halve_and_bisect(double coarsest) {
-        constexpr int most_halvings = 16;
-        constexpr int bisections = 5;
-        double fine = coarsest;
-        std::optional<double> coarse;  // not passed yet
-        int in_vain = 0;
-        for (int i = 0; !is_passed(fine); ++i, fine /= 2) {
-            in_vain = coarse && is_same_as_before() ? in_vain + 1 : 0;
-            if (i == most_halvings || in_vain == 2) return;
-            coarse = fine;
-        }
-        if (!coarse) return;
-        for (int i = 0; i < bisections; ++i) {
-            const double middle = std::sqrt(*coarse * fine);
-            (is_passed(middle) ? fine : *coarse) = middle;
-        }
-    }
-
-    std::vector<EqualSetting> tried() && { return std::move(tried_); }
-    const std::string& refusal() const { return refusal_; }
-
-private:
+/// Voxels of `too_many_bytes` end the search.
+Trials halve_and_bisect(const Case& c, const Goal& goal, double coarsest, double too_many_bytes,
+                        const std::function<Trial(const Case&)>& attempt) {
+    constexpr int most_halvings = 16;
+    constexpr int bisections = 5;
+    Trials trials;
+    auto& tried = trials.tried;
     // Whether voxels of this length pass the goal, or exceed the memory.
-    bool is_passed(double length) {
-        Case setting = case_;
+    const auto is_passed = [&](double length) {
+        Case setting = c;
         setting.voxel = length;
         try {
-            tried_.push_back({setting, attempt_(setting)});
+            tried.push_back({setting, attempt(setting)});
         } catch (const InputError& error) {
-            if (tried_.empty()) throw;
-            refusal_ = error.what();
+            if (tried.empty()) throw;
+            trials.refusal = error.what();
             return true;
         }
-        const Trial& trial = tried_.back().trial;
-        return goal_.is_passed(trial) || trial.bytes >= too_many_bytes_;
-    }
-
-    bool is_same_as_before() const {
-        const double now = goal_.aimed(tried_.back().trial);
-        const double before = goal_.aimed(tried_[tried_.size() - 2].trial);
+        const Trial& trial = tried.back().trial;
+        return goal.is_passed(trial) || trial.bytes >= too_many_bytes;
+    };
+    const auto is_same_as_before = [&] {
+        const double now = goal.aimed(tried.back().trial);
+        const double before = goal.aimed(tried[tried.size() - 2].trial);
         return std::max(now, before) < 1.05 * std::min(now, before);
+    };
+    double fine = coarsest;
+    std::optional<double> coarse;  // not passed yet
+    int in_vain = 0;
+    for (int i = 0; !is_passed(fine); ++i, fine /= 2) {
+        in_vain = coarse && is_same_as_before() ? in_vain + 1 : 0;
+        if (i == most_halvings || in_vain == 2) return trials;
+        coarse = fine;
     }
-
-    Case case_;
-    double too_many_bytes_;
-    const std::function<Trial(const Case&)>& attempt_;
-    Goal goal_;
-    std::vector<EqualSetting> tried_;
-    std::string refusal_;
-};
+    for (int i = 0; coarse && i < bisections; ++i) {
+        const double middle = std::sqrt(*coarse * fine);
+        (is_passed(middle) ? fine : *coarse) = middle;
+    }
+    return trials;
+}
 
 std::string shortfall(const Goal& goal, const Trial& trial, const std::string& refusal) {
     std::string text =
@@ -110,10 +99,9 @@ EqualSetting find_equal_setting(const Case& c, const CatalogueEntry& entry, doub
     std::optional<EqualSetting> best;
     std::string refusal;
     const auto search = [&](const Case& variant, double coarsest, double too_many_bytes) {
-        Trials trials(variant, too_many_bytes, attempt);
-        trials.halve_and_bisect(coarsest);
-        refusal = trials.refusal();
-        for (EqualSetting& found : std::move(trials).tried()) {
+        Trials trials = halve_and_bisect(variant, goal, coarsest, too_many_bytes, attempt);
+        refusal = trials.refusal;
+        for (EqualSetting& found : trials.tried) {
             if (!best || goal.is_better(found.trial, best->trial)) best = std::move(found);
         }
     };

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <concepts>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -12,40 +14,31 @@ namespace {
 
 using Samples = std::vector<double>;
 
-template <class Number>
-MeasuredValue count(Number number) {
-    return static_cast<std::int64_t>(number);
-}
+using F = Finished;
 
-/// A row of a number that counts something.
-template <class Get>
-Measure counted(const char* key, const char* unit, Get get, Column column = {}) {
-    return {key, unit, [get](const Finished& f) { return count(get(f)); }, std::move(column)};
-}
-
-/// A row of a number that a member of Finished has.
-template <class Part, class Number>
-Measure real(const char* key, Part Finished::*part, Number Part::*number, Column column = {}) {
-    return {key, "", [=](const Finished& f) -> MeasuredValue { return f.*part.*number; },
-            std::move(column)};
+/// A row of the number that `place` in `finished` leads to: a member, and its member or function.
+template <class Part, class Place>
+Measure row(const char* key, Part F::*part, Place place, Column column = {},
+            const char* unit = "") {
+    const auto value = [=](const F& f) -> MeasuredValue {
+        const auto number = std::invoke(place, f.*part);
+        if constexpr (std::integral<decltype(number)>) return static_cast<std::int64_t>(number);
+        return static_cast<double>(number);
+    };
+    return {key, unit, value, std::move(column)};
 }
 
 std::vector<Measure> size_rows() {
     return {
-        counted("sources_inserted", "",
-                [](const Finished& f) { return f.creation.sources_inserted; }),
-        counted("tree_nodes", "", [](const Finished& f) { return f.footprint.tree_nodes; }),
-        counted("cells", "", [](const Finished& f) { return f.footprint.cells; }, {"cells", "{}"}),
-        counted("control_nodes", "", [](const Finished& f) { return f.footprint.control_nodes; }),
-        counted("depth", "", [](const Finished& f) { return f.footprint.depth; }),
-        counted("bytes_total", "byte", [](const Finished& f) { return f.footprint.bytes_total(); },
-                {"MB", "{:.2f}", 1e-6}),
-        counted("bytes_payload", "byte",
-                [](const Finished& f) { return f.footprint.bytes_payload; }),
-        counted("bytes_topology", "byte",
-                [](const Finished& f) { return f.footprint.bytes_topology; }),
-        counted("bytes_auxiliary", "byte",
-                [](const Finished& f) { return f.footprint.bytes_auxiliary; }),
+        row("sources_inserted", &F::creation, &Creation::sources_inserted),
+        row("tree_nodes", &F::footprint, &Footprint::tree_nodes),
+        row("cells", &F::footprint, &Footprint::cells, {"cells", "{}"}),
+        row("control_nodes", &F::footprint, &Footprint::control_nodes),
+        row("depth", &F::footprint, &Footprint::depth),
+        row("bytes_total", &F::footprint, &Footprint::bytes_total, {"MB", "{:.2f}", 1e-6}, "byte"),
+        row("bytes_payload", &F::footprint, &Footprint::bytes_payload, {}, "byte"),
+        row("bytes_topology", &F::footprint, &Footprint::bytes_topology, {}, "byte"),
+        row("bytes_auxiliary", &F::footprint, &Footprint::bytes_auxiliary, {}, "byte"),
     };
 }
 
@@ -70,7 +63,7 @@ std::vector<Measure> time_rows() {
         {"grid ns", "{:.1f}", 1, "fastest access in grid order"});
     add("t_access_ns_single", "ns", [](const Finished& f) { return f.access_single.samples_ns; },
         {"single ns", "{:.1f}"});
-    rows.push_back(counted("access_batch", "", [](const Finished& f) { return f.access_batch; }));
+    rows.push_back(row("access_batch", &F::access_batch, std::identity()));
     return rows;
 }
 
@@ -90,41 +83,35 @@ std::string found_by_probes(const Finished& f) {
 }
 
 std::vector<Measure> accuracy_rows() {
-    using F = Finished;
     return {
         {"delta_S_max", "", [](const Finished& f) { return f.source_accuracy; }},
-        real("delta_R_max", &F::accuracy, &Accuracy::max, {"δ_R max", "{:.4f}"}),
-        real("delta_R_mean", &F::accuracy, &Accuracy::mean, {"δ_R mean", "{:.4f}"}),
-        real("delta_R_p95", &F::accuracy, &Accuracy::p95),
-        real("delta_R_p99", &F::accuracy, &Accuracy::p99, {"δ_R p99", "{:.4f}"}),
-        real("delta_R_fine_max", &F::accuracy_fine, &Accuracy::max, {"fine max", "{:.4f}"}),
-        real("delta_R_fine_mean", &F::accuracy_fine, &Accuracy::mean),
-        real("delta_R_fine_p95", &F::accuracy_fine, &Accuracy::p95),
-        real("delta_R_fine_p99", &F::accuracy_fine, &Accuracy::p99),
-        real("delta_metric_R_max", &F::accuracy, &Accuracy::riemannian_max),
-        real("coarser_max", &F::accuracy, &Accuracy::coarser_max),
-        real("coarser_share", &F::accuracy, &Accuracy::coarser_share),
-        real("coarser_fine_max", &F::accuracy_fine, &Accuracy::coarser_max),
-        real("coarser_fine_share", &F::accuracy_fine, &Accuracy::coarser_share,
-             {"fine coarser", "{:.2f} %", 100}),
-        real("finer_max", &F::accuracy, &Accuracy::finer_max),
-        real("finer_share", &F::accuracy, &Accuracy::finer_share),
-        real("finer_fine_max", &F::accuracy_fine, &Accuracy::finer_max),
-        real("finer_fine_share", &F::accuracy_fine, &Accuracy::finer_share,
-             {"fine finer", "{:.2f} %", 100}),
-        {"within_max", "", [](const F& f) { return f.accuracy.within(); }},
-        {"within_fine_max",
-         "",
-         [](const F& f) { return f.accuracy_fine.within(); },
-         {"within", "{:.3f}x"}},
-        real("G_det", &F::steepness, &Steepness::det, {"G_det", "{:.3f}"}),
-        real("G_dir", &F::steepness, &Steepness::dir, {"G_dir", "{:.3f}"}),
-        {"gradation_max_left",
-         "",
-         [](const F& f) { return f.creation.gradation.largest_ratio_left; },
-         {"G left", "{:.4f}"}},
-        counted("gradation_operations", "",
-                [](const Finished& f) { return f.creation.gradation.operations; }),
+        row("delta_R_max", &F::accuracy, &Accuracy::max, {"δ_R max", "{:.4f}"}),
+        row("delta_R_mean", &F::accuracy, &Accuracy::mean, {"δ_R mean", "{:.4f}"}),
+        row("delta_R_p95", &F::accuracy, &Accuracy::p95),
+        row("delta_R_p99", &F::accuracy, &Accuracy::p99, {"δ_R p99", "{:.4f}"}),
+        row("delta_R_fine_max", &F::accuracy_fine, &Accuracy::max, {"fine max", "{:.4f}"}),
+        row("delta_R_fine_mean", &F::accuracy_fine, &Accuracy::mean),
+        row("delta_R_fine_p95", &F::accuracy_fine, &Accuracy::p95),
+        row("delta_R_fine_p99", &F::accuracy_fine, &Accuracy::p99),
+        row("delta_metric_R_max", &F::accuracy, &Accuracy::riemannian_max),
+        row("coarser_max", &F::accuracy, &Accuracy::coarser_max),
+        row("coarser_share", &F::accuracy, &Accuracy::coarser_share),
+        row("coarser_fine_max", &F::accuracy_fine, &Accuracy::coarser_max),
+        row("coarser_fine_share", &F::accuracy_fine, &Accuracy::coarser_share,
+            {"fine coarser", "{:.2f} %", 100}),
+        row("finer_max", &F::accuracy, &Accuracy::finer_max),
+        row("finer_share", &F::accuracy, &Accuracy::finer_share),
+        row("finer_fine_max", &F::accuracy_fine, &Accuracy::finer_max),
+        row("finer_fine_share", &F::accuracy_fine, &Accuracy::finer_share,
+            {"fine finer", "{:.2f} %", 100}),
+        row("within_max", &F::accuracy, &Accuracy::within),
+        row("within_fine_max", &F::accuracy_fine, &Accuracy::within, {"within", "{:.3f}x"}),
+        row("G_det", &F::steepness, &Steepness::det, {"G_det", "{:.3f}"}),
+        row("G_dir", &F::steepness, &Steepness::dir, {"G_dir", "{:.3f}"}),
+        row("gradation_max_left", &F::creation,
+            [](const Creation& c) { return c.gradation.largest_ratio_left; }, {"G left", "{:.4f}"}),
+        row("gradation_operations", &F::creation,
+            [](const Creation& c) { return c.gradation.operations; }),
         // As text: JSON readers keep 53 bits of a number.
         {"checksum", "",
          [](const Finished& f) { return fmt::format("{:016x}", f.access_random.checksum); }},

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <concepts>
+
 #include "controlspace/study/measure.h"
 #include "study/grouped.h"
 #include "study/rank_correlation.h"
@@ -37,52 +39,54 @@ struct MeshMeasure {
     std::function<MeasuredValue(const MeshRow& row, const MeshRow* exact)> value;
 };
 
+/// A row of a number that `get` returns.
 template <class Get>
-MeshMeasure counted(const char* key, const Column& column, Get get) {
-    return {key, column, [get](const MeshRow& row, const MeshRow*) {
-                return MeasuredValue(static_cast<std::int64_t>(get(row)));
+MeshMeasure row(const char* key, const Column& column, Get get) {
+    return {key, column, [get](const MeshRow& mesh, const MeshRow*) -> MeasuredValue {
+                const auto number = get(mesh);
+                if constexpr (std::integral<decltype(number)>) {
+                    return static_cast<std::int64_t>(number);
+                } else {
+                    return number;
+                }
             }};
 }
-template <class Get>
-MeshMeasure real(const char* key, const Column& column, Get get) {
-    return {key, column,
-            [get](const MeshRow& row, const MeshRow*) { return MeasuredValue(get(row)); }};
-}
+/// A row of a number that meshes of the reference do not have.
 template <class Get>
 MeshMeasure compared(const char* key, const Column& column, Get get) {
-    return {key, column, [get](const MeshRow& row, const MeshRow*) {
-                return has_delta_r(row) ? MeasuredValue(get(row)) : MeasuredValue();
-            }};
+    return row(key, column, [get](const MeshRow& mesh) {
+        return has_delta_r(mesh) ? MeasuredValue(get(mesh)) : MeasuredValue();
+    });
 }
 
 const std::vector<MeshMeasure>& mesh_measures() {
     using Row = const MeshRow&;
     static const std::vector<MeshMeasure> all{
-        counted("tets", {"tets", "{}"}, [](Row r) { return r.conformity.tets; }),
-        counted("nodes", {"nodes", "{}"}, [](Row r) { return r.conformity.nodes; }),
-        counted("edges", {}, [](Row r) { return r.conformity.edges; }),
-        real("creation_s", {}, [](Row r) { return r.creation_s; }),
-        real("mesh_s", {"s", "{:.1f}"}, [](Row r) { return r.cost.seconds; }),
-        real("mesh_processor_s", {"CPU s", "{:.1f}"},
-             [](Row r) { return r.cost.processor_seconds; }),
-        counted("peak_bytes", {"MB", "{:.0f}", 1e-6}, [](Row r) { return r.cost.peak_bytes; }),
-        real("L_R", {"L_R", "{:.4f}"}, [](Row r) { return r.conformity.l_r; }),
+        row("tets", {"tets", "{}"}, [](Row r) { return r.conformity.tets; }),
+        row("nodes", {"nodes", "{}"}, [](Row r) { return r.conformity.nodes; }),
+        row("edges", {}, [](Row r) { return r.conformity.edges; }),
+        row("creation_s", {}, [](Row r) { return r.creation_s; }),
+        row("mesh_s", {"s", "{:.1f}"}, [](Row r) { return r.cost.seconds; }),
+        row("mesh_processor_s", {"CPU s", "{:.1f}"},
+            [](Row r) { return r.cost.processor_seconds; }),
+        row("peak_bytes", {"MB", "{:.0f}", 1e-6}, [](Row r) { return r.cost.peak_bytes; }),
+        row("L_R", {"L_R", "{:.4f}"}, [](Row r) { return r.conformity.l_r; }),
         {"",
          {"-exact", "{:+.4f}"},
          [](Row r, const MeshRow* exact) {
              return exact != nullptr ? MeasuredValue(r.conformity.l_r - exact->conformity.l_r)
                                      : MeasuredValue();
          }},
-        real("L_R_middle", {"middle", "{:.4f}"}, [](Row r) { return r.conformity.l_r_middle; }),
-        real("unit_share", {"unit", "{:.4f}"}, [](Row r) { return r.conformity.unit_share; }),
-        real("mean_length", {"length", "{:.3f}"}, [](Row r) { return r.conformity.mean_length; }),
-        real("quality_min", {"q min", "{:.3f}"}, [](Row r) { return r.conformity.quality_min; }),
-        real("quality_mean", {"q mean", "{:.3f}"}, [](Row r) { return r.conformity.quality_mean; }),
-        counted("queries", {"queries", "{}"}, [](Row r) { return r.cost.queries; }),
-        real("query_s", {}, [](Row r) { return r.cost.query_seconds; }),
+        row("L_R_middle", {"middle", "{:.4f}"}, [](Row r) { return r.conformity.l_r_middle; }),
+        row("unit_share", {"unit", "{:.4f}"}, [](Row r) { return r.conformity.unit_share; }),
+        row("mean_length", {"length", "{:.3f}"}, [](Row r) { return r.conformity.mean_length; }),
+        row("quality_min", {"q min", "{:.3f}"}, [](Row r) { return r.conformity.quality_min; }),
+        row("quality_mean", {"q mean", "{:.3f}"}, [](Row r) { return r.conformity.quality_mean; }),
+        row("queries", {"queries", "{}"}, [](Row r) { return r.cost.queries; }),
+        row("query_s", {}, [](Row r) { return r.cost.query_seconds; }),
         // Of the processors' time: on a shared machine the clock goes on while others run.
-        real("", {"share", "{:.2f} %", 100},
-             [](Row r) { return r.cost.query_seconds / r.cost.processor_seconds; }),
+        row("", {"share", "{:.2f} %", 100},
+            [](Row r) { return r.cost.query_seconds / r.cost.processor_seconds; }),
         compared("delta_R_max", {"δ_R max", "{:.3f}"}, [](Row r) { return r.delta_r_max; }),
         compared("delta_R_mean", {"δ_R mean", "{:.4f}"}, [](Row r) { return r.delta_r_mean; }),
     };

@@ -17,16 +17,16 @@ namespace controlspace {
 
 /// What came of meshing one field; nothing is measured where there is an error.
 struct MeshRow {
-    Case setting;        ///< of the exact field: of the first structure that it is compared with
+    Case setting = {};   ///< of the exact field: of the first structure that it is compared with
     bool exact = false;  ///< the reference itself was meshed, by no structure
-    std::filesystem::path saved;  ///< the control space of this file was meshed: the reference too
+    std::filesystem::path saved = {};  ///< the .ctrl that was meshed: the reference too
     Mesher mesher = Mesher::delaunay;
-    std::string error;
-    std::string shortfall;   ///< why a requested target was missed; empty where it was met
-    Conformity conformity;   ///< to the reference
-    double creation_s = 0;   ///< of the structure
-    MeshCost cost;           ///< memory: of the program and, if that is more, of MMG
-    double delta_r_max = 0;  ///< δ_R of the structure
+    std::string error = {};
+    std::string shortfall = {};  ///< why a requested target was missed; empty where it was met
+    Conformity conformity = {};  ///< to the reference
+    double creation_s = 0;       ///< of the structure
+    MeshCost cost = {};          ///< memory: of the program and, if that is more, of MMG
+    double delta_r_max = 0;      ///< δ_R of the structure
     double delta_r_mean = 0;
 };
 

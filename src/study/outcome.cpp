@@ -79,71 +79,60 @@ std::string named(const Rows& rows, const StudyRows& columns) {
     return text;
 }
 
-class Judge {
-public:
-    Judge(std::span<const Row> rows, const StudyRows& columns) : rows_(rows), columns_(columns) {}
+/// Where no row is within the factor.
+std::string nearest(const Rows& measured, double factor, bool is_asked, const StudyRows& columns) {
+    Rows finite = measured;
+    std::erase_if(finite, [](const Row* row) { return !std::isfinite(factor_of(*row)); });
+    const std::string found =
+        finite.empty()
+            ? "All errors are infinite"
+            : fmt::format("Closest: {}", named(least(finite, factor_of, rounding), columns));
+    if (is_asked) return found + "; the remarks of the rows say what would help.";
+    // Trees are adapted to the exact field, not to another reference.
+    if (measured.front()->setting.reference != &exact_reference_kind()) return found + ".";
+    return fmt::format("{}; --within {:.4g} adapts trees to it.", found, factor);
+}
 
-    Outcome outcome(const std::string& work, const Rows& measured, const Asked& asked,
-                    bool is_asked) const {
-        const double factor = asked.factor;
-        Outcome o{
-            .work = work, .factor = factor, .is_asked = is_asked, .measured = measured.size()};
-        Rows within = measured;
-        std::erase_if(within, [&](const Row* row) { return !asked.is_met(*row); });
-        o.within = indices(within);
-        std::string error = fmt::format("within {:.4g}x of the reference's at all probes{}", factor,
-                                        is_asked ? "" : " (by default)");
-        if (factor > largest_factor_within(asked.delta) * (1 + rounding)) {
-            error += fmt::format(", and δ <= {:.4g}", asked.delta);
-        }
-        if (within.empty()) {
-            o.sentences = {fmt::format("No structure has lengths {}.", error),
-                           nearest(measured, factor, is_asked)};
-            return o;
-        }
-        const Rows smallest =
-            least(within, [](const Row& row) { return row.number("bytes_total"); });
-        Rows fastest = fastest_of(within, access_key);
-        std::ranges::stable_sort(fastest, {},
-                                 [](const Row* row) { return row->number(access_key); });
-        const Rows accurate = least(within, factor_of, rounding);
-        o.smallest = indices(smallest);
-        o.fastest = indices(fastest);
-        o.most_accurate = indices(accurate);
-        o.sentences = {
-            fmt::format("Lengths {}: {}.", error, counted_rows(within.size(), measured.size())),
-            fmt::format("Smallest: {}.", named(smallest, columns_)),
-            fastest.empty() ? "Fastest: no statement, since the rows were not timed in turns."
-                            : fmt::format("Fastest: {}{}.",
-                                          fastest.size() > 1 ? "indistinguishable between " : "",
-                                          named(fastest, columns_)),
-            fmt::format("Most accurate: {}.", named(accurate, columns_))};
+/// Of the rows of a work that were measured, of `rows`.
+Outcome outcome_of(const std::string& work, const Rows& measured, const Asked& asked, bool is_asked,
+                   std::span<const Row> rows, const StudyRows& columns) {
+    const auto indices = [&](const Rows& of) {
+        std::vector<std::size_t> found;
+        for (const Row* row : of) found.push_back(static_cast<std::size_t>(row - rows.data()));
+        return found;
+    };
+    const double factor = asked.factor;
+    Outcome o{.work = work, .factor = factor, .is_asked = is_asked, .measured = measured.size()};
+    Rows within = measured;
+    std::erase_if(within, [&](const Row* row) { return !asked.is_met(*row); });
+    o.within = indices(within);
+    std::string error = fmt::format("within {:.4g}x of the reference's at all probes{}", factor,
+                                    is_asked ? "" : " (by default)");
+    if (factor > largest_factor_within(asked.delta) * (1 + rounding)) {
+        error += fmt::format(", and δ <= {:.4g}", asked.delta);
+    }
+    if (within.empty()) {
+        o.sentences = {fmt::format("No structure has lengths {}.", error),
+                       nearest(measured, factor, is_asked, columns)};
         return o;
     }
-
-private:
-    std::string nearest(const Rows& measured, double factor, bool is_asked) const {
-        Rows finite = measured;
-        std::erase_if(finite, [](const Row* row) { return !std::isfinite(factor_of(*row)); });
-        const std::string found =
-            finite.empty()
-                ? "All errors are infinite"
-                : fmt::format("Closest: {}", named(least(finite, factor_of, rounding), columns_));
-        if (is_asked) return found + "; the remarks of the rows say what would help.";
-        // Trees are adapted to the exact field, not to another reference.
-        if (measured.front()->setting.reference != &exact_reference_kind()) return found + ".";
-        return fmt::format("{}; --within {:.4g} adapts trees to it.", found, factor);
-    }
-
-    std::vector<std::size_t> indices(const Rows& rows) const {
-        std::vector<std::size_t> found;
-        for (const Row* row : rows) found.push_back(static_cast<std::size_t>(row - rows_.data()));
-        return found;
-    }
-
-    std::span<const Row> rows_;
-    const StudyRows& columns_;
-};
+    const Rows smallest = least(within, [](const Row& row) { return row.number("bytes_total"); });
+    Rows fastest = fastest_of(within, access_key);
+    std::ranges::stable_sort(fastest, {}, [](const Row* row) { return row->number(access_key); });
+    const Rows accurate = least(within, factor_of, rounding);
+    o.smallest = indices(smallest);
+    o.fastest = indices(fastest);
+    o.most_accurate = indices(accurate);
+    o.sentences = {
+        fmt::format("Lengths {}: {}.", error, counted_rows(within.size(), measured.size())),
+        fmt::format("Smallest: {}.", named(smallest, columns)),
+        fastest.empty()
+            ? "Fastest: no statement, since the rows were not timed in turns."
+            : fmt::format("Fastest: {}{}.", fastest.size() > 1 ? "indistinguishable between " : "",
+                          named(fastest, columns)),
+        fmt::format("Most accurate: {}.", named(accurate, columns))};
+    return o;
+}
 
 }  // namespace
 
@@ -165,7 +154,6 @@ std::vector<const Row*> fastest_of(std::span<const Row* const> timed, const std:
 
 std::vector<Outcome> outcomes(std::span<const Row> rows, const StudyRows& columns) {
     std::vector<Outcome> all;
-    const Judge judge(rows, columns);
     for (auto& [work, members] : grouped(
              rows, [&](const Row& row) { return work_label(row.setting, columns.parameters); })) {
         Rows measured = members;
@@ -185,10 +173,11 @@ std::vector<Outcome> outcomes(std::span<const Row> rows, const StudyRows& column
                      delta});
             }
         }
+        const bool is_asked = !targets.empty();
+        if (!is_asked) targets.insert(Asked());
         for (const Asked& target : targets) {
-            all.push_back(judge.outcome(work, measured, target, true));
+            all.push_back(outcome_of(work, measured, target, is_asked, rows, columns));
         }
-        if (targets.empty()) all.push_back(judge.outcome(work, measured, Asked(), false));
     }
     return all;
 }

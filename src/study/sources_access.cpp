@@ -41,18 +41,13 @@ std::vector<std::string> whole_sources(const Values& values) {
 }  // namespace
 
 Access<Study> sources_access() {
-    constexpr std::pair<const char*, SourcesKind> words[] = {{"sphere", SourcesKind::sphere},
-                                                             {"planes", SourcesKind::planes},
-                                                             {"none", SourcesKind::none}};
     Access<Study> access;
     access.type = ValueType::text;
     access.at_most = 0;
-    access.set = [words](Study& s, const Values& v) {
-        const auto word_of = [](const auto& word) { return std::string_view(word.first); };
+    access.set = [](Study& s, const Values& v) {
         std::vector<Primitive> primitives;
         std::vector<std::filesystem::path> files;
-        const SourcesKind* kind = nullptr;
-        std::string other;
+        std::optional<SourcesKind> kind;
         for (const std::string& what : whole_sources(v)) {
             if (what.empty()) {
                 throw InputError(
@@ -62,31 +57,21 @@ Access<Study> sources_access() {
                 primitives.push_back(parse_primitive(what));
                 continue;
             }
-            if (!other.empty() &&
-                (kind != nullptr || std::ranges::count(words, what, word_of) > 0)) {
-                throw InputError((kind != nullptr ? other : what) +
+            const auto word = from_name<SourcesKind>(what);
+            if (kind || (word && !files.empty())) {
+                throw InputError((kind ? std::string(name_of(*kind)) : what) +
                                  " is no file: give it alone, or only names of files");
             }
-            other = what;
-            const auto* word = std::ranges::find(words, what, word_of);
-            if (word != std::end(words)) {
-                kind = &word->second;
-            } else {
-                files.emplace_back(what == "-" ? "/dev/stdin" : what);
-            }
+            kind = word;
+            if (!word) files.emplace_back(what == "-" ? "/dev/stdin" : what);
         }
-        s.sources.kind = kind != nullptr ? *kind
-                         : files.empty() ? SourcesKind::none
-                                         : SourcesKind::file;
-        s.sources.file = files.empty() ? std::filesystem::path() : files.front();
-        if (!files.empty()) files.erase(files.begin());
-        s.sources.further_files = std::move(files);
+        s.sources.kind = kind.value_or(files.empty() ? SourcesKind::none : SourcesKind::file);
+        s.sources.files = std::move(files);
         s.sources.primitives = std::move(primitives);
     };
     access.get = [](const Study& s) {
-        Values names;
-        for (const std::string& name : source_names(s.sources)) names.emplace_back(name);
-        return names;
+        const std::vector<std::string> names = source_names(s.sources);
+        return Values(names.begin(), names.end());
     };
     return access;
 }

@@ -11,10 +11,9 @@ namespace controlspace {
 
 std::vector<std::string> source_names(const SourcesChoice& s) {
     std::vector<std::string> names;
-    if (s.kind == SourcesKind::sphere) names.emplace_back("sphere");
-    if (s.kind == SourcesKind::planes) names.emplace_back("planes");
-    if (s.kind == SourcesKind::none && s.primitives.empty()) names.emplace_back("none");
-    for (const auto& file : files_of(s)) names.push_back(file.string());
+    const bool is_word = is_sampled(s) || (s.kind == SourcesKind::none && s.primitives.empty());
+    if (is_word) names.emplace_back(name_of(s.kind));
+    for (const auto& file : s.files) names.push_back(file.string());
     for (const Primitive& primitive : s.primitives) names.push_back(to_string(primitive));
     return names;
 }
@@ -23,15 +22,8 @@ std::string sources_name(const SourcesChoice& s) {
     return fmt::format("{}", fmt::join(source_names(s), ","));
 }
 
-std::vector<std::filesystem::path> files_of(const SourcesChoice& s) {
-    if (s.kind != SourcesKind::file) return {};
-    std::vector<std::filesystem::path> files{s.file};
-    files.insert(files.end(), s.further_files.begin(), s.further_files.end());
-    return files;
-}
-
 std::vector<std::filesystem::path> input_files_of(const SourcesChoice& s) {
-    std::vector<std::filesystem::path> files = files_of(s);
+    std::vector<std::filesystem::path> files = s.files;
     for (const Primitive& primitive : s.primitives) {
         if (primitive.shape == Shape::surface) files.push_back(primitive.file);
     }

@@ -140,10 +140,7 @@ Study parse_study(std::string_view text, const std::filesystem::path& place,
     if (const toml::node* runs = table.get("runs")) {
         read_runs(*runs, place, parameters, run_keys, study);
     }
-    if (study.sources.kind == SourcesKind::file) {
-        study.sources.file = place.parent_path() / study.sources.file;
-        for (auto& file : study.sources.further_files) file = place.parent_path() / file;
-    }
+    for (auto& file : study.sources.files) file = place.parent_path() / file;
     for (Primitive& primitive : study.sources.primitives) {
         if (primitive.shape == Shape::surface) {
             primitive.file = place.parent_path() / primitive.file;

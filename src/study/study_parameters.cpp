@@ -35,14 +35,13 @@ Access<Study> length_or_none(Place place, double none = 0) {
 /// Several numbers at once; `what` they are is said where there are others.
 template <class Set, class Get>
 Access<Study> numbers(std::size_t count, const char* what, const Set& set, const Get& get) {
-    Access<Study> access;
-    access.at_most = count;
-    access.set = [=](Study& s, const Values& v) {
-        if (v.size() != count) throw InputError(fmt::format("give {}", what));
-        set(s, [&](std::size_t i) { return v[i].number(); });
-    };
-    access.get = get;
-    return access;
+    return {.at_most = count,
+            .set =
+                [=](Study& s, const Values& v) {
+                    if (v.size() != count) throw InputError(fmt::format("give {}", what));
+                    set(s, [&](std::size_t i) { return v[i].number(); });
+                },
+            .get = get};
 }
 
 Access<Study> name() {
@@ -113,7 +112,7 @@ std::function<bool(const Study&)> of_kind(SourcesKind kind) {
 std::function<bool(const Study&)> in_file(std::vector<std::string_view> endings) {
     return [=](const Study& s) {
         return s.sources.kind == SourcesKind::file &&
-               std::ranges::any_of(files_of(s.sources), [&](const auto& file) {
+               std::ranges::any_of(s.sources.files, [&](const auto& file) {
                    return has_ending(endings, lower_case_extension(file));
                });
     };

@@ -129,13 +129,14 @@ double finest_length_of(const Workload& workload) {
     return std::min(workload.field.finest_length, finest_length(workload.sources));
 }
 
-std::vector<PointSource> read_one(const SourcesChoice& choice, const FileReaders& readers) {
-    const std::string ending = lower_case_extension(choice.file);
+std::vector<PointSource> read_one(const std::filesystem::path& file, const SourcesChoice& choice,
+                                  const FileReaders& readers) {
+    const std::string ending = lower_case_extension(file);
     if (const auto reader = readers.sources.find(ending); reader != readers.sources.end()) {
-        return reader->second(choice);
+        return reader->second(file, choice);
     }
-    if (needs_reader(ending)) fail_without_reader(choice.file);
-    return read_sources(choice.file, choice.in_file.array);
+    if (needs_reader(ending)) fail_without_reader(file);
+    return read_sources(file, choice.in_file.array);
 }
 
 /// The sources of several files, one after the other.
@@ -146,7 +147,7 @@ struct JoinedSources {
     /// "source 17 (sources.csv, line 19)"
     std::string name(const SourcesChoice& choice, std::size_t index) const {
         std::string name = fmt::format("source {}", index);
-        const auto files = files_of(choice);
+        const auto& files = choice.files;
         for (std::size_t f = 0; f < of_file.size(); ++f) {
             if (index < of_file[f]) {
                 return name + fmt::format(" ({}, {})", files[f].string(),
@@ -160,10 +161,8 @@ struct JoinedSources {
 
 JoinedSources read_files(const SourcesChoice& choice, const FileReaders& readers) {
     JoinedSources joined;
-    for (const auto& file : files_of(choice)) {
-        SourcesChoice one = choice;
-        one.file = file;
-        const auto more = read_one(one, readers);
+    for (const auto& file : choice.files) {
+        const auto more = read_one(file, choice, readers);
         joined.of_file.push_back(more.size());
         joined.all.insert(joined.all.end(), more.begin(), more.end());
     }

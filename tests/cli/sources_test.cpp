@@ -211,3 +211,17 @@ TEST_CASE("exports are sources again: the field that is graded from them is clos
     CHECK(box.run("convert leaves.vtu leaves.csv").status == 0);
 }
 #endif
+
+TEST_CASE("a mesh without a solution is said to give the lengths of its required edges") {
+    const Sandbox box("mesh-alone");
+    const std::string mesh =
+        "MeshVersionFormatted 2 Dimension 3 Vertices 3 0 0 0 0  3 0 0 0  3 4 0 0 "
+        "Edges 1 1 2 0 RequiredEdges 1 1 End";
+    box.write("a.mesh", mesh);
+    const Outcome alone = box.run("convert a.mesh a.csv");
+    CHECK(alone.status == 0);
+    CHECK_THAT(alone.err, Contains("a.mesh has no solution beside it") && Contains("2 vertices"));
+    box.write("b.mesh", mesh);
+    box.write("b.sol", "MeshVersionFormatted 2 Dimension 3 SolAtVertices 3 1 1 1 1 1 End");
+    CHECK(box.run("convert b.mesh b.csv").err.empty());
+}

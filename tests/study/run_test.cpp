@@ -144,7 +144,7 @@ TEST_CASE("a study that cannot be run is refused before anything runs") {
     study.runs[0]["kd_depth"] = {1000};
     CHECK_THROWS_AS(PreparedStudy(study, {tree_catalogue()}), InputError);
     study = small_study({"K_L"});
-    study.sources = {.kind = SourcesKind::file, .file = "no/such/file.csv"};
+    study.sources = {.kind = SourcesKind::file, .files = {"no/such/file.csv"}};
     CHECK_THROWS_WITH(PreparedStudy(study, {tree_catalogue()}), Contains("no/such/file.csv"));
 }
 

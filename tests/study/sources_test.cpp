@@ -55,7 +55,9 @@ Workload workload_of(const Study& study, const FileReaders& readers = {}) {
 /// Sources of each file, whatever it is called.
 FileReaders readers_of(std::vector<PointSource> sources) {
     FileReaders readers;
-    readers.sources[".vtu"] = [sources](const SourcesChoice&) { return sources; };
+    readers.sources[".vtu"] = [sources](const std::filesystem::path&, const SourcesChoice&) {
+        return sources;
+    };
     return readers;
 }
 
@@ -67,7 +69,7 @@ TEST_CASE("primitives are given alike in words and in a study file, among files"
         parse_study("sources = ['a.csv', '" + ball + "', 'b.stl', '" + segment + "']", "s.toml");
     CHECK(words.sources == file.sources);
     CHECK(words.sources.kind == SourcesKind::file);
-    CHECK(files_of(words.sources) == std::vector<std::filesystem::path>{"a.csv", "b.stl"});
+    CHECK(words.sources.files == std::vector<std::filesystem::path>{"a.csv", "b.stl"});
     REQUIRE(words.sources.primitives.size() == 2);
     CHECK(words.sources.primitives[1] == parse_primitive(segment));
     CHECK(sources_name(words.sources) == "a.csv,b.stl," + ball + "," + segment);
@@ -76,7 +78,7 @@ TEST_CASE("primitives are given alike in words and in a study file, among files"
     CHECK(sources_name(with_sources(ball).sources) == ball);
     CHECK(with_sources("planes," + ball).sources.kind == SourcesKind::planes);
     CHECK(sources_name(with_sources("planes," + ball).sources) == "planes," + ball);
-    CHECK(with_sources(ball + ",a.csv").sources.file == "a.csv");
+    CHECK(with_sources(ball + ",a.csv").sources.files.at(0) == "a.csv");
     for (const Study& study : {words, with_sources("planes," + ball), with_sources(ball)}) {
         Study again;
         set_checked(row("sources").access, again, row("sources").access.get(study));

@@ -149,8 +149,8 @@ TEST_CASE("a study may have no sources, or those of a file called so") {
 }
 
 TEST_CASE("a file of sources is looked for beside the study file") {
-    CHECK(parse("sources = 'a/b.csv'").sources.file == "folder/a/b.csv");
-    CHECK(parse("sources = '/a/b.csv'").sources.file == "/a/b.csv");
+    CHECK(parse("sources = 'a/b.csv'").sources.files.at(0) == "folder/a/b.csv");
+    CHECK(parse("sources = '/a/b.csv'").sources.files.at(0) == "/a/b.csv");
 }
 
 TEST_CASE("what is wrong in a study file is named with its line") {

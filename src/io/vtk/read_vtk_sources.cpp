@@ -100,41 +100,33 @@ struct Values {
     bool at_points = true;
 };
 
-/// Arrays of numbers that have a name.
-std::vector<vtkDataArray*> arrays_of(vtkDataSetAttributes& data) {
-    std::vector<vtkDataArray*> arrays;
-    for (int i = 0; i < data.GetNumberOfArrays(); ++i) {
-        vtkDataArray* array = data.GetArray(i);
-        if (array != nullptr && array->GetName() != nullptr) arrays.push_back(array);
-    }
-    return arrays;
-}
-
 /// The array of that name, the only one of metrics without a name; of cells where points have none.
 /// `option` names one, for messages.
 Values array_named(const std::filesystem::path& path, vtkDataSet& grid, const std::string& name,
                    const char* option) {
     std::string all;
     for (const bool at_points : {true, false}) {
-        const auto arrays =
-            at_points ? arrays_of(*grid.GetPointData()) : arrays_of(*grid.GetCellData());
-        std::vector<vtkDataArray*> fitting;
-        std::vector<std::string> names;
-        for (vtkDataArray* array : arrays) {
+        vtkDataSetAttributes* data = grid.GetPointData();
+        if (!at_points) data = grid.GetCellData();
+        vtkDataArray* found = nullptr;
+        std::vector<std::string> names;  // of those that fit
+        for (int i = 0; i < data->GetNumberOfArrays(); ++i) {
+            vtkDataArray* array = data->GetArray(i);
+            if (array == nullptr || array->GetName() == nullptr) continue;  // of texts, or no name
             const std::string its_name = array->GetName();
             all.append(all.empty() ? "" : ", ").append(quote(its_name));
             if (!at_points) all.append(" (of cells)");
             if (name.empty() ? its_name.find(":metric") == its_name.npos : its_name != name)
                 continue;
-            fitting.push_back(array);
+            found = array;
             names.push_back(quote(its_name));
         }
-        if (fitting.size() > 1) {
+        if (names.size() > 1) {
             fail(path, fmt::format("{} of its arrays of {} can be meant: name one of {} ({})",
-                                   fitting.size(), at_points ? "points" : "cells",
+                                   names.size(), at_points ? "points" : "cells",
                                    fmt::join(names, ", "), option));
         }
-        if (!fitting.empty()) return {fitting.front(), at_points};
+        if (found != nullptr) return {found, at_points};
     }
     if (all.empty()) fail(path, "it has no arrays: give sizes or metrics at points or of cells");
     fail(path, fmt::format("no array is named {}, there are {}: name one ({})",

@@ -122,46 +122,41 @@ Access<Target> word(Place place) {
 /// The text or path at `place`; an empty one is none.
 template <class Target, class Place>
 Access<Target> text(Place place) {
-    Access<Target> access;
-    access.type = ValueType::text;
-    access.set = [place](Target& target, const Values& values) {
-        std::invoke(place, target) = values.front().text();
-    };
-    access.get = [place](const Target& target) -> Values {
-        const std::filesystem::path value = std::invoke(place, target);
-        return value.empty() ? Values{} : Values{value.string()};
-    };
-    return access;
+    return {.type = ValueType::text,
+            .set = [place](Target& target,
+                           const Values& v) { std::invoke(place, target) = v.front().text(); },
+            .get = [place](const Target& target) -> Values {
+                const std::filesystem::path value = std::invoke(place, target);
+                return value.empty() ? Values{} : Values{value.string()};
+            }};
 }
 
 /// The bool at `place`; one that is false is none.
 template <class Target, class Place>
 Access<Target> flag(Place place) {
-    Access<Target> access;
-    access.type = ValueType::flag;
-    access.set = [=](Target& target, const Values& values) {
-        std::invoke(place, target) = values.front().text() == "true";
-    };
-    access.get = [=](const Target& target) {
-        return std::invoke(place, target) ? Values{"true"} : Values{};
-    };
-    return access;
+    return {
+        .type = ValueType::flag,
+        .set = [=](Target& target,
+                   const Values& v) { std::invoke(place, target) = v.front().text() == "true"; },
+        .get =
+            [=](const Target& target) {
+                return std::invoke(place, target) ? Values{"true"} : Values{};
+            }};
 }
 
 /// The three coordinates at `place`.
 template <class Target, class Place>
 Access<Target> point(Place place) {
-    Access<Target> access;
-    access.at_most = 3;
-    access.set = [place](Target& target, const Values& v) {
-        if (v.size() != 3) throw InputError("give three numbers: x y z");
-        std::invoke(place, target) = Point(v[0].number(), v[1].number(), v[2].number());
-    };
-    access.get = [place](const Target& target) -> Values {
-        const Point& p = std::invoke(place, target);
-        return {p.x(), p.y(), p.z()};
-    };
-    return access;
+    return {.at_most = 3,
+            .set =
+                [place](Target& target, const Values& v) {
+                    if (v.size() != 3) throw InputError("give three numbers: x y z");
+                    std::invoke(place, target) = Point(v[0].number(), v[1].number(), v[2].number());
+                },
+            .get = [place](const Target& target) -> Values {
+                const Point& p = std::invoke(place, target);
+                return {p.x(), p.y(), p.z()};
+            }};
 }
 
 }  // namespace controlspace

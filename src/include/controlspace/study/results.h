@@ -81,7 +81,6 @@ private:
     std::filesystem::path folder_;
     std::vector<Row> written_;
     std::vector<Case> sampled_;  ///< whose fields are in files
-    std::size_t checked_ = 0;    ///< cases, written or not
     GrowingFile json_;
     GrowingFile csv_;
 };

@@ -45,8 +45,7 @@ struct FileSources {
 /// field with sources on top.
 struct SourcesChoice {
     SourcesKind kind = SourcesKind::sphere;
-    std::filesystem::path file;                             ///< file only
-    std::vector<std::filesystem::path> further_files = {};  ///< file only: their sources, too
+    std::vector<std::filesystem::path> files = {};  ///< file only, the sources of all together
     Sampling sampling = Sampling::regular;
     Point centre = Point::Zero();  ///< sphere only
     double radius = 0.8;           ///< sphere only
@@ -77,9 +76,7 @@ inline bool has_field(const SourcesChoice& s) {
     return s.field.kind != FieldKind::none || !s.primitives.empty();
 }
 
-/// All files of point sources, the first one first.
-std::vector<std::filesystem::path> files_of(const SourcesChoice& s);
-/// These, and files of surfaces and of a field.
+/// The files of sources, and those of primitives and of a field.
 std::vector<std::filesystem::path> input_files_of(const SourcesChoice& s);
 
 /// As in options and study files: "sphere", "none", or "folder/a.csv", "ball:0,0,0,r=1,h=0.1".
@@ -91,6 +88,13 @@ std::string sources_name(const SourcesChoice& s);
 /// `choice.kind` is neither `none` nor `file`.
 AnalyticField make_field(const FieldChoice& choice);
 
+/// Of `--sources`, beside names of files and primitives.
+template <>
+struct Words<SourcesKind> {
+    static constexpr Word<SourcesKind> table[] = {{SourcesKind::sphere, "sphere", "sampled"},
+                                                  {SourcesKind::planes, "planes", "sampled"},
+                                                  {SourcesKind::none, "none", "only a field"}};
+};
 template <>
 struct Words<Sampling> {
     static constexpr Word<Sampling> table[] = {

@@ -18,7 +18,9 @@ namespace controlspace {
 /// Readers of file formats, provided by the program that links their libraries.
 struct FileReaders {
     /// Sources of kind `file`, by the ending of the file's name in small letters (".vdb").
-    std::map<std::string, std::function<std::vector<PointSource>(const SourcesChoice&)>> sources;
+    std::map<std::string, std::function<std::vector<PointSource>(const std::filesystem::path&,
+                                                                 const SourcesChoice&)>>
+        sources;
     /// A field of kind `file`; may be empty.
     std::function<AnalyticField(const FieldChoice&)> vdb_field;
     /// The distance from the surface in a file; may be empty.
