@@ -49,7 +49,8 @@ void load(benchmark::State& state, const CatalogueEntry& entry) {
 
 int main(int argc, char** argv) {
     for (const CatalogueEntry& entry : tree_catalogue()) {
-        for (const auto& [name, run] : {std::pair("saving/", save), std::pair("loading/", load)}) {
+        for (const auto& [name, run] :
+             {std::pair("saving/", &save), std::pair("loading/", &load)}) {
             benchmark::RegisterBenchmark((name + entry.id).c_str(), run, entry)
                 ->Unit(benchmark::kMillisecond)
                 ->MeasureProcessCPUTime()

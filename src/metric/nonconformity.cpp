@@ -35,12 +35,6 @@ double nonconformity(const Metric& a, const Metric& b) {
         .norm();
 }
 
-double strict_nonconformity(const Metric& a, const Metric& b) {
-    const double delta = nonconformity(a, b);
-    if (is_isotropic(a) && is_isotropic(b)) return delta;
-    return std::max(delta, nonconformity_of_factor(largest_ratio(a, b)));
-}
-
 double directional_nonconformity(const Metric& a, const Metric& b) {
     const double delta = nonconformity(a, b);
     if (is_axis_aligned(a) && is_axis_aligned(b)) return delta;

@@ -7,7 +7,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/geometry/extent.h"
-#include "controlspace/metric/nonconformity.h"
+#include "controlspace/metric/intersection.h"
 
 namespace controlspace {
 namespace {
@@ -52,7 +52,7 @@ Metric mean_of(const SampledBlock& block, const Cube& cube) {
     return 1.0 / (cube.edge * cube.edge * cube.edge) * sum;
 }
 
-/// `most`: strict non-conformity, that of a factor of lengths.
+/// `most`: the factor between lengths.
 void settle(SampledBlock& block, const Cube& cube, double most) {
     const std::size_t first = SampledBlock::index(cube.i, cube.j, cube.k);
     if (cube.edge == 1) {
@@ -62,10 +62,12 @@ void settle(SampledBlock& block, const Cube& cube, double most) {
     Metric shared = block.metrics[first];
     // A mean of what is the same would differ by rounding.
     bool one = cube.all_of([&](std::size_t v) { return block.metrics[v] == shared; });
-    if (!one && most > 0) {
+    if (!one && most > 1) {
         shared = mean_of(block, cube);
-        one = cube.all_of(
-            [&](std::size_t v) { return strict_nonconformity(shared, block.metrics[v]) <= most; });
+        one = cube.all_of([&](std::size_t v) {
+            const Metric& m = block.metrics[v];
+            return is_within(shared, most, m) && is_within(m, most, shared);
+        });
     }
     if (one) {
         cube.for_each([&](std::size_t v, auto...) {
@@ -120,7 +122,7 @@ void sample_block(const ControlSpace& field, const VoxelLattice& lattice,
                         "another structure",
                         x.x(), x.y(), x.z(), to_string(block.metrics[v])));
     }
-    settle(block, whole, nonconformity_of_factor(1 + tolerance));
+    settle(block, whole, 1 + tolerance);
 }
 
 }  // namespace controlspace

@@ -9,16 +9,10 @@ namespace controlspace {
 /// symmetric; 0 for equal metrics, √3 (k + 1/k - 2) for a and k a.
 double nonconformity(const Metric& a, const Metric& b);
 
-/// The larger of δ and what it is for isotropic metrics that differ by a factor k, where k is the
-/// largest factor by which the lengths of a and b along one direction differ: at 0.1 no length is
-/// off by more than 1.27, whatever the metrics. δ alone may be small where thin metrics are turned
-/// a little, although some length differs by several times.
-double strict_nonconformity(const Metric& a, const Metric& b);
-
 /// The larger of δ and k + 1/k - 2, which is δ where lengths differ by the factor k along one
 /// direction alone: what adaptation keeps below its target. At 0.1 no length is off by more than
-/// 1.37, and of isotropic metrics, for which it is δ, by 1.27. `strict_nonconformity` gives such a
-/// direction √3 times that weight, so that it bounds all lengths alike.
+/// 1.37, and of isotropic metrics, for which it is δ, by 1.27. δ alone may be small where thin
+/// metrics are turned a little, although some length differs by several times.
 double directional_nonconformity(const Metric& a, const Metric& b);
 
 /// √3 (k + 1/k - 2): δ of isotropic metrics that differ by a factor k > 0.
