@@ -1,6 +1,5 @@
 #include "mesh/child_program.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sys/prctl.h>
@@ -11,10 +10,12 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <deque>
 #include <fstream>
+#include <memory>
 #include <thread>
 
 #include "controlspace/error.h"
@@ -44,22 +45,14 @@ double seconds_of(const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-class Descriptor {
-public:
-    Descriptor(const fs::path& path, int flags) : number_(::open(path.c_str(), flags, 0666)) {
-        if (number_ < 0) {
-            throw InputError(
-                fmt::format("cannot open {}: {}", path.string(), std::strerror(errno)));
-        }
-    }
-    ~Descriptor() { ::close(number_); }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    int number() const { return number_; }
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-private:
-    int number_;
-};
+/// In a mode of fopen; closed in programs that are run.
+File opened(const fs::path& path, const std::string& mode) {
+    File file(std::fopen(path.c_str(), (mode + "e").c_str()), std::fclose);
+    if (file) return file;
+    throw InputError(fmt::format("cannot open {}: {}", path.string(), std::strerror(errno)));
+}
 
 }  // namespace
 
@@ -68,8 +61,7 @@ ChildOutcome run_child(const std::vector<std::string>& arguments, const fs::path
     if (::access(arguments.front().c_str(), X_OK) != 0) {
         throw InputError(fmt::format("cannot run {}: {}", arguments.front(), std::strerror(errno)));
     }
-    const Descriptor in("/dev/null", O_RDONLY | O_CLOEXEC);
-    const Descriptor out(log, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
+    const File in = opened("/dev/null", "r"), out = opened(log, "w");
     std::vector<char*> words;
     for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
     words.push_back(nullptr);
@@ -79,7 +71,7 @@ ChildOutcome run_child(const std::vector<std::string>& arguments, const fs::path
         throw InputError(
             fmt::format("cannot start {}: {}", arguments.front(), std::strerror(errno)));
     }
-    if (child == 0) become(words.data(), folder.c_str(), in.number(), out.number());
+    if (child == 0) become(words.data(), folder.c_str(), ::fileno(in.get()), ::fileno(out.get()));
 
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
