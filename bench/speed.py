@@ -64,13 +64,10 @@ class Report:
                 names.append(parts[1])
         return names
 
-    def title(self, text):
-        self.lines += ["", "## " + text, ""]
-
-    def table(self, head, rows):
-        self.lines.append("| " + " | ".join(head) + " |")
-        self.lines.append("|---|" + "---:|" * (len(head) - 1))
-        self.lines += ["| " + " | ".join(row) + " |" for row in rows]
+    def table(self, title, head, rows):
+        self.lines += ["", "## " + title, "", "| " + " | ".join(head) + " |",
+                       "|---|" + "---:|" * (len(head) - 1),
+                       *("| " + " | ".join(row) + " |" for row in rows)]
 
 
 def base_of(structure):
@@ -95,7 +92,6 @@ def access_tables(report):
         orders = [o for o in ORDERS if names and report.ns(names[0], work, o) is not None]
         if not names:
             continue
-        report.title(f"Access, {work}")
         rows = []
         for name in names:
             linear = any(word in name for word in ("V", "trilinear"))
@@ -109,12 +105,11 @@ def access_tables(report):
                 told = ", ".join(number(r) or "-" for r in ratios)
                 row.append(f"{number(ns)} ({told})")
             rows.append(row)
-        report.table(["structure"] + orders, rows)
+        report.table(f"Access, {work}", ["structure"] + orders, rows)
 
 
 def access_targets(report):
     work, order = WORKS[0], "random"
-    report.title(f"Targets of access, {work}, {order} order")
     rows = []
     fine = {peer: report.ns(peer + "-fine", work, order)
             for peer in ("uniform-nearest", "openvdb-uniform-nearest")}
@@ -131,7 +126,8 @@ def access_targets(report):
             for peer, peer_ns in fine.items():
                 ratio = over(ns, peer_ns)
                 rows.append([name, peer + "-fine", number(ratio), "<= 1", verdict(ratio, 1)])
-    report.table(["structure", "against", "ratio", "target", ""], rows)
+    report.table(f"Targets of access, {work}, {order} order",
+                 ["structure", "against", "ratio", "target", ""], rows)
 
 
 def memory(report):
@@ -139,7 +135,6 @@ def memory(report):
         names = report.structures("access", work)
         if not names:
             continue
-        report.title(f"Bytes per leaf (grids: per cell), {work}")
         rows = []
         for name in names:
             parts = [report.median(f"access/{name}/{work}/random", key)
@@ -151,7 +146,8 @@ def memory(report):
             rows.append([name] + [f"{p:.1f}" for p in parts] +
                         [f"{read:.1f}", f"<= {target}" if target else "",
                          verdict(read, target) if target else ""])
-        report.table(["structure", "payload", "topology", "auxiliary", "payload + topology",
+        report.table(f"Bytes per leaf (grids: per cell), {work}",
+                     ["structure", "payload", "topology", "auxiliary", "payload + topology",
                       "target", ""], rows)
 
 
@@ -159,7 +155,6 @@ def creation(report):
     names = sorted({n.rsplit("/", 1)[0] for n in report.samples if n.startswith("creation/")})
     if not names:
         return
-    report.title("Creation: insertion and gradation")
     rows = []
     for name in sorted(names, key=lambda n: WORKS.index(n.split("/", 2)[2])):
         _, structure, work = name.split("/", 2)
@@ -175,7 +170,8 @@ def creation(report):
                      number(over(one, leaves) and 1e9 * one / leaves),
                      f"<= {target}" if target else "", verdict(seconds, target) if target else "",
                      number(over(one, many))])
-    report.table(["structure", "work", "leaves", "s", "ns/leaf", "target", "",
+    report.table("Creation: insertion and gradation",
+                 ["structure", "work", "leaves", "s", "ns/leaf", "target", "",
                   "all threads: times faster"], rows)
 
 
@@ -195,8 +191,8 @@ def parallel(report):
                     [number(report.median(name)), str(threads), number(ratio), f">= {target:.2g}",
                      "met" if ratio >= target else "missed"])
     if rows:
-        report.title("Many threads, random places")
-        report.table(["structure", "queries", "ns, one thread", "threads", "times faster", "target",
+        report.table("Many threads, random places",
+                     ["structure", "queries", "ns, one thread", "threads", "times faster", "target",
                       ""], rows)
 
 
@@ -215,7 +211,6 @@ def growth(report, output):
             point = [report.median(name, key) for key in
                      ("sources", "leaves", "s", "ns_random", "ns_elements")]
             series.setdefault((kind, structure), []).append(point)
-    report.title("Cost as work grows")
     rows = []
     for (kind, structure), points in series.items():
         large = [p for p in points if p[0] > 5e3]
@@ -229,7 +224,8 @@ def growth(report, output):
             ratio = last[column] / first[column]
             rows[-1] += [f"{exponent([(p[0], p[column]) for p in points]):.2f}",
                          f"{ratio:.2g}", f"{logs:.2g}", verdict(ratio, logs)]
-    report.table(["structure", "sources", "most leaves", "longest creation, s",
+    report.table("Cost as work grows",
+                 ["structure", "sources", "most leaves", "longest creation, s",
                   "exponent of creation", "target", ""] +
                  [f"{order}: {what}" for order in ("random", "elements")
                   for what in ("exponent of access", "last / first", "log n: last / first", "")],
