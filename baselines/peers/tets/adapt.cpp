@@ -1,6 +1,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 
 #include "baselines/peers/tets/background_tets.h"
 #include "cones/spatial_order.h"
@@ -25,33 +26,30 @@ Point on_near_faces(Point x, const Box& domain) {
 
 }  // namespace
 
-/// Places where tetrahedra are compared with a goal.
+/// A place where a tetrahedron is compared with a goal.
 struct BackgroundTets::Comparison {
-    std::vector<Point> x;
-    std::vector<Metric> wanted;
-
-    void ask(const ControlSpace& goal) {
-        wanted.resize(x.size());
-        sample_parallel(goal, x, wanted);
-    }
+    Place at;
+    Point x;
+    Metric wanted = {};
+    double departure = 0;
 };
 
 AdaptationReport BackgroundTets::adapt(const AdaptationGoal& goal) {
     options_.h_max = std::min(options_.h_max, goal.h_max);
     const GoalField wanted(goal, domain());
     clear(largest_metric(options_));
-    Comparison corners{positions(control_nodes(Neighbourhood::faces).graph), {}};
-    corners.ask(wanted);
-    assign(corners.wanted);
+    const std::vector<Point> corners = positions(control_nodes(Neighbourhood::faces).graph);
+    std::vector<Metric> at_corners(corners.size());
+    wanted.sample(corners, at_corners);
+    assign(at_corners);
 
-    Comparison named;
-    for (const PointSource& source : goal.sources) named.x.push_back(source.position);
-    for (const Point& place : goal.places) named.x.push_back(clamped(place));
-    // Each is searched from the one before.
-    std::vector<Point> near_the_last;
-    for (const std::uint32_t i : spatial_order(named.x)) near_the_last.push_back(named.x[i]);
-    named.x = std::move(near_the_last);
-    named.ask(wanted);
+    std::vector<Point> places(goal.places.begin(), goal.places.end());
+    for (const PointSource& source : goal.sources) places.push_back(source.position);
+    std::vector<Comparison> named;  // each is searched from the one before
+    for (const std::uint32_t i : spatial_order(places)) {
+        named.push_back({{}, clamped(places[i])});
+    }
+    ask(named, wanted);
     // Between the places that are compared it may miss the goal by somewhat more.
     const double allowed = 0.75 * goal.target;
     bool has_room = true;
@@ -65,77 +63,114 @@ AdaptationReport BackgroundTets::adapt(const AdaptationGoal& goal) {
         report.shortfall = "more tetrahedra would outgrow the cap on memory";
     } else if (!report.met) {
         report.shortfall =
-            "tetrahedra follow the field at sources, edges and five places inside: between "
-            "these it is missed; give a smaller target";
+            "tetrahedra follow the field at sources and where it is searched for their largest "
+            "errors: elsewhere it is missed; give a smaller target";
     }
     return report;
 }
 
-// Makes a vertex of the place where a tetrahedron misses the goal most: of its centre, places half
-// way from there to its corners, the middles of its edges, and what is named. Returns whether there
-// was any.
-bool BackgroundTets::refine(Comparison& named, const ControlSpace& goal, double allowed) {
-    Comparison places = named;
-    std::vector<Delaunay::Cell_handle> cells(named.x.size());
-    std::vector<Metric> own(named.x.size());
-    Delaunay::Cell_handle near;
-    for (std::size_t i = 0; i < named.x.size(); ++i) {
-        const Place place = locate(named.x[i], near);
-        near = cells[i] = place.cell;
-        own[i] = blended(place);
-    }
+void BackgroundTets::ask(std::span<Comparison> places, const ControlSpace& goal) {
+    std::vector<Point> x;
+    for (const Comparison& place : places) x.push_back(place.x);
+    std::vector<Metric> wanted(x.size());
+    sample_parallel(goal, x, wanted);
+    for (std::size_t i = 0; i < x.size(); ++i) places[i].wanted = wanted[i];
+}
+
+void BackgroundTets::compare(std::span<Comparison> places) const {
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+        places[i].departure = directional_nonconformity(blended(places[i].at), places[i].wanted);
+    });
+}
+
+// Of each new tetrahedron the place where it misses the goal most: of its centre, places half way
+// from there to its corners, and the middles of its edges, or, if these are close to the goal,
+// found from the worst of them by ever smaller steps towards its corners.
+std::vector<BackgroundTets::Comparison> BackgroundTets::worst_inside(const ControlSpace& goal,
+                                                                     double allowed) {
     const auto corners = static_cast<std::size_t>(corners_of_cell());
-    Comparison inside;
+    const auto at = [&](Place place, const std::array<double, 4>& weights) {
+        place.weights = weights;
+        Point x = Point::Zero();
+        for (std::size_t i = 0; i < corners; ++i) x += weights[i] * position(place.vertices[i]);
+        return Comparison{place, on_near_faces(x, domain())};
+    };
+    // From `from` to corner i by this share of the way.
+    const auto towards = [](std::array<double, 4> from, std::size_t i, double share) {
+        for (double& weight : from) weight *= 1 - share;
+        from[i] += share;
+        return from;
+    };
+    std::vector<Comparison> worst, tried;
+    std::vector<std::size_t> of;  // the tetrahedra that `tried` are of
+    const auto keep_worse = [&] {
+        ask(tried, goal);
+        compare(tried);
+        for (std::size_t i = 0; i < tried.size(); ++i) {
+            if (tried[i].departure > worst[of[i]].departure) worst[of[i]] = tried[i];
+        }
+        tried.clear();
+        of.clear();
+    };
     for_each_cell([&](Delaunay::Cell_handle cell) {
         if (cell->info().worst != TetState::unknown) return;
         cell->info().worst = TetState::settled;
-        std::array<Delaunay::Vertex_handle, 4> vertices;
-        for (std::size_t i = 0; i < corners; ++i) vertices[i] = cell->vertex(static_cast<int>(i));
-        const auto compare = [&](const std::array<double, 4>& weights) {
-            Point x = Point::Zero();
-            for (std::size_t i = 0; i < corners; ++i) {
-                x += weights[i] * position(vertices[i]);
-            }
-            inside.x.push_back(on_near_faces(x, domain()));
-            own.push_back(blended({cell, corners_of_cell(), vertices, weights}));
-            cells.push_back(cell);
-        };
+        Place place{.cell = cell, .count = corners_of_cell(), .vertices = {}, .weights = {}};
+        for (std::size_t i = 0; i < corners; ++i) {
+            place.vertices[i] = cell->vertex(static_cast<int>(i));
+        }
         std::array<double, 4> centre{};
         std::fill_n(centre.begin(), corners, 1 / static_cast<double>(corners));
-        compare(centre);
+        tried.push_back(at(place, centre));
         for (std::size_t i = 0; i < corners; ++i) {
-            std::array<double, 4> weights = centre;
-            for (double& weight : weights) weight /= 2;
-            weights[i] += 0.5;
-            compare(weights);
+            tried.push_back(at(place, towards(centre, i, 0.5)));
             for (std::size_t j = 0; j < i; ++j) {
-                weights = {};
-                weights[i] = weights[j] = 0.5;
-                compare(weights);
+                tried.push_back(at(place, towards(towards({}, i, 1), j, 0.5)));
             }
         }
+        of.resize(tried.size(), worst.size());
+        worst.push_back(tried.back());
     });
-    inside.ask(goal);
-    places.x.insert(places.x.end(), inside.x.begin(), inside.x.end());
-    places.wanted.insert(places.wanted.end(), inside.wanted.begin(), inside.wanted.end());
+    keep_worse();
+    for (double share = 0.4; share > 0.01; share *= 0.6) {
+        for (std::size_t k = 0; k < worst.size(); ++k) {
+            if (worst[k].departure > allowed || worst[k].departure < 0.2 * allowed) continue;
+            for (std::size_t i = 0; i < corners; ++i) {
+                tried.push_back(at(worst[k].at, towards(worst[k].at.weights, i, share)));
+            }
+            of.resize(tried.size(), k);
+        }
+        keep_worse();
+    }
+    return worst;
+}
 
-    std::vector<double> departures(places.x.size());
-    tbb::parallel_for(std::size_t{0}, departures.size(), [&](std::size_t i) {
-        departures[i] = directional_nonconformity(own[i], places.wanted[i]);
-    });
-    for (std::uint32_t i = 0; i < departures.size(); ++i) {
-        if (departures[i] <= allowed) continue;
-        std::uint32_t& worst = cells[i]->info().worst;
-        if (worst >= TetState::settled || departures[i] > departures[worst]) worst = i;
+// Makes a vertex of the place where a tetrahedron misses the goal most, of these and what is
+// named. Returns whether there was any.
+bool BackgroundTets::refine(std::vector<Comparison>& named, const ControlSpace& goal,
+                            double allowed) {
+    std::vector<Comparison> places = worst_inside(goal, allowed);
+    Delaunay::Cell_handle near;
+    for (Comparison& place : named) {
+        place.at = locate(place.x, near);
+        near = place.at.cell;
     }
-    Comparison chosen;
-    for (std::uint32_t i = 0; i < departures.size(); ++i) {
-        if (cells[i]->info().worst != i) continue;
-        chosen.x.push_back(places.x[i]);
-        chosen.wanted.push_back(places.wanted[i]);
-        cells[i]->info().worst = TetState::settled;  // numbers are those of this pass
+    compare(named);
+    places.insert(places.end(), named.begin(), named.end());
+    std::erase_if(places, [&](const Comparison& place) { return place.departure <= allowed; });
+    for (std::uint32_t i = 0; i < places.size(); ++i) {
+        std::uint32_t& worst = places[i].at.cell->info().worst;
+        if (worst == TetState::settled || places[i].departure > places[worst].departure) worst = i;
     }
-    return add(chosen.x, chosen.wanted) > 0;
+    std::vector<Point> x;
+    std::vector<Metric> metrics;
+    for (std::uint32_t i = 0; i < places.size(); ++i) {
+        if (places[i].at.cell->info().worst != i) continue;
+        places[i].at.cell->info().worst = TetState::settled;  // numbers are those of this pass
+        x.push_back(places[i].x);
+        metrics.push_back(places[i].wanted);
+    }
+    return add(x, metrics) > 0;
 }
 
 }  // namespace controlspace

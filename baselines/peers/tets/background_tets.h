@@ -87,7 +87,10 @@ private:
     /// The place nearest to x in the domain.
     Point clamped(const Point& x) const { return x.cwiseMax(domain().low).cwiseMin(domain().high); }
     struct Comparison;
-    bool refine(Comparison& named, const ControlSpace& goal, double allowed);
+    static void ask(std::span<Comparison> places, const ControlSpace& goal);
+    void compare(std::span<Comparison> places) const;
+    std::vector<Comparison> worst_inside(const ControlSpace& goal, double allowed);
+    bool refine(std::vector<Comparison>& named, const ControlSpace& goal, double allowed);
 
     SpaceOptions options_;
     TetBlend blend_;
