@@ -2,6 +2,8 @@
 
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
 
 #include "controlspace/error.h"
 #include "controlspace/space/catalogue.h"
@@ -9,13 +11,12 @@
 
 namespace controlspace {
 
-/// The builder of a system that stores what a structure of ours holds: it fills that structure, and
-/// `convert` makes the system's own form of it.
+/// The builder of a system that stores what a structure of ours holds: it fills that structure, of
+/// which `Space` is made.
+template <class Space>
 class ConvertedBuilder final : public ControlSpaceBuilder {
 public:
-    using Convert = std::unique_ptr<ControlSpace> (*)(const ControlSpace& ours);
-    ConvertedBuilder(std::unique_ptr<ControlSpaceBuilder> ours, Convert convert)
-        : ours_(std::move(ours)), convert_(convert) {}
+    explicit ConvertedBuilder(std::unique_ptr<ControlSpaceBuilder> ours) : ours_(std::move(ours)) {}
 
     InsertionReport insert(std::span<const PointSource> sources) override {
         return ours_->insert(sources);
@@ -26,13 +27,23 @@ public:
     AdaptationReport adapt(const AdaptationGoal& goal) override { return ours_->adapt(goal); }
     std::unique_ptr<ControlSpace> build(const BuildOptions& options) override {
         if (options.precision) throw InputError("a foreign system has no compact form");
-        return convert_(*ours_->build());
+        return std::make_unique<Space>(*ours_->build());
     }
     Box domain() const override { return ours_->domain(); }
 
 private:
     std::unique_ptr<ControlSpaceBuilder> ours_;
-    Convert convert_;
 };
+
+/// The row of a system that `Space` makes of what `Space::ours(options)` builds.
+template <class Space>
+CatalogueEntry converted_row(std::string id, std::string description) {
+    return {.id = std::move(id),
+            .description = std::move(description),
+            .construct = [](const SpaceOptions& options) -> std::unique_ptr<ControlSpaceBuilder> {
+                return std::make_unique<ConvertedBuilder<Space>>(Space::ours(options));
+            },
+            .capabilities = {SourceLeaves()}};
+}
 
 }  // namespace controlspace

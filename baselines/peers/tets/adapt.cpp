@@ -37,6 +37,7 @@ struct BackgroundTets::Comparison {
 AdaptationReport BackgroundTets::adapt(const AdaptationGoal& goal) {
     options_.h_max = std::min(options_.h_max, goal.h_max);
     const GoalField wanted(goal, domain());
+    is_isotropic_ = blend_ == TetBlend::view && wanted.has_ranges();
     clear(largest_metric(options_));
     const std::vector<Point> corners = positions(control_nodes(Neighbourhood::faces).graph);
     std::vector<Metric> at_corners(corners.size());
@@ -50,18 +51,13 @@ AdaptationReport BackgroundTets::adapt(const AdaptationGoal& goal) {
         named.push_back({{}, clamped(places[i])});
     }
     ask(named, wanted);
-    // Between the places that are compared it may miss the goal by somewhat more.
-    const double allowed = 0.75 * goal.target;
-    bool has_room = true;
-    while (has_room && refine(named, wanted, allowed)) {
-        has_room = bytes() <= static_cast<double>(options_.max_bytes);
-    }
+    // Beside the largest errors that are found there may be somewhat larger ones.
+    const double allowed = 0.9 * goal.target;
     AdaptationReport report;
+    while (refine(named, wanted, allowed, report.shortfall)) continue;
     report.reached = wanted.largest_departure(domain(), [&](auto x, auto out) { sample(x, out); });
-    report.met = has_room && report.reached <= goal.target;
-    if (!has_room) {
-        report.shortfall = "more tetrahedra would outgrow the cap on memory";
-    } else if (!report.met) {
+    report.met = report.shortfall.empty() && report.reached <= goal.target;
+    if (!report.met && report.shortfall.empty()) {
         report.shortfall =
             "tetrahedra follow the field at sources and where it is searched for their largest "
             "errors: elsewhere it is missed; give a smaller target";
@@ -146,9 +142,9 @@ std::vector<BackgroundTets::Comparison> BackgroundTets::worst_inside(const Contr
 }
 
 // Makes a vertex of the place where a tetrahedron misses the goal most, of these and what is
-// named. Returns whether there was any.
+// named. Returns whether there was any, and room for them.
 bool BackgroundTets::refine(std::vector<Comparison>& named, const ControlSpace& goal,
-                            double allowed) {
+                            double allowed, std::string& shortfall) {
     std::vector<Comparison> places = worst_inside(goal, allowed);
     Delaunay::Cell_handle near;
     for (Comparison& place : named) {
@@ -169,6 +165,10 @@ bool BackgroundTets::refine(std::vector<Comparison>& named, const ControlSpace& 
         places[i].at.cell->info().worst = TetState::settled;  // numbers are those of this pass
         x.push_back(places[i].x);
         metrics.push_back(places[i].wanted);
+    }
+    if (bytes_with(x.size()) > static_cast<double>(options_.max_bytes)) {
+        shortfall = "more tetrahedra would outgrow the cap on memory";
+        return false;
     }
     return add(x, metrics) > 0;
 }

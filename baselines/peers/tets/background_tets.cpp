@@ -12,6 +12,7 @@
 #include "controlspace/input_errors.h"
 #include "controlspace/metric/blend.h"
 #include "controlspace/metric/intersection.h"
+#include "controlspace/sources/riemannian.h"
 
 namespace controlspace {
 
@@ -40,12 +41,16 @@ BackgroundTets::BackgroundTets(const SpaceOptions& options, TetBlend blend)
 }
 
 Metric BackgroundTets::encoded(const Metric& m) const {
-    if (blend_ == TetBlend::metrics) return m;
+    if (blend_ == TetBlend::metrics || is_isotropic_) return m;
+    if (blend_ == TetBlend::view) return to_riemannian(m);
     return mapped(m, [](double length) { return std::log(length); });
 }
 
 Metric BackgroundTets::decoded(const Metric& value) const {
-    if (blend_ == TetBlend::metrics) return value;
+    if (blend_ == TetBlend::metrics || is_isotropic_) return value;
+    if (blend_ == TetBlend::view) {
+        return mapped(value, [](double inverse_square) { return 1 / std::sqrt(inverse_square); });
+    }
     return mapped(value, [](double log) { return std::exp(log); });
 }
 
@@ -103,9 +108,7 @@ InsertionReport BackgroundTets::insert(std::span<const PointSource> sources) {
     const auto refused = std::ranges::find_if_not(
         sources, [&](const PointSource& source) { return is_valid(source, domain()); });
     const auto count = static_cast<std::size_t>(refused - sources.begin());
-    // CGAL makes some 6.8 tetrahedra of each vertex.
-    const double vertex_bytes = sizeof(Delaunay::Vertex) + 6.8 * sizeof(Delaunay::Cell);
-    const double needed = bytes() + static_cast<double>(count) * vertex_bytes;
+    const double needed = bytes_with(count);
     if (needed > static_cast<double>(options_.max_bytes)) {
         throw MemoryLimitError(static_cast<std::size_t>(needed),
                                fmt::format("tetrahedra of {} sources take about {:.3g} MB: raise "
@@ -240,6 +243,12 @@ double BackgroundTets::bytes() const {
     const Delaunay::Triangulation_data_structure& tds = mesh_.tds();
     return static_cast<double>(tds.vertices().capacity() * sizeof(Delaunay::Vertex) +
                                tds.cells().capacity() * sizeof(Delaunay::Cell));
+}
+
+double BackgroundTets::bytes_with(std::size_t vertices) const {
+    // CGAL makes some 6.8 tetrahedra of each vertex.
+    return bytes() + static_cast<double>(vertices) *
+                         (sizeof(Delaunay::Vertex) + 6.8 * sizeof(Delaunay::Cell));
 }
 
 Footprint BackgroundTets::footprint() const {

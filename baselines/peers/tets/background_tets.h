@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -16,8 +17,9 @@
 
 namespace controlspace {
 
-/// What is linear within a tetrahedron.
-enum class TetBlend { metrics, logarithms };
+/// What is linear within a tetrahedron. `view`: what is in Gmsh's views, for adaptation: lengths
+/// where all sources are isotropic, otherwise M^-2.
+enum class TetBlend { metrics, logarithms, view };
 
 /// A background mesh, as meshers and error estimators use it: CGAL's Delaunay tetrahedra of the
 /// sources and the box's corners, a metric at each vertex; in a flat domain triangles.
@@ -84,16 +86,20 @@ private:
     /// The corners alone, with the metric.
     void clear(const Metric& metric);
     double bytes() const;
+    /// With so many vertices more.
+    double bytes_with(std::size_t vertices) const;
     /// The place nearest to x in the domain.
     Point clamped(const Point& x) const { return x.cwiseMax(domain().low).cwiseMin(domain().high); }
     struct Comparison;
     static void ask(std::span<Comparison> places, const ControlSpace& goal);
     void compare(std::span<Comparison> places) const;
     std::vector<Comparison> worst_inside(const ControlSpace& goal, double allowed);
-    bool refine(std::vector<Comparison>& named, const ControlSpace& goal, double allowed);
+    bool refine(std::vector<Comparison>& named, const ControlSpace& goal, double allowed,
+                std::string& shortfall);
 
     SpaceOptions options_;
     TetBlend blend_;
+    bool is_isotropic_ = false;  // as adaptation to isotropic sources alone leaves it
     Delaunay mesh_;
     bool graded_ = false;
     mutable LastCell last_;
