@@ -10,6 +10,7 @@
 #include "case_of_each.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
+#include "controlspace/measure/reference.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/riemannian.h"
 #include "peers/places.h"
@@ -102,6 +103,22 @@ TEST_CASE("gmsh-view of tensors holds M^-2: exact at sources, and linear in it b
     const auto assigned = nodes.build();
     for (const Point& x : places_in(box, 500)) {
         CHECK(nonconformity(sample_at(*assigned, x), field(x)) < 1e-6);
+    }
+}
+
+TEST_CASE("gmsh-view is adapted for what it answers: lengths, or M^-2") {
+    const Box box{Point(0, 0, 0), Point(1, 1, 1)};
+    const bool has_layers = GENERATE(false, true);
+    const auto sources = sources_in(box, has_layers);
+    const auto builder = row(gmsh_rows(), "gmsh-view").make({.domain = box});
+    AdaptationGoal goal;
+    goal.sources = sources;
+    goal.target = 0.1;
+    CHECK(builder->adapt(goal).met);
+    const auto space = builder->build();
+    const auto exact = exact_reference(sources, goal.ratio, largest_metric(box));
+    for (const Point& x : places_in(box, 2000)) {
+        CHECK(nonconformity(sample_at(*space, x), sample_at(*exact, x)) < goal.target);
     }
 }
 

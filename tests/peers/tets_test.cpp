@@ -224,6 +224,28 @@ CASE_OF_EACH(row, tets_rows(), "on a sphere far from the exact field unless adap
     CHECK(adapted->build()->footprint().control_nodes < graded->build()->footprint().control_nodes);
 }
 
+CASE_OF_EACH(row, tets_rows(), "narrow peaks between sources are found: the middle of a sphere") {
+    const auto sources = sample_sphere({.h = 0.04});
+    const Box box{Point(-1, -1, -1), Point(1, 1, 1)};
+    const auto builder = made(row, box);
+    AdaptationGoal goal;
+    goal.sources = sources;
+    goal.target = 0.02;
+    CHECK(builder->adapt(goal).met);
+    std::vector<Point> x;
+    for (int i = 0; i < 61 * 61 * 61; ++i) {
+        x.push_back(Point(i % 61, i / 61 % 61, i / (61 * 61)) / 30 - Point(1, 1, 1));
+    }
+    std::vector<Metric> own(x.size()), wanted(x.size());
+    builder->build()->sample(x, own);
+    exact_reference(sources, goal.ratio, largest_metric(box))->sample(x, wanted);
+    double largest = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        largest = std::max(largest, nonconformity(own[i], wanted[i]));
+    }
+    CHECK(largest <= goal.target);
+}
+
 CASE_OF_EACH(row, tets_rows(), "a smaller target gives a finer mesh that is nearer") {
     const auto sources = sample_sphere({.h = 0.15});
     std::size_t nodes = 0;
@@ -248,6 +270,22 @@ TEST_CASE("a background mesh says what it cannot do") {
     sources[2].position.x() = 17;
     CHECK_THROWS_WITH(builder->insert(sources), Catch::Contains("source 2"));
     CHECK(builder->build()->footprint().control_nodes == 10);
+}
+
+CASE_OF_EACH(row, tets_rows(), "adaptation ends where the next tetrahedra would outgrow the cap") {
+    constexpr std::size_t cap = 400000;
+    const auto builder =
+        row.make({.domain = {Point(-1, -1, -1), Point(1, 1, 1)}, .max_bytes = cap});
+    const auto sources = sample_sphere({.h = 0.1});
+    AdaptationGoal goal;
+    goal.sources = sources;
+    goal.target = 0.01;
+    const AdaptationReport report = builder->adapt(goal);
+    CHECK_FALSE(report.met);
+    CHECK(report.shortfall.find("cap on memory") != std::string::npos);
+    const std::size_t bytes = builder->build()->footprint().bytes_total();
+    CHECK(bytes > cap / 10);
+    CHECK(bytes < cap * 3 / 2);  // the number of tetrahedra is estimated
 }
 
 CASE_OF_EACH(row, tets_rows(), "what was saved answers alike") {
