@@ -89,18 +89,17 @@ def least(rows, cost, structure):
 
 # ---- What to choose
 
-def winner(works, delta, cost):
-    """(structure, number of works on which none is cheaper), and the works that any reaches."""
+def winners(works, delta, cost):
+    """{structure: on how many works none is cheaper}, most first, and the rows of works that any reaches."""
     reached = [rows for rows in ([r for r in w.rows if reaches(r, delta)] for w in works) if rows]
     wins = Counter(s for rows in reached for s in cheapest(rows, cost))
-    if not wins:
-        return None, 0, reached
     # Of structures with as many wins the one that loses least elsewhere.
-    def loss(structure):
-        return median(least(rows, cost, structure) / min(r[cost] for r in rows) for rows in reached)
+    return dict(sorted(wins.items(), key=lambda win: (-win[1], over_the_least(reached, cost, win[0])))), reached
 
-    best = min(wins, key=lambda s: (-wins[s], loss(s)))
-    return best, wins[best], reached
+
+def over_the_least(reached, cost, structure):
+    """The median of its cost over that of the cheapest."""
+    return median(least(rows, cost, structure) / min(r[cost] for r in rows) for rows in reached)
 
 
 def best_of_others(reached, cost, other):
@@ -117,28 +116,40 @@ def best_of_others(reached, cost, other):
     return best, found.get(best)
 
 
+def two_digits(number):
+    return f"{float(f'{number:.2g}'):g}"
+
+
 def sentence(works, what, delta, cost, wish):
-    best, wins, reached = winner(works, delta, cost)
-    if not best:
+    wins, reached = winners(works, delta, cost)
+    if not wins:
         return f"{what}, δ ≤ {delta}: no system reaches it on any of {counted(len(works), 'work')}."
-    text = f"{what}, δ ≤ {delta}: {best} is {wish} on {wins} of {counted(len(reached), 'work')}"
-    others = "this project's structures" if is_foreign(best) else "the foreign systems"
+    (best, times), *others = list(wins.items())[:3]
+    text = f"{what}, δ ≤ {delta}: {best} is {wish} on {times} of {counted(len(reached), 'work')}"
+    text += "".join(f", {other} on {times}" for other, times in others)
+    group = "this project's structures" if is_foreign(best) else "the foreign systems"
     nearest, ratio = best_of_others(reached, cost, best)
-    if not nearest:
-        return text + f"; of {others} none reaches it on half of these."
-    return text + f"; of {others} {nearest} comes nearest, at {ratio:.2g} times that (median)."
+    if nearest:
+        text += f"; of {group} {nearest} comes nearest to {best}, at {two_digits(ratio)} times that (median)"
+    else:
+        text += f"; of {group} none reaches it on half of these"
+    if cost == "creation_s":
+        there = [rows for rows in reached if least(rows, cost, best) < math.inf]
+        slower = over_the_least(there, "t_access_ns_random", best)
+        text += f"; at random places {best} takes {two_digits(slower)} times as long as the fastest"
+    return text + "."
 
 
 def choices(works):
     """Five sentences."""
     isotropic = [w for w in works if w.name not in TENSORS]
     tensors = [w for w in works if w.name in TENSORS]
-    wanted = [(isotropic, "Isotropic", 0.1, "memory_MB", "smallest"),
-              (isotropic, "Isotropic", 0.1, "t_access_ns_random", "fastest at random places"),
-              (isotropic, "Isotropic", 0.02, "memory_MB", "smallest"),
-              (tensors, "Tensors", 0.1, "memory_MB", "smallest"),
-              (tensors, "Tensors", 0.1, "t_access_ns_random", "fastest at random places")]
-    return [sentence(*one) for one in wanted if one[0]]
+    memory = "memory_MB", "smallest"
+    access = "t_access_ns_random", "fastest at random places"
+    wanted = [(isotropic, "Isotropic", *memory), (isotropic, "Isotropic", *access),
+              (isotropic, "Isotropic", "creation_s", "created fastest"), (tensors, "Tensors", *memory),
+              (tensors, "Tensors", *access)]
+    return [sentence(those, what, DELTAS[0], *wish) for those, what, *wish in wanted if those]
 
 
 # ---- Tables

@@ -46,7 +46,7 @@ class Page(WithFolder):
         html = (self.folder / "report.html").read_text()
         ElementTree.fromstring(html.replace("<!DOCTYPE html>\n", ""))
         for text in ("K_oL", "tets-linear", "direct", "netgen-localh", "bench/peers --quick", "A busy machine.",
-                     "Sphere of the paper, isotropic", "Sphere, lengths [4, 0.25]: 16:1"):
+                     "Sphere of the paper, isotropic", "Sphere, lengths [4, 0.25]: 4:1"):
             self.assertIn(text, readme)
             self.assertIn(text, html)
         self.assertIn(f"sphere-layers: {REASON}", readme)
@@ -102,14 +102,17 @@ class Choice(WithFolder):
 
     def test_sentences_follow_from_the_numbers(self):
         small = [row("K_V", megabytes=1, random=(9.0,)), row("tets-linear", megabytes=3, random=(18.0,)),
-                 row("uniform-nearest", megabytes=5, random=(3.0,)), row("kd-nearest", 0.5, 0.1)]
+                 row("uniform-nearest", megabytes=5, random=(3.0,), creation=4.0),
+                 row("kd-nearest-all", 0.01, 9, (30.0,), creation=0.25), row("kd-nearest", 0.5, 0.1)]
         works = self.works(sphere=small, planes=small, scattered=[row("kd-nearest", megabytes=0.5),
                                                                   row("K_V", megabytes=1)])
-        memory, access, finer = peers_page.choices(works)
-        self.assertIn("K_V is smallest on 2 of 3 works", memory)
-        self.assertIn("tets-linear comes nearest, at 3 times", memory)
+        memory, access, creation = peers_page.choices(works)
+        self.assertIn("K_V is smallest on 2 of 3 works, kd-nearest on 1;", memory)
+        self.assertIn("tets-linear comes nearest to K_V, at 3 times that", memory)
         self.assertIn("uniform-nearest is fastest at random places on 2 of 3 works", access)
-        self.assertIn("no system reaches it on any of 3 works", finer)
+        self.assertIn("kd-nearest-all is created fastest on 2 of 3 works", creation)
+        self.assertIn("of this project's structures K_V comes nearest to kd-nearest-all, at 4 times that", creation)
+        self.assertIn("at random places kd-nearest-all takes 10 times as long as the fastest", creation)
 
     def test_tensors_are_judged_apart(self):
         works = self.works(sphere=[row("K_V")], thin_layers=[row("tets-log")])
