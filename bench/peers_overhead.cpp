@@ -4,48 +4,47 @@
 //   peers_overhead [NUMBER OF PLACES [SAMPLES]]
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
-#include <fmt/format.h>
-#ifdef PEER_netgen
+// Netgen's, before MPI's; mystdlib.h before the others.
+// clang-format off
 #include <mystdlib.h>
-
 #include <gprim.hpp>
 #include <meshing/localh.hpp>
 #include <myadt.hpp>
-#endif
-#ifdef PEER_tets
+// clang-format on
+
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 #include <CGAL/property_map.h>
 #include <CGAL/spatial_sort.h>
-#endif
-#ifdef PEER_p4est
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+#include <gmsh.h>
+#include <nanovdb/NanoVDB.h>
+#include <nanovdb/util/OpenToNanoVDB.h>
+#include <nanovdb/util/SampleFromVoxels.h>
+#include <openvdb/Grid.h>
 #include <p8est.h>
 #include <p8est_extended.h>
 #include <p8est_search.h>
-#endif
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <memory>
+#include <nanoflann.hpp>
 #include <random>
 #include <span>
 #include <string>
 #include <vector>
-#ifdef PEER_kd_nearest
-#include <nanoflann.hpp>
-#endif
-#ifdef PEER_nanovdb
-#include <nanovdb/NanoVDB.h>
-#include <nanovdb/util/OpenToNanoVDB.h>
-#include <nanovdb/util/SampleFromVoxels.h>
-#include <openvdb/Grid.h>
-#endif
 
+#include "baselines/peers/gmsh/gmsh_classes.h"
 #include "baselines/peers/peer_rows.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
@@ -74,7 +73,6 @@ std::unique_ptr<ControlSpace> finished(const CatalogueEntry& row,
     return builder->build();
 }
 
-#ifdef PEER_kd_nearest
 struct Places {
     std::span<const PointSource> sources;
     std::size_t kdtree_get_point_count() const { return sources.size(); }
@@ -102,9 +100,7 @@ Loop bare_nanoflann(std::span<const PointSource> sources) {
         }
     };
 }
-#endif
 
-#ifdef PEER_netgen
 netgen::Point<3> netgen_point(const Point& p) { return {p.x(), p.y(), p.z()}; }
 Loop bare_netgen(std::span<const PointSource> sources) {
     std::srand(1);  // LocalH moves its box by a random amount
@@ -115,9 +111,7 @@ Loop bare_netgen(std::span<const PointSource> sources) {
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = sizes->GetH(netgen_point(x[i]));
     };
 }
-#endif
 
-#ifdef PEER_nanovdb
 // The two grids, of the field at the voxels' centres or at their corners.
 template <int order>
 Loop bare_nanovdb(const ControlSpace& field) {
@@ -150,19 +144,18 @@ Loop bare_nanovdb(const ControlSpace& field) {
         }
     };
 }
-#endif
 
-#ifdef PEER_tets
-// Tetrahedra of the sources and corners, their vertices' lengths those of the field; places in
-// CGAL's own order, each searched from the one before.
-Loop bare_tets(const ControlSpace& field, std::span<const PointSource> sources) {
-    using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-    using Mesh = CGAL::Delaunay_triangulation_3<
-        Kernel, CGAL::Triangulation_data_structure_3<
-                    CGAL::Triangulation_vertex_base_with_info_3<double, Kernel>,
-                    CGAL::Delaunay_triangulation_cell_base_3<Kernel>>>;
-    const auto place = [](const Point& p) { return Kernel::Point_3(p.x(), p.y(), p.z()); };
-    const auto mesh = std::make_shared<Mesh>();
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Mesh =
+    CGAL::Delaunay_triangulation_3<Kernel,
+                                   CGAL::Triangulation_data_structure_3<
+                                       CGAL::Triangulation_vertex_base_with_info_3<double, Kernel>,
+                                       CGAL::Delaunay_triangulation_cell_base_3<Kernel>>>;
+Kernel::Point_3 place(const Point& p) { return {p.x(), p.y(), p.z()}; }
+
+/// Tetrahedra of the sources and corners, their vertices' lengths those of the field.
+std::shared_ptr<Mesh> tetrahedra(const ControlSpace& field, std::span<const PointSource> sources) {
+    auto mesh = std::make_shared<Mesh>();
     const auto add = [&](const Point& p) {
         mesh->insert(place(p))->info() = sample_at(field, p).xx;
     };
@@ -170,6 +163,12 @@ Loop bare_tets(const ControlSpace& field, std::span<const PointSource> sources) 
     for (int i = 0; i < 8; ++i) {
         add({i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0});
     }
+    return mesh;
+}
+
+// Places in CGAL's own order, each searched from the one before.
+Loop bare_tets(const ControlSpace& field, std::span<const PointSource> sources) {
+    const auto mesh = tetrahedra(field, sources);
     return [=](std::span<const Point> x, std::span<double> out) {
         using Numbered = std::pair<Kernel::Point_3, std::size_t>;
         std::vector<Numbered> sorted;
@@ -195,9 +194,60 @@ Loop bare_tets(const ControlSpace& field, std::span<const PointSource> sources) 
         }
     };
 }
-#endif
 
-#ifdef PEER_p4est
+/// A field of the given kind in a model of its own, evaluated one place after the other.
+template <class GmshField>
+Loop bare_gmsh(const std::string& kind, const auto& set) {
+    gmsh::model::add("bare");
+    const int tag = gmsh::model::mesh::field::add(kind);
+    set(tag);
+    auto* field = reinterpret_cast<GmshField*>(GModel::current()->getFields()->get(tag));
+    return [field](std::span<const Point> x, std::span<double> out) {
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            out[i] = (*field)(x[i].x(), x[i].y(), x[i].z(), nullptr);
+        }
+    };
+}
+
+Loop bare_structured(const ControlSpace& space) {
+    const auto path =
+        std::filesystem::temp_directory_path() / fmt::format("peers-overhead-{}", ::getpid());
+    std::ofstream file(path);
+    fmt::print(file, "-1 -1 -1\n{0} {0} {0}\n{1} {1} {1}\n", voxel, voxels + 1);
+    for (int i = 0; i <= voxels; ++i) {
+        for (int j = 0; j <= voxels; ++j) {
+            for (int k = 0; k <= voxels; ++k) {
+                const Point x = domain.low + voxel * Vector(i, j, k);
+                fmt::print(file, "{}\n", sample_at(space, x).xx);
+            }
+        }
+    }
+    file.close();
+    const Loop loop = bare_gmsh<StructuredField>("Structured", [&](int tag) {
+        gmsh::model::mesh::field::setString(tag, "FileName", path);
+        gmsh::model::mesh::field::setNumber(tag, "TextFormat", 1);
+    });
+    double read = 0;
+    loop({&domain.low, 1}, {&read, 1});
+    std::filesystem::remove(path);
+    return loop;
+}
+
+Loop bare_view(const ControlSpace& space, std::span<const PointSource> sources) {
+    const auto mesh = tetrahedra(space, sources);
+    std::vector<double> data;
+    for (const auto& cell : mesh->finite_cell_handles()) {
+        for (int axis = 0; axis < 3; ++axis) {
+            for (int i = 0; i < 4; ++i) data.push_back(cell->vertex(i)->point()[axis]);
+        }
+        for (int i = 0; i < 4; ++i) data.push_back(cell->vertex(i)->info());
+    }
+    const int view = gmsh::view::add("bare");
+    gmsh::view::addListData(view, "SS", static_cast<int>(mesh->number_of_finite_cells()), data);
+    return bare_gmsh<PostViewField>(
+        "PostView", [&](int tag) { gmsh::model::mesh::field::setNumber(tag, "ViewTag", view); });
+}
+
 Point centre(const p8est_quadrant_t& q) {
     const double half = 0.5 * P8EST_QUADRANT_LEN(q.level);
     return domain.low + Vector(q.x + half, q.y + half, q.z + half) * 2 / P8EST_ROOT_LEN;
@@ -228,7 +278,6 @@ Loop bare_p4est(const ControlSpace& octree) {
         }
     };
 }
-#endif
 
 double seconds(const auto& work) {
     const auto start = std::chrono::steady_clock::now();
@@ -285,22 +334,15 @@ int main(int argc, char** argv) {
         alike = compare(id, *space, bare(*space), x, samples) && alike;
     };
     fmt::print("adapter / bare loop  median  quartiles      largest difference\n");
-#ifdef PEER_kd_nearest
     against("kd-nearest", [&](const ControlSpace&) { return bare_nanoflann(sources); });
-#endif
-#ifdef PEER_nanovdb
     against("nanovdb-nearest", [](const ControlSpace& s) { return bare_nanovdb<0>(s); });
     against("nanovdb-trilinear", [](const ControlSpace& s) { return bare_nanovdb<1>(s); });
-#endif
-#ifdef PEER_netgen
     against("netgen-localh", [&](const ControlSpace&) { return bare_netgen(sources); });
-#endif
-#ifdef PEER_p4est
     const auto octree = finished(*find_entry(tree_catalogue(), "K_oL"), sources);
     against("p4est-octree", [&](const ControlSpace&) { return bare_p4est(*octree); });
-#endif
-#ifdef PEER_tets
+    const auto tets = finished(*find_entry(rows, "tets-linear"), sources);
     against("tets-linear", [&](const ControlSpace& s) { return bare_tets(s, sources); });
-#endif
+    against("gmsh-structured", [](const ControlSpace& s) { return bare_structured(s); });
+    against("gmsh-view", [&](const ControlSpace&) { return bare_view(*tets, sources); });
     return alike ? 0 : 1;
 }

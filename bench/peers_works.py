@@ -37,18 +37,18 @@ def planes(folder, quick):
 
 def sphere_layers(folder, quick):
     """Sphere, lengths [4, 0.25]: 4:1"""
-    return {"sources": "sphere", "h": 0.08 if quick else 0.03, "rho": 3 if quick else 1, **LAYERS}
+    return {"sources": "sphere", "h": 0.08 if quick else 0.04, "rho": 3 if quick else 2, **LAYERS}
 
 
 def planes_layers(folder, quick):
     """Planes, lengths [4, 0.25]: 4:1"""
-    return {"sources": "planes", "h": 0.08 if quick else 0.03, "rho": 3 if quick else 1, **LAYERS}
+    return {"sources": "planes", "h": 0.08 if quick else 0.04, "rho": 3 if quick else 2, **LAYERS}
 
 
 def thin_layers(folder, quick):
     """Sphere, layers of 100:1"""
-    return {"sources": "sphere", "h": 0.12 if quick else 0.03, "s_a": 10, "s_n": 0.01,
-            "rho": 8 if quick else 4}
+    return {"sources": "sphere", "h": 0.12 if quick else 0.06, "s_a": 10, "s_n": 0.01,
+            "rho": 8 if quick else 5}
 
 
 def scattered(folder, quick):
@@ -136,7 +136,7 @@ WORKS = {**ISOTROPIC, **TENSORS}
 
 
 def scattered_points(quick):
-    return np.random.default_rng(1).uniform(0, 1, (60 if quick else 1000, 3))
+    return np.random.default_rng(1).uniform(0, 1, (60 if quick else 300, 3))
 
 
 def tensors(folder, x, *components):
@@ -162,9 +162,9 @@ def study_of(name, folder, quick, structures):
     is_tensor = name in TENSORS
     # The exact field of tensors takes 20 times as long, at each probe and each node. `direct` computes it for
     # each answer, and is left out there; so are grids whose nodes are those of others.
-    probes, fine = ((15, 20) if quick else (20, 41)) if is_tensor else (30, 61)
-    memory = (0.01 if quick else 0.1) if is_tensor else (0.05 if quick else 0.5)
-    study = {"name": name, **STUDY, "creation_repeats": 1 if quick else 3,
+    probes, fine = ((15, 20) if quick else (20, 31)) if is_tensor else (30, 61)
+    memory = (0.01 if quick else 0.02) if is_tensor else (0.05 if quick else 0.2)
+    study = {"name": name, **STUDY, "creation_repeats": 1 if quick or is_tensor else 3,
              "access_repeats": 5 if quick else 9, **make(folder, quick), "probe_grid": probes,
              "fine_probe_grid": fine, "max_memory": memory}
     deltas = DELTAS[:1] if quick and is_tensor else DELTAS

@@ -23,18 +23,16 @@ namespace {
 
 /// One tree: the domain is a corner of its root, whose cubes are cut until they are as K_oL's
 /// boxes, which cuts the domain's long axes alone at first. In a flat domain the lowest layer alone
-/// is cut.
+/// is cut, of two.
 class Forest final : public ControlSpace {
 public:
-    explicit Forest(const ControlSpace& octree)
-        : octree_(&octree), domain_(octree.domain()), depth_(octree.footprint().depth) {
-        if (depth_ > P8EST_QMAXLEVEL) {
-            throw InputError(
-                "p4est holds 18 levels: lower --max-depth, or leave p4est-octree out of "
-                "--structures");
+    explicit Forest(const ControlSpace& octree) : octree_(&octree), domain_(octree.domain()) {
+        footprint_.depth = octree.footprint().depth;
+        if (footprint_.depth > P8EST_QMAXLEVEL) {
+            throw InputError("p4est holds 18 levels: lower --max-depth, or leave p4est-octree out");
         }
         Vector cubes = Vector::Ones();  // along each axis
-        for (; long_levels_ < depth_; ++long_levels_) {
+        for (; long_levels_ < footprint_.depth; ++long_levels_) {
             const auto cuts = long_axes(domain_, long_levels_);
             if (cuts == octants(domain_).cuts) break;
             for (Axis a = 0; a < 3; ++a) cubes[a] *= cuts[static_cast<std::size_t>(a)] ? 2 : 1;
@@ -42,19 +40,22 @@ public:
         const Vector ends = cubes * P8EST_QUADRANT_LEN(long_levels_);
         scale_ = ends.cwiseQuotient(divisible_edges(domain_));
         ends_ = (domain_.edges().array() > 0).select(ends, 1);
-        forest_.reset(
-            p8est_new_ext(sc_MPI_COMM_SELF, connectivity_.get(), 0, 0, 1, 0, nullptr, this));
+        forest_ = {p8est_new_ext(sc_MPI_COMM_SELF, connectivity_.get(), 0, 0, 1, 0, nullptr, this),
+                   p8est_destroy};
         p8est_refine(forest_.get(), 1, is_cut, nullptr);
         leaves_ = &p8est_tree_array_index(forest_->trees, 0)->quadrants;
         std::vector<Point> centres;
         for (std::size_t i = 0; i < leaves_->elem_count; ++i) {
             const p8est_quadrant_t& q = *p8est_quadrant_array_index(leaves_, i);
             centres.push_back(centre(q));
-            cells_ += is_inside(q) ? 1 : 0;
+            footprint_.cells += is_inside(q) ? 1 : 0;
         }
         metrics_.resize(centres.size());
         octree.sample(centres, metrics_);
         octree_ = nullptr;
+        footprint_.tree_nodes = footprint_.control_nodes = footprint_.cells;
+        footprint_.bytes_payload = metrics_.capacity() * sizeof(Metric);
+        footprint_.bytes_topology = p8est_memory_used(forest_.get());
     }
 
     // The first one of a process starts MPI, which takes some tenths of a second and is not part of
@@ -90,17 +91,7 @@ public:
         }
     }
     Box domain() const override { return domain_; }
-    Footprint footprint() const override {
-        Footprint footprint;
-        footprint.tree_nodes = footprint.cells = footprint.control_nodes = cells_;
-        footprint.depth = depth_;
-        footprint.bytes_payload = metrics_.capacity() * sizeof(Metric);
-        footprint.bytes_topology = p8est_memory_used(forest_.get());
-        if (flat_axis(domain_)) {
-            footprint.remark = "3D forest in a plane: two layers where the octree has one";
-        }
-        return footprint;
-    }
+    Footprint footprint() const override { return footprint_; }
 
 private:
     bool is_inside(const p8est_quadrant_t& q) const {
@@ -121,19 +112,14 @@ private:
         return (leaf.array() > 0 && leaf.array() < 0.75 * own.array()).any();
     }
 
-    template <auto destroy>
-    struct Destroy {
-        void operator()(auto* p) const { destroy(p); }
-    };
     const ControlSpace* octree_;  // while it is made
     Box domain_;
-    int depth_;
+    Footprint footprint_;
     int long_levels_ = 0;
     Vector scale_, ends_;  // of the domain, in p4est's integers
-    std::size_t cells_ = 0;
-    std::unique_ptr<p8est_connectivity_t, Destroy<p8est_connectivity_destroy>> connectivity_{
-        p8est_connectivity_new_unitcube()};
-    std::unique_ptr<p8est_t, Destroy<p8est_destroy>> forest_;
+    std::shared_ptr<p8est_connectivity_t> connectivity_{p8est_connectivity_new_unitcube(),
+                                                        p8est_connectivity_destroy};
+    std::shared_ptr<p8est_t> forest_;
     sc_array_t* leaves_ = nullptr;
     std::vector<Metric> metrics_;
 };
