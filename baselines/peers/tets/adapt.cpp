@@ -156,7 +156,7 @@ bool BackgroundTets::refine(std::vector<Comparison>& named, const ControlSpace& 
     std::erase_if(places, [&](const Comparison& place) { return place.departure <= allowed; });
     for (std::uint32_t i = 0; i < places.size(); ++i) {
         std::uint32_t& worst = places[i].at.cell->info().worst;
-        if (worst == TetState::settled || places[i].departure > places[worst].departure) worst = i;
+        if (worst >= TetState::settled || places[i].departure > places[worst].departure) worst = i;
     }
     std::vector<Point> x;
     std::vector<Metric> metrics;
