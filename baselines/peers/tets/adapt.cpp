@@ -52,7 +52,7 @@ AdaptationReport BackgroundTets::adapt(const AdaptationGoal& goal) {
     }
     ask(named, wanted);
     // Beside the largest errors that are found there may be somewhat larger ones.
-    const double allowed = 0.9 * goal.target;
+    const double allowed = 0.8 * goal.target;
     AdaptationReport report;
     while (refine(named, wanted, allowed, report.shortfall)) continue;
     report.reached = wanted.largest_departure(domain(), [&](auto x, auto out) { sample(x, out); });
@@ -128,9 +128,9 @@ std::vector<BackgroundTets::Comparison> BackgroundTets::worst_inside(const Contr
         worst.push_back(tried.back());
     });
     keep_worse();
-    for (double share = 0.4; share > 0.02; share /= 2) {
+    for (double share = 0.4; share > 0.01; share *= 0.6) {
         for (std::size_t k = 0; k < worst.size(); ++k) {
-            if (worst[k].departure > allowed || worst[k].departure < 0.4 * allowed) continue;
+            if (worst[k].departure > allowed || worst[k].departure < 0.2 * allowed) continue;
             for (std::size_t i = 0; i < corners; ++i) {
                 tried.push_back(at(worst[k].at, towards(worst[k].at.weights, i, share)));
             }
