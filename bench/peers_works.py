@@ -37,18 +37,18 @@ def planes(folder, quick):
 
 def sphere_layers(folder, quick):
     """Sphere, lengths [4, 0.25]: 4:1"""
-    return {"sources": "sphere", "h": 0.08 if quick else 0.04, "rho": 3 if quick else 2, **LAYERS}
+    return {"sources": "sphere", "h": 0.08 if quick else 0.06, "rho": 3, **LAYERS}
 
 
 def planes_layers(folder, quick):
     """Planes, lengths [4, 0.25]: 4:1"""
-    return {"sources": "planes", "h": 0.08 if quick else 0.04, "rho": 3 if quick else 2, **LAYERS}
+    return {"sources": "planes", "h": 0.08 if quick else 0.06, "rho": 3, **LAYERS}
 
 
 def thin_layers(folder, quick):
     """Sphere, layers of 100:1"""
-    return {"sources": "sphere", "h": 0.12 if quick else 0.06, "s_a": 10, "s_n": 0.01,
-            "rho": 8 if quick else 5}
+    return {"sources": "sphere", "h": 0.12 if quick else 0.1, "s_a": 10, "s_n": 0.01,
+            "rho": 8 if quick else 6}
 
 
 def scattered(folder, quick):
@@ -136,7 +136,7 @@ WORKS = {**ISOTROPIC, **TENSORS}
 
 
 def scattered_points(quick):
-    return np.random.default_rng(1).uniform(0, 1, (60 if quick else 300, 3))
+    return np.random.default_rng(1).uniform(0, 1, (60 if quick else 150, 3))
 
 
 def tensors(folder, x, *components):
