@@ -56,12 +56,16 @@ std::size_t allocated() {
     return counts.uordblks + counts.hblkhd;
 }
 
-double length(double size, const Point& x) {
-    constexpr double nothing = 1e21;  // Gmsh's answer where there is no field is 1e22
-    if (size > 0 && size < nothing) return size;
+[[noreturn]] void throw_uncovered(const Point& x) {
     throw InputError(
         fmt::format("Gmsh's field has no size at ({} {} {}): leave it out of --structures", x.x(),
                     x.y(), x.z()));
+}
+
+double length(double size, const Point& x) {
+    constexpr double nothing = 1e21;  // Gmsh's answer where there is no field is 1e22
+    if (!(size > 0 && size < nothing)) throw_uncovered(x);
+    return size;
 }
 
 }  // namespace
@@ -136,7 +140,7 @@ void GmshSpace::sample(std::span<const Point> x, std::span<Metric> out) const {
         field(p.x(), p.y(), p.z(), tensor, nullptr);
         const auto& t = tensor.lower_triangle;
         const auto metric = from_riemannian({t[0], t[2], t[5], t[1], t[3], t[4]});
-        if (!metric) length(0, p);
+        if (!metric) throw_uncovered(p);
         out[i] = *metric;
     });
 }
