@@ -53,6 +53,7 @@ void find_exceeded(const QuadricTree& tree, std::uint32_t root,
         if (tree.is_leaf(number)) {
             const std::uint32_t first = tree.first_vector(number);
             for (std::uint32_t v = first; v < first + QuadricTree::vectors_of_leaf; ++v) {
+                if (!may_exceed(tree.leaves()[v], exceeding, exceeded.limit())) continue;
                 find_in_vector(tree.vectors()[v], v * lane_count, exceeding, exceeded);
             }
             continue;

@@ -137,6 +137,26 @@ template <int points>
     }
 }
 
+// As above, where terms are those of one source each.
+[[gnu::always_inline]] inline void measure_rooms(const QuadricLeaf& __restrict leaf,
+                                                 const Exceeding& __restrict h, double limit,
+                                                 Row& __restrict rooms) {
+    for (std::size_t l = 0; l < lane_count; ++l) {
+        const double x = h.p.x() - leaf.position[0][l];
+        const double y = h.p.y() - leaf.position[1][l];
+        const double z = h.p.z() - leaf.position[2][l];
+        const double doubt = leaf.doubt[l];
+        const Symmetric a{leaf.terms[0][l], leaf.terms[1][l], leaf.terms[2][l],
+                          leaf.terms[3][l], leaf.terms[4][l], leaf.terms[5][l]};
+        const double q = x * (a.xx * x + 2 * (a.xy * y + a.xz * z)) +
+                         y * (a.yy * y + 2 * a.yz * z) + z * a.zz * z -
+                         doubt * (x * x + y * y + z * z);
+        const double factor = 1 + nearly_root(leaf.squared_slope[l] * positive(q));
+        rooms[l] = least_minor(limit * factor * factor, h.inverse,
+                               {a.xx + doubt, a.yy + doubt, a.zz + doubt, a.xy, a.xz, a.yz});
+    }
+}
+
 template <int points>
 [[gnu::always_inline]] inline ExceededChildren exceeded_of(const QuadricNode& node,
                                                            const Exceeding& h, double limit) {
@@ -147,6 +167,15 @@ template <int points>
     }
     children.bits &= (1u << node.child_count) - 1;
     return children;
+}
+
+CONTROLSPACE_VECTOR_CLONES
+bool of_sources(const QuadricLeaf& leaf, const Exceeding& h, double limit) {
+    Row rooms;
+    measure_rooms(leaf, h, limit, rooms);
+    bool exceeds = false;
+    for (std::size_t l = 0; l < lane_count; ++l) exceeds |= !(rooms[l] > 0);
+    return exceeds;
 }
 
 CONTROLSPACE_VECTOR_CLONES
@@ -174,6 +203,10 @@ Exceeding::Exceeding(const Point& place, const Eigen::Matrix3d& h) : p(place), f
 
 ExceededChildren children_exceeded(const QuadricNode& node, const Exceeding& h, double limit) {
     return node.is_linear ? of_parallelograms(node, h, limit) : of_patches(node, h, limit);
+}
+
+bool may_exceed(const QuadricLeaf& leaf, const Exceeding& h, double limit) {
+    return of_sources(leaf, h, limit);
 }
 
 }  // namespace controlspace

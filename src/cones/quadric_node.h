@@ -39,6 +39,15 @@ struct QuadricNode {
     std::uint32_t child_count = 0;
 };
 
+/// Eight sources, for a test that is quicker than that of their cones, but squares anisotropy.
+struct QuadricLeaf {
+    using Row = QuadricNode::Row;
+    std::array<Row, 3> position{};
+    std::array<Row, 6> terms{};  ///< xx yy zz xy xz yz of M^-2; 0 where there is no source
+    Row doubt{};                 ///< what rounding leaves in doubt of any of them
+    Row squared_slope{};         ///< of the cone
+};
+
 /// Sets the bounds of a child to those of `items`; `inverse_squares` are M^-2 of all sources,
 /// `uncertainty` is that of their lengths, relative.
 void set_child(QuadricNode& node, std::size_t child, std::span<const ConeTreeItem> items,
@@ -62,5 +71,8 @@ struct ExceededChildren {
 /// where no eigenvalue of H^T C^-2 H is greater than `limit` for any source,
 /// the bit is not set.
 ExceededChildren children_exceeded(const QuadricNode& node, const Exceeding& h, double limit);
+
+/// The same of sources: false only if none of their cones is exceeded by more than `limit`.
+bool may_exceed(const QuadricLeaf& leaf, const Exceeding& h, double limit);
 
 }  // namespace controlspace

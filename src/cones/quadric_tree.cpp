@@ -44,6 +44,31 @@ void cut(std::span<ConeTreeItem> items, Range leaves, std::size_t parts, const V
     cut(items, {middle, leaves.end}, parts - parts / 2, visit);
 }
 
+QuadricLeaf quadric_leaf(std::span<const ConeTreeItem> items, std::span<const PointSource> sources,
+                         std::span<const Metric> inverse_squares, double uncertainty, double g) {
+    // As in `bounds_of`.
+    constexpr double rounding = 128 * std::numeric_limits<double>::epsilon();
+    const double most = 1 + 6 * uncertainty;
+    const double least = std::max(1 - 6 * uncertainty, 0.0);
+    QuadricLeaf leaf;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        const std::uint32_t source = items[i].index;
+        const Metric a = most * inverse_squares[source];
+        const Point position = items[i].position();
+        for (int k = 0; k < 3; ++k) leaf.position[static_cast<std::size_t>(k)][i] = position[k];
+        leaf.terms[0][i] = a.xx;
+        leaf.terms[1][i] = a.yy;
+        leaf.terms[2][i] = a.zz;
+        leaf.terms[3][i] = a.xy;
+        leaf.terms[4][i] = a.xz;
+        leaf.terms[5][i] = a.yz;
+        leaf.doubt[i] = rounding * (a.xx + a.yy + a.zz);
+        const double slope = cone_growth(sources[source], g) - 1;
+        leaf.squared_slope[i] = least / most * slope * slope;
+    }
+    return leaf;
+}
+
 }  // namespace
 
 QuadricTree::QuadricTree(std::span<ConeTreeItem> items, std::span<const PointSource> sources,
@@ -99,11 +124,14 @@ QuadricTree::QuadricTree(std::span<ConeTreeItem> items, std::span<const PointSou
     }
     nodes_.shrink_to_fit();
     parents_.shrink_to_fit();
+    leaves_.resize(vectors_.size());
     tbb::parallel_for(std::size_t{0}, vectors_.size(), [&](std::size_t v) {
         const std::size_t begin = std::min(lane_count * v, items.size());
         const std::size_t end = std::min(begin + lane_count, items.size());
         if (begin < end) {
-            vectors_[v] = tensor_leaf(items.subspan(begin, end - begin), sources, lengths, g);
+            const auto eight = items.subspan(begin, end - begin);
+            vectors_[v] = tensor_leaf(eight, sources, lengths, g);
+            leaves_[v] = quadric_leaf(eight, sources, inverse_squares, uncertainty, g);
         } else {
             vectors_[v].length.setConstant(std::numeric_limits<double>::infinity());
         }
@@ -114,7 +142,8 @@ QuadricTree::QuadricTree(std::span<ConeTreeItem> items, std::span<const PointSou
 }
 
 std::size_t QuadricTree::bytes() const {
-    return vectors_.capacity() * sizeof(TensorLeaf) + nodes_.capacity() * sizeof(QuadricNode) +
+    return vectors_.capacity() * (sizeof(TensorLeaf) + sizeof(QuadricLeaf)) +
+           nodes_.capacity() * sizeof(QuadricNode) +
            (parents_.capacity() + indices_.capacity()) * sizeof(std::uint32_t);
 }
 

@@ -42,6 +42,8 @@ public:
     std::uint32_t parent(std::uint32_t number) const { return parents_[number]; }
     /// All sources in order, eight in each.
     std::span<const TensorLeaf> vectors() const { return vectors_; }
+    /// The same, for the quick test.
+    std::span<const QuadricLeaf> leaves() const { return leaves_; }
     /// Indices of the sources, in order.
     std::span<const std::uint32_t> indices() const { return indices_; }
     std::size_t bytes() const;
@@ -49,6 +51,7 @@ public:
 private:
     std::vector<QuadricNode> nodes_;
     std::vector<TensorLeaf> vectors_;
+    std::vector<QuadricLeaf> leaves_;     ///< as `vectors_`
     std::vector<std::uint32_t> parents_;  ///< of nodes and leaves
     std::vector<std::uint32_t> indices_;
 };
