@@ -53,6 +53,12 @@ Metric ConeField::evaluate(const Point& x, const Metric* further, Memory& memory
     return cones->intersect(x, further, memory.order_free, near, &found).metric();
 }
 
+Metric ConeField::evaluate_close(const Point& x, const Metric* further,
+                                 const OrderFreeCones::Start& near,
+                                 OrderFreeCones::Start& found) const {
+    return std::get<OrderFreeCones>(cones_).intersect_close(x, further, near, found).metric();
+}
+
 void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out,
                          std::span<const Metric> further) const {
     assert(x.size() == out.size());

@@ -61,6 +61,10 @@ public:
     /// at.
     Metric evaluate(const Point& x, const Metric* further, Memory& memory,
                     const OrderFreeCones::Start* near, OrderFreeCones::Start& found) const;
+    /// The same of sources close to those of `near` alone: the volume of an element is no less, but
+    /// for the tolerance.
+    Metric evaluate_close(const Point& x, const Metric* further, const OrderFreeCones::Start& near,
+                          OrderFreeCones::Start& found) const;
     /// Whether sources are intersected without an order.
     bool has_starts() const { return std::holds_alternative<OrderFreeCones>(cones_); }
     /// The same of an isotropic field, or lengths up to the fraction `tolerance` more.

@@ -94,8 +94,7 @@ public:
     /// often near to what did so elsewhere.
     class Nearby {
     public:
-        Nearby(const Core& core, const QuadricTree& tree) {
-            constexpr int levels_up = 2;
+        Nearby(const Core& core, const QuadricTree& tree, int levels_up) {
             for (std::size_t k = 0; k < core.size_; ++k) {
                 if (core.members_[k] >= index_of_further) continue;
                 std::uint32_t node = tree.leaf_of(core.members_[k]);
@@ -180,7 +179,7 @@ double OrderFreeCones::growth(const Point& p, const Eigen::Matrix3d& h,
 
 OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* further,
                                              const Start& start, double tolerance, Start* found,
-                                             bool is_rough) const {
+                                             Scope scope) const {
     const double allowed_gap = gap_of(tolerance);
     const double allowed = std::exp(0.9 * allowed_gap / 3);
     const double gap = 0.1 * allowed_gap;
@@ -204,12 +203,12 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
         if (!tree_.empty()) {
             Exceeded exceeded(limit);
             const Exceeding exceeding(p, answer.factor);
-            const Core::Nearby nearby(core, tree_);
+            const Core::Nearby nearby(core, tree_, scope == Scope::one_level ? 1 : 2);
             for (const std::uint32_t node : nearby.nodes()) {
                 find_exceeded(tree_, node, {}, exceeding, exceeded);
             }
             const auto is_new = [&](const Exceeded::Cone& cone) { return !core.has(cone.member); };
-            if (std::ranges::none_of(exceeded.cones(), is_new) && !is_rough) {
+            if (std::ranges::none_of(exceeded.cones(), is_new) && scope == Scope::all) {
                 find_exceeded(tree_, 0, nearby.nodes(), exceeding, exceeded);
             }
             if (std::ranges::any_of(exceeded.cones(), is_new) && round < most_rounds) {
@@ -226,7 +225,7 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
             // Exceeded cones of the core set itself: that is rounding. H is made smaller until it
             // exceeds none.
             constexpr int most_times = 20;
-            for (int time = 1; !exceeded.empty() && !is_rough; ++time) {
+            for (int time = 1; !exceeded.empty() && scope == Scope::all; ++time) {
                 for (const Exceeded::Cone& cone : exceeded.cones()) {
                     limit = std::max(limit, growth(p, answer.factor, member(cone.member)));
                 }
@@ -286,7 +285,7 @@ OrderFreeCones::Cell OrderFreeCones::made_cell(const std::array<std::int64_t, 4>
     Cell cell;
     cell.key = key;
     answer(centre, nullptr, from, std::max(tolerance_, tolerance_of_start), &cell.start,
-           key[0] >= first_rough_level);
+           key[0] >= first_rough_level ? Scope::two_levels : Scope::all);
     const Eigen::Matrix3d& h = cell.start.factor;
     const double shortest =
         std::sqrt(eigen_frame(Metric::from_matrix(h * h.transpose())).lengths[0]);
@@ -345,6 +344,12 @@ OrderFreeIntersection OrderFreeCones::intersect(const Point& p, const Metric* fu
     if (further != nullptr) require_valid(*further, failure_of("the further metric"));
     if (tree_.empty() || !p.allFinite()) return answer(p, further, {}, tolerance_, found);
     return answer(p, further, near != nullptr ? *near : start_near(p, search), tolerance_, found);
+}
+
+OrderFreeIntersection OrderFreeCones::intersect_close(const Point& p, const Metric* further,
+                                                      const Start& near, Start& found) const {
+    if (further != nullptr) require_valid(*further, failure_of("the further metric"));
+    return answer(p, further, near, tolerance_, &found, Scope::one_level);
 }
 
 }  // namespace controlspace

@@ -50,6 +50,10 @@ public:
     /// Throws InputError for a `further` metric that `order_free_intersection` does not accept.
     OrderFreeIntersection intersect(const Point& p, const Metric* further, Search& search,
                                     const Start* near = nullptr, Start* found = nullptr) const;
+    /// The same of sources close to those of `near` in the hierarchy alone: log det M is no less,
+    /// to the tolerance. A fraction of the time.
+    OrderFreeIntersection intersect_close(const Point& p, const Metric* further, const Start& near,
+                                          Start& found) const;
 
     /// Sources that change the result nowhere, and were left out.
     std::size_t dropped() const { return dropped_; }
@@ -66,11 +70,14 @@ private:
         bool is_small = false;  ///< good for all places in it
     };
     class Core;
+    /// Which sources are searched: all, or only those below the nodes some levels above the members
+    /// of the core set.
+    enum class Scope { one_level, two_levels, all };
 
     PointSource member(std::uint32_t number) const;
     double growth(const Point& p, const Eigen::Matrix3d& h, const PointSource& source) const;
     OrderFreeIntersection answer(const Point& p, const Metric* further, const Start& start,
-                                 double tolerance, Start* found, bool is_rough = false) const;
+                                 double tolerance, Start* found, Scope scope = Scope::all) const;
     const Start& start_near(const Point& p, Search& search) const;
     std::array<std::int64_t, 4> cell_at(const Point& p, int level) const;
     Cell made_cell(const std::array<std::int64_t, 4>& key, const Start& from) const;

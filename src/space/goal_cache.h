@@ -31,6 +31,8 @@ public:
         out = found->second;
         return true;
     }
+    bool has(const Point& x) const { return answers_.contains({x.x(), x.y(), x.z()}); }
+    bool has_room_for(std::size_t more) const { return answers_.size() + more < most_answers; }
     void remember(const Point& x, const Answer& answer) {
         if (is_full()) return;
         answers_.emplace(std::array{x.x(), x.y(), x.z()}, answer);

@@ -1,8 +1,12 @@
 #include "controlspace/trees/detail/nearby_field.h"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
+#include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -10,6 +14,8 @@
 #include "cones/nearby_cones.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
+#include "controlspace/trees/detail/in_parallel.h"
+#include "controlspace/trees/detail/leaf_places.h"
 #include "space/goal_cache.h"
 
 namespace controlspace {
@@ -66,6 +72,8 @@ struct NearbyField::Search {
     NearbyCones gathered = {}, cones = {};
     bool is_gathered = false;
     bool are_few = false;
+    std::size_t evaluated = 0;    // places of the box that no other leaf shares
+    bool is_close_enough = true;  // cones close to those nearby were all that mattered at them
 
     bool takes_long() const { return !field.cones().is_isotropic(); }
     void gather() {
@@ -85,6 +93,28 @@ struct NearbyField::Search {
                 answer(x[i], further.empty() ? nullptr : &further[i], trail.nearest(x[i])).metric;
         }
     }
+    // A search of all sources takes most of the time, and where the field is known at some places
+    // of a box it rarely finds more than one close to their sources does. So such searches are made
+    // at the first of every few places, and, where one of them finds more, at all that follow.
+    void by_close_cones(std::span<const Point> x, std::span<Metric> out) {
+        constexpr std::size_t few = 8;
+        const std::vector<Metric> further = field.continuous_at(x);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const Metric* own_further = further.empty() ? nullptr : &further[i];
+            const OrderFreeCones::Start* near = trail.nearest(x[i]);
+            if (near == nullptr || !is_close_enough) {
+                out[i] = answer(x[i], own_further, near).metric;
+                continue;
+            }
+            GoalCache::Answer close;
+            close.metric = field.cones().evaluate_close(x[i], own_further, *near, close.start);
+            out[i] = close.metric;
+            if (evaluated++ % few == 0) {
+                out[i] = answer(x[i], own_further, &close.start).metric;
+                is_close_enough = nonconformity(out[i], close.metric) < 0.1 * field.target();
+            }
+        }
+    }
     GoalCache::Answer answer(const Point& x, const Metric* further,
                              const OrderFreeCones::Start* near) {
         GoalCache::Answer answer;
@@ -92,13 +122,20 @@ struct NearbyField::Search {
         trail.add(x, answer.start);
         return answer;
     }
+    GoalCache::Answer answer_near(const Point& x) {
+        const std::vector<Metric> further = field.continuous_at({&x, 1});
+        return answer(x, further.empty() ? nullptr : further.data(), trail.nearest(x));
+    }
+    std::optional<Metric> recall(const Point& x) {
+        GoalCache::Answer known;
+        if (!field.cache().recall(x, known)) return std::nullopt;
+        trail.add(x, known.start);
+        return known.metric;
+    }
     // Whatever the places before.
     Metric shared(const Point& x) {
+        if (const auto metric = recall(x)) return *metric;
         GoalCache::Answer known;
-        if (field.cache().recall(x, known)) {
-            trail.add(x, known.start);
-            return known.metric;
-        }
         const std::vector<Metric> further = field.continuous_at({&x, 1});
         known = answer(x, further.empty() ? nullptr : further.data(), nullptr);
         field.cache().remember(x, known);
@@ -123,6 +160,8 @@ void NearbyField::enter(const Box& box, bool at_many_points) {
     search_->trail.clear();
     search_->is_gathered = !at_many_points;
     search_->are_few = false;
+    search_->evaluated = 0;
+    search_->is_close_enough = true;
 }
 
 bool NearbyField::takes_long() const { return search_->takes_long(); }
@@ -141,6 +180,10 @@ double NearbyField::evaluate_roughly(std::span<const Point> x, bool shared, std:
     if (shared && search_->takes_long()) {
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = at(x[i]);
         return 1;
+    }
+    if (field.cones().has_starts()) {
+        search_->by_close_cones(x, out);
+        return std::numeric_limits<double>::infinity();
     }
     search_->gather();
     if (search_->are_few || !field.has_ranges()) {
@@ -164,6 +207,53 @@ std::optional<NearbyField::Doubt> NearbyField::doubt_of(const std::array<double,
         {search_->box, at_corners}, largest_factor_within(field.target()), search_->memory);
     if (!doubt) return std::nullopt;
     return Doubt{doubt->where, doubt->is_certain};
+}
+
+void evaluate_shared(const GoalField& field, std::span<const LeafBox> leaves, std::size_t from,
+                     std::size_t to) {
+    if (!field.cones().has_starts()) return;
+    struct Ask {
+        std::array<double, 3> place;
+        std::size_t leaf;
+    };
+    std::vector<Ask> asks;
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        for (std::size_t k = from; k < to; ++k) {
+            const Point x = leaf_places().in(leaves[i].box, k);
+            if (!field.cache().has(x)) asks.push_back({{x.x(), x.y(), x.z()}, i});
+        }
+    }
+    std::ranges::sort(asks, {}, [](const Ask& ask) { return std::tie(ask.place, ask.leaf); });
+    const auto repeated = std::ranges::unique(asks, {}, &Ask::place);
+    asks.erase(repeated.begin(), repeated.end());
+    if (!field.cache().has_room_for(asks.size())) return;
+    std::ranges::stable_sort(asks, {}, &Ask::leaf);
+    std::vector<std::span<const Ask>> of_leaves;
+    for (auto first = asks.cbegin(); first != asks.cend();) {
+        const auto end = std::find_if(first, asks.cend(),
+                                      [&](const Ask& ask) { return ask.leaf != first->leaf; });
+        of_leaves.emplace_back(first, end);
+        first = end;
+    }
+    // Whatever is evaluated here at the same time is left out.
+    std::vector<GoalCache::Answer> answers(asks.size());
+    in_parallel(of_leaves.size(), [&, nearby = NearbyField(field)](std::size_t i) mutable {
+        const std::span<const Ask> own = of_leaves[i];
+        const Box& box = leaves[own.front().leaf].box;
+        NearbyField::Search& search = *nearby.search_;
+        nearby.enter(box, true);
+        for (std::size_t k = LeafPlaces::corners; k < LeafPlaces::centre; ++k) {
+            search.recall(leaf_places().in(box, k));
+        }
+        for (const Ask& ask : own) {
+            const Point x(ask.place[0], ask.place[1], ask.place[2]);
+            answers[static_cast<std::size_t>(&ask - asks.data())] = search.answer_near(x);
+        }
+    });
+    for (std::size_t i = 0; i < asks.size(); ++i) {
+        const auto& [x, y, z] = asks[i].place;
+        field.cache().remember({x, y, z}, answers[i]);
+    }
 }
 
 NearbyField::Range NearbyField::range() {

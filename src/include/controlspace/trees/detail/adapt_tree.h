@@ -94,7 +94,9 @@ private:
         if (proved && covers()) {
             cover(young);
         } else {
-            fit(leaves_in_state(LeafState::fresh), proved);
+            const std::vector<LeafBox> fresh = leaves_in_state(LeafState::fresh);
+            evaluate_shared_places(fresh);
+            fit(fresh, proved);
             sample(young, proved);
         }
         for (const LeafBox& l : young) states_[l.leaf] = LeafState::settled;
@@ -124,6 +126,18 @@ private:
             for (const LeafIndex leaf : cut) states_[leaf] = LeafState::fresh;
         }
         return changes;
+    }
+
+    // Where leaves will be compared with the field: in octrees, parts of a leaf that is cut inherit
+    // all of these places; in kd-trees not those after the first.
+    void evaluate_shared_places(const std::vector<LeafBox>& leaves) const {
+        if constexpr (!requires { storage_.is_fitted(LeafIndex{}); }) {
+            constexpr auto ranges = LeafJudge<Node, Storage>::ranges();
+            constexpr std::size_t count = Node::arity == 2 ? 1 : ranges.size();
+            for (std::size_t r = 0; r < count; ++r) {
+                evaluate_shared(field_, leaves, ranges[r].from, ranges[r].to);
+            }
+        }
     }
 
     void fit(const std::vector<LeafBox>& leaves, bool proved) {

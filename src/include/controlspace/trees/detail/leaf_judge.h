@@ -132,13 +132,10 @@ public:
         }
     }
 
-private:
-    using LogRatios = std::array<double, LeafPlaces::all>;
     struct Range {
         std::size_t from, to;
     };
-
-    // Of LeafPlaces, those first that show how to cut.
+    /// Of LeafPlaces, those first that show how to cut.
     static constexpr auto ranges() {
         using P = LeafPlaces;
         if constexpr (Storage::cut_by == CutBy::corners) {
@@ -152,6 +149,9 @@ private:
             return std::array{Range{P::corners, P::faces}, Range{P::faces, P::all}};
         }
     }
+
+private:
+    using LogRatios = std::array<double, LeafPlaces::all>;
 
     void compare_at(const LeafBox& of, NearbyField& nearby, const Range& range,
                     Departure& departure, LogRatios& log_ratio) const {
@@ -188,6 +188,15 @@ private:
     void compare(const Metric& own, const Metric& longest, double factor, const Point& x,
                  NearbyField& nearby, Departure& departure) const {
         if (factor == 1) return departure.take(directional_nonconformity(own, longest), x);
+        if (std::isinf(factor)) {
+            Metric exact = longest;
+            double delta = directional_nonconformity(own, exact);
+            if (delta > 0.75 * target_) {
+                nearby.evaluate({&x, 1}, {&exact, 1});
+                delta = directional_nonconformity(own, exact);
+            }
+            return departure.take(delta, x);
+        }
         const double from_longest = nonconformity(own, longest);
         const Metric shortest = (1 / factor) * longest;
         const double from_shortest = nonconformity(own, shortest);

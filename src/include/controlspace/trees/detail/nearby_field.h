@@ -7,6 +7,7 @@
 
 #include "controlspace/geometry/box.h"
 #include "controlspace/space/detail/goal_field.h"
+#include "controlspace/trees/topology.h"
 
 namespace controlspace {
 
@@ -26,7 +27,9 @@ public:
     bool takes_long() const;
     void evaluate(std::span<const Point> x, std::span<Metric> out);
     /// The same, or longer by a factor less than the one returned, where that is quicker. Places
-    /// that are `shared` by leaves are evaluated once, where that takes long.
+    /// that are `shared` by leaves are evaluated once, where that takes long. An infinite factor:
+    /// the cones of tensors that are close to those which matter nearby; others, of which none
+    /// mattered at the places of this box that were compared with all, may shorten it.
     double evaluate_roughly(std::span<const Point> x, bool shared, std::span<Metric> out);
     /// The same, exactly, at any point, shared, which best is near to the one before.
     Metric at(const Point& x);
@@ -47,8 +50,16 @@ public:
     Range range();
 
 private:
+    friend void evaluate_shared(const GoalField&, std::span<const LeafBox>, std::size_t,
+                                std::size_t);
     struct Search;
     std::unique_ptr<Search> search_;
 };
+
+/// Where the field takes long: evaluates it at places `from` to `to - 1` of leaves (LeafPlaces),
+/// each place once and on behalf of one leaf, starting from what is known in that leaf. On all of
+/// TBB's threads; the answers do not depend on their number.
+void evaluate_shared(const GoalField& field, std::span<const LeafBox> leaves, std::size_t from,
+                     std::size_t to);
 
 }  // namespace controlspace

@@ -98,9 +98,9 @@ private:
         const Metric& metric = sources_[source].metric;
         const double factor = cone_factor(sources_[source], field_.ratio(), x);
         Departure departure;
-        if (!is_within(own, 1, factor * metric)) {
-            const double delta = directional_nonconformity(own, intersection(own, factor * metric));
-            if (delta > of_interest * field_.target()) departure.take(delta, x);
+        const double most = largest_factor_within(of_interest * field_.target());
+        if (!is_within(own, most, factor * metric)) {
+            departure.take(directional_nonconformity(own, intersection(own, factor * metric)), x);
         }
         return departure;
     }
@@ -171,6 +171,14 @@ private:
         const Point& q = sources_[source].position;
         Point nearest = q.cwiseMax(box.low).cwiseMin(box.high);
         if (is_isotropic(sources_[source].metric) || nearest == q) return nearest;
+        // Mostly it is where the nearest place of a plane between the source and the box is.
+        const Eigen::Matrix3d squared = square(sources_[source].metric).matrix();
+        for (Axis i = 0; i < 3; ++i) {
+            if (nearest[i] == q[i]) continue;
+            Point x = q + (nearest[i] - q[i]) / squared(i, i) * squared.col(i);
+            x[i] = nearest[i];
+            if (box.contains(x)) return x;
+        }
         const Eigen::Matrix3d a = inverse_squares_[source].matrix();
         double least = (nearest - q).dot(a * (nearest - q));
         for (int sides = 0; sides < 27; ++sides) {
