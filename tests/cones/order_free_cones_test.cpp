@@ -227,6 +227,33 @@ TEST_CASE("order-free cones: the same bits whatever the order of sources and pla
     }
 }
 
+TEST_CASE("order-free cones: of those close to a start alone, the volume is no less") {
+    constexpr double tolerance = 1e-2;
+    const double gap = OrderFreeCones::gap_of(tolerance);
+    const auto log_det = [](const OrderFreeIntersection& answer) {
+        return 2 * std::log(std::abs(answer.factor.determinant()));
+    };
+    Draw draw(66);
+    for (const Work& work : works()) {
+        CAPTURE(work.name);
+        const OrderFreeCones cones(work.sources, g, work.largest, tolerance);
+        int alike = 0;
+        const std::vector<Point> all = places(work, draw, 60);
+        for (const Point& p : all) {
+            OrderFreeCones::Search search;
+            OrderFreeCones::Start start;
+            OrderFreeCones::Start found;
+            const Eigen::Matrix3d h = cones.intersect(p, nullptr, search, nullptr, &start).factor;
+            const Point nearby = p + 0.2 * h * draw.vector();
+            const double close = log_det(cones.intersect_close(nearby, nullptr, start, found));
+            const double exact = log_det(cones.intersect(nearby, nullptr, search));
+            CHECK(close >= exact - gap);
+            alike += close <= exact + gap ? 1 : 0;
+        }
+        CHECK(alike >= 0.9 * static_cast<double>(all.size()));
+    }
+}
+
 TEST_CASE("order-free cones: of no cone, one, and two, exactly") {
     Draw draw(65);
     const Metric largest = draw.metric(2, 3);

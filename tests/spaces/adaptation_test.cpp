@@ -291,6 +291,19 @@ CASE_OF_EACH(entry, all_trees(), "the same tree, whatever the number of threads"
     }
 }
 
+CASE_OF_EACH(entry, vertex_trees(), "the same tree of layers, whatever the number of threads") {
+    const std::vector<PointSource> sources = sample_sphere({.h = 0.25, .s_a = 4, .s_n = 0.25});
+    const std::vector<Point> x = random_points(domain, 2000, 24);
+    std::vector<std::vector<Metric>> found;
+    for (const std::size_t threads : {1, 4}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        const auto space = editable(entry.make({.domain = domain}));
+        space->adapt({sources, nullptr, g, 0.2});
+        space->sample(x, found.emplace_back(x.size()));
+        CHECK(found.back() == found.front());
+    }
+}
+
 CASE_OF_EACH(entry, all_trees(),
              "a source too small to be seen from a leaf's own places is found") {
     const PointSource source{Point(0.31, 0.17, -0.43), Metric::isotropic(1e-4)};
