@@ -218,6 +218,8 @@ void evaluate_shared(const GoalField& field, std::span<const LeafBox> leaves, st
     };
     std::vector<Ask> asks;
     for (std::size_t i = 0; i < leaves.size(); ++i) {
+        constexpr std::size_t most_sharing = 8;
+        if (!field.cache().has_room_for(asks.size() / most_sharing)) return;
         for (std::size_t k = from; k < to; ++k) {
             const Point x = leaf_places().in(leaves[i].box, k);
             if (!field.cache().has(x)) asks.push_back({{x.x(), x.y(), x.z()}, i});
@@ -235,7 +237,7 @@ void evaluate_shared(const GoalField& field, std::span<const LeafBox> leaves, st
         of_leaves.emplace_back(first, end);
         first = end;
     }
-    // Whatever is evaluated here at the same time is left out.
+    // They become known together, so that none starts from what another thread happens to have.
     std::vector<GoalCache::Answer> answers(asks.size());
     in_parallel(of_leaves.size(), [&, nearby = NearbyField(field)](std::size_t i) mutable {
         const std::span<const Ask> own = of_leaves[i];
