@@ -16,8 +16,8 @@
 #include "editable_space.h"
 
 // What adaptation reports as met is looked for where it is most likely to be broken: small random
-// scenes, each searched by a multistart for its worst place. The first scenes run as tests; all of them
-// by tests_spaces "[promise]", which prints shares and the worst.
+// scenes, each searched by a multistart for its worst place. The first run as tests; all of them
+// by tests_adaptation "[promise]", which prints shares and the worst.
 
 using namespace controlspace;
 
