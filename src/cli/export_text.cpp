@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "cli/export.h"
@@ -41,6 +42,13 @@ std::string write_view(const Export& e) {
             "{} holds tensors, which Gmsh's default mesher ignores in a view: use them with MMG or "
             "BAMG, or write a .sol",
             e.output.string());
+    }
+    constexpr double few = 0.01;
+    if (cells.off > few) {
+        spdlog::warn("{}: at up to {:.1f} % of places lengths are off by more than 1 %: write {}",
+                     e.output.string(), std::min(100., 100 * cells.off),
+                     cells.has_tensors ? "a .sol, exact at the vertices of a mesh"
+                                       : "a structure that is linear in each cell (K_oV)");
     }
     const bool is_flat = flat_axis(e.filled.space->domain()).has_value();
     return written(e, fmt::format("{} {}", cells.count, is_flat ? "quadrilaterals" : "hexahedra"));

@@ -1,25 +1,32 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <functional>
+#include <span>
 #include <string_view>
 #include <vector>
 
+#include "controlspace/geometry/extent.h"
 #include "controlspace/geometry/subdivision.h"
+#include "controlspace/metric/blend.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/sources/riemannian.h"
 #include "controlspace/space/sample_parallel.h"
 #include "files/output_file.h"
 #include "io/text/cells.h"
-#include "io/text/metric_rows.h"
 #include "io/text/pos.h"
 
 namespace controlspace {
 namespace {
 
-/// Boxes with the metrics at their corners, eight each.
-struct Hexahedra {
-    std::vector<Box> boxes;
-    std::vector<Metric> metrics;
+/// A box, with the numbers of the view at its corners: M of isotropic metrics, otherwise M^-2.
+struct Cell {
+    Box box;
+    std::array<Metric, 8> corners;
+    double off = 0;  ///< how much of its places the view answers wrongly, as PosCells::off
 };
 
 /// In units of a box's edges: its corners, its centre, and the middles of faces and edges.
@@ -51,78 +58,123 @@ std::vector<Metric> at_places(const ControlSpace& space, std::span<const Box> bo
     return metrics;
 }
 
-double trilinear(std::span<const Metric> corners, const Vector& t) {
-    double length = 0;
-    for (std::size_t c = 0; c < 8; ++c) {
-        double weight = 1;
-        for (Axis a = 0; a < 3; ++a) weight *= (c >> a & 1) != 0 ? t[a] : 1 - t[a];
-        length += weight * corners[c].xx;
-    }
-    return length;
+Metric trilinear(const std::array<Metric, 8>& corners, const Vector& t) {
+    const auto weight = [&](std::size_t c) {
+        double product = 1;
+        for (Axis a = 0; a < 3; ++a) product *= (c >> a & 1) != 0 ? t[a] : 1 - t[a];
+        return product;
+    };
+    return blend_lengths(8, weight, [&](std::size_t c) -> const Metric& { return corners[c]; });
 }
 
-/// Whether the lengths at all places of a box are within 1 % of what those at its corners give.
-bool is_trilinear(std::span<const Metric> at) {
-    constexpr double tolerance = 0.01;
-    for (std::size_t i = 8; i < at.size(); ++i) {
-        const double length = trilinear(at.first(8), places()[i]);
-        if (std::abs(length - at[i].xx) > tolerance * at[i].xx) return false;
+/// The cells of a view of a structure. Those where the view is off are halved.
+class View {
+public:
+    explicit View(const ControlSpace& space) : space_(space), volume_(measure(space.domain())) {
+        const std::vector<Box> boxes = elements_of(space);
+        for_each(boxes, [&](const Box& box, std::span<const Metric> at) {
+            has_tensors_ = has_tensors_ || !std::ranges::all_of(at, is_isotropic);
+            const double share = measure(box) / static_cast<double>(at.size());
+            for (const Metric& m : at) elements_ += share / m.matrix().determinant();
+        });
+        add(boxes);
+        while (halve()) {
+        }
     }
-    return true;
-}
 
-/// The cells of a structure; those of isotropic lengths that are not trilinear are halved.
-Hexahedra hexahedra_of(const ControlSpace& space) {
-    constexpr int most_halvings = 2;
-    constexpr std::size_t at_once = 4096;
-    Hexahedra all;
-    std::vector<Box> boxes = elements_of(space);
-    for (int halvings = 0; !boxes.empty(); ++halvings) {
+    bool has_tensors() const { return has_tensors_; }
+    const std::vector<Cell>& cells() const { return cells_; }
+
+private:
+    // Halves the cells that are most off until few places are. Returns whether some were halved.
+    bool halve() {
+        constexpr double few = 0.01;
+        // Some 300 MB; of tensors 200.
+        const std::size_t most = has_tensors_ ? 200'000 : 1'000'000;
+        std::ranges::sort(cells_, std::less(), &Cell::off);
+        double off = 0;
+        std::size_t kept = 0;
+        while (kept < cells_.size() && off + cells_[kept].off <= few) off += cells_[kept++].off;
         std::vector<Box> parts;
+        std::size_t left = cells_.size();
+        for (; left > kept && left + parts.size() < most; --left) {
+            const Subdivision cut = octants(cells_[left - 1].box);
+            if (!cut.is_proper()) break;
+            for (int c = 0; c < cut.children(); ++c) parts.push_back(cut.child(c));
+        }
+        cells_.resize(left);
+        add(parts);
+        return !parts.empty();
+    }
+
+    void add(std::span<const Box> boxes) {
+        for_each(boxes, [&](const Box& box, std::span<const Metric> at) {
+            cells_.push_back(cell_of(box, at));
+        });
+    }
+
+    /// visit(box, metrics at its places)
+    template <class Visit>
+    void for_each(std::span<const Box> boxes, Visit&& visit) const {
+        constexpr std::size_t at_once = 4096;
+        const std::size_t n = places().size();
         for (std::size_t first = 0; first < boxes.size(); first += at_once) {
-            const auto some =
-                std::span(boxes).subspan(first, std::min(at_once, boxes.size() - first));
-            const std::vector<Metric> metrics = at_places(space, some);
+            const auto some = boxes.subspan(first, std::min(at_once, boxes.size() - first));
+            const std::vector<Metric> metrics = at_places(space_, some);
             for (std::size_t i = 0; i < some.size(); ++i) {
-                const auto at = std::span(metrics).subspan(i * places().size(), places().size());
-                const Subdivision cut = octants(some[i]);
-                if (halvings < most_halvings && cut.is_proper() &&
-                    std::ranges::all_of(at, is_isotropic) && !is_trilinear(at)) {
-                    for (int c = 0; c < cut.children(); ++c) parts.push_back(cut.child(c));
-                } else {
-                    all.boxes.push_back(some[i]);
-                    all.metrics.insert(all.metrics.end(), at.begin(), at.begin() + 8);
-                }
+                visit(some[i], std::span(metrics).subspan(i * n, n));
             }
         }
-        boxes = std::move(parts);
     }
-    return all;
-}
+
+    Cell cell_of(const Box& box, std::span<const Metric> at) const {
+        static const double lengths_off = nonconformity_of_factor(1.01);
+        static const double tensors_off = nonconformity_along(1.01);
+        Cell cell{box, {}};
+        std::ranges::transform(at.first(8), cell.corners.begin(), [&](const Metric& m) {
+            return has_tensors_ ? to_riemannian(m) : m;
+        });
+        for (std::size_t i = 8; i < at.size(); ++i) {
+            const Metric read = trilinear(cell.corners, places()[i]);
+            const auto m = has_tensors_ ? from_riemannian(read) : read;
+            const double limit = has_tensors_ ? tensors_off : lengths_off;
+            if (m && directional_nonconformity(*m, at[i]) <= limit) continue;
+            cell.off += 1 / volume_ + 1 / (at[i].matrix().determinant() * elements_);
+        }
+        cell.off *= measure(box) / static_cast<double>(at.size() - 8);
+        return cell;
+    }
+
+    const ControlSpace& space_;
+    bool has_tensors_ = false;
+    double volume_, elements_ = 0;
+    std::vector<Cell> cells_;
+};
 
 }  // namespace
 
 PosCells write_pos_cells(const std::filesystem::path& path, const ControlSpace& space) {
-    const Hexahedra all = hexahedra_of(space);
-    const bool isotropic = std::ranges::all_of(all.metrics, is_isotropic);
+    const View view(space);
+    const bool isotropic = !view.has_tensors();
     const std::vector<int> corners = cell_corners(space.domain());
     const bool is_flat = corners.size() == 4;
     const std::string_view type = isotropic ? (is_flat ? "SQ" : "SH") : is_flat ? "TQ" : "TH";
     std::vector<double> coordinates, values;
     OutputFile file(path);
     file.write("View \"controlspace\" {\n");
-    for (std::size_t i = 0; i < all.boxes.size(); ++i) {
+    double off = 0;
+    for (const Cell& cell : view.cells()) {
+        off += cell.off;
         coordinates.clear();
         values.clear();
         for (const int c : corners) {
-            const Point x = corner(all.boxes[i], c);
+            const Point x = corner(cell.box, c);
             coordinates.insert(coordinates.end(), x.begin(), x.end());
-            const Metric& m = all.metrics[8 * i + static_cast<std::size_t>(c)];
+            const Metric& m = cell.corners[static_cast<std::size_t>(c)];
             if (isotropic) {
                 values.push_back(m.xx);
             } else {
-                const auto numbers = numbers_of(m, matrix_rows);
-                values.insert(values.end(), numbers.begin(), numbers.end());
+                values.insert(values.end(), {m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz});
             }
         }
         file.print("{}({}){{{:.10g}}};\n", type, fmt::join(coordinates, ","),
@@ -130,7 +182,7 @@ PosCells write_pos_cells(const std::filesystem::path& path, const ControlSpace& 
     }
     file.write("};\n");
     file.commit();
-    return {all.boxes.size(), !isotropic};
+    return {view.cells().size(), !isotropic, off};
 }
 
 }  // namespace controlspace
