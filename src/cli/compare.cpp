@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/filled_space.h"
 #include "cli/formats.h"
 #include "cli/input_study.h"
 #include "cli/options.h"
@@ -20,11 +21,9 @@
 #include "cli/signals.h"
 #include "cli/standard_output.h"
 #include "cli/threads.h"
-#include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
 #include "controlspace/study/results.h"
 #include "controlspace/study/run.h"
-#include "modules/load.h"
 #include "study/forecast.h"
 #include "study/text_table.h"
 
@@ -67,11 +66,7 @@ void run_into(ResultsFolder& folder, PreparedStudy prepared, Progress& progress,
     StudyObserver observer;
     observer.case_started = [&](const Case& c) {
         progress.case_started(c);
-        // Libraries are loaded and started before creation is timed.
-        load_module_of(c.structure);
-        const CatalogueEntry& entry = *find_entry(structures(), c.structure);
-        if (entry.family == "peers")
-            entry.make({.domain = {Point::Zero(), Point::Ones()}, .finest_length = 1});
+        start_library_of(c.structure);
     };
     observer.phase_started = [&](std::string_view phase) { progress.phase_started(phase); };
     observer.case_checked = [&](const Finished& finished, Row& row) {

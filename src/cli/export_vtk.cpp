@@ -65,7 +65,11 @@ std::vector<FieldFormat> add_vtk_formats(Options& options) {
     return {{{".vtu"}, [nodes](const Export& e) { return write_grid(e, *nodes); }, {grid_group}},
             {{".vti"},
              [slice](const Export& e) { return write_image(e, *slice); },
-             {image_group, samples_group}},
+             {image_group, samples_group},
+             [slice](const auto&, std::optional<int> samples) {
+                 const Box any{Point::Zero(), Point::Ones()};
+                 require_slice_samples(slice_of(*slice, any, samples).samples);
+             }},
             {{".htg"}, [](const Export& e) {
                  write_octree(e.output, *e.filled.space);
                  return written(e, "an octree");

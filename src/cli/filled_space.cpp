@@ -15,6 +15,7 @@
 #include "controlspace/error.h"
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/space/control_space_file.h"
+#include "modules/load.h"
 
 namespace controlspace {
 
@@ -24,6 +25,14 @@ void require_no_settings(const std::filesystem::path& space, const GivenSettings
     if (given.empty()) return;
     throw InputError(fmt::format("{}: {} was made with its own: leave it out",
                                  option_name(given.front().first), space.string()));
+}
+
+void start_library_of(const std::string& structure) {
+    load_module_of(structure);
+    const CatalogueEntry& entry = *find_entry(structures(), structure);
+    if (entry.family == "peers") {
+        entry.make({.domain = {Point::Zero(), Point::Ones()}, .finest_length = 1});
+    }
 }
 
 namespace {
@@ -55,7 +64,7 @@ FilledSpace made_or_loaded(const std::filesystem::path& input, const std::filesy
     filled.threads = limit_threads(study.threads);
     Case c = only_case(study);
     Workload workload = make_workload(study, c.sources, file_readers());
-    const bool is_by_default = DefaultTarget(input, given).set(c, workload.sources);
+    const bool is_by_default = DefaultTarget(input, given).set(c, workload);
     Filled made = make_and_fill(study, c, program_rows(), workload, observer);
     filled.space = made.build(c);
     filled.builder = std::move(made.builder);
@@ -92,10 +101,14 @@ int report_remark(const FilledSpace& filled) {
     }
     if (filled.within) {
         constexpr double far = 1.25;  // edges within it conform
-        print_error(fmt::format(
-            "{}: lengths within {:.3g}x of the exact field's at {} places{}\n", filled.structure,
-            *filled.within, probes * probes * probes,
-            *filled.within > far ? ": --within 1.1 adapts a tree (K_oV) to that field" : ""));
+        std::string remedy;
+        if (*filled.within > far) {
+            remedy = fmt::format(": --within {} adapts a tree (K_oV) to that field",
+                                 default_within_of(filled.origin->workload));
+        }
+        print_error(fmt::format("{}: lengths within {:.3g}x of the exact field's at {} places{}\n",
+                                filled.structure, *filled.within, probes * probes * probes,
+                                remedy));
     }
     return 0;
 }

@@ -44,6 +44,9 @@ bool is_control_space(const std::filesystem::path& input);
 /// saved.
 void require_no_settings(const std::filesystem::path& space, const GivenSettings& given);
 
+/// Loads and starts the library that a structure stands on, if any, before its creation is timed.
+void start_library_of(const std::string& structure);
+
 /// The one structure of the job's input (see study_of_input) and settings, made and graded; or
 /// loaded from a .ctrl. Then calls `use`, in a step of the progress that is called `step`. Throws
 /// InputError, also for a .ctrl with settings, and if the output is one of the files that are read.

@@ -100,14 +100,19 @@ DefaultTarget::DefaultTarget(const std::filesystem::path& input, const GivenSett
       applies_(is_free_ && !are_given(given, {"field", "tau", "epsilon", "law", "schedule",
                                               "neighbourhood", "reference"})) {}
 
-bool DefaultTarget::set(Case& c, std::span<const PointSource> sources) const {
-    if (has_field(c.sources)) return is_free_ && c.target_delta.has_value();  // by expand
-    const auto is_length = [](const PointSource& s) { return is_isotropic(s.metric); };
-    if (!applies_ || c.structure != "K_oV" || sources.empty() ||
-        !std::ranges::all_of(sources, is_length)) {
+double default_within_of(const Workload& workload) {
+    return has_tensors(workload) ? default_within_of_tensors : default_within;
+}
+
+bool DefaultTarget::set(Case& c, const Workload& workload) const {
+    const bool follows_field = has_field(c.sources);  // by default, as expand sets it
+    if (follows_field ? !is_free_ || !c.target_delta
+                      : !applies_ || c.structure != "K_oV" || workload.sources.empty()) {
         return false;
     }
-    c.target_delta = nonconformity_of_factor(default_within);
+    c.within = default_within_of(workload);
+    c.target_delta = nonconformity_of_factor(*c.within);
+    if (has_tensors(workload)) c.max_leaves = default_max_leaves;
     return true;
 }
 

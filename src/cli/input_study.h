@@ -1,12 +1,12 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
 #include <vector>
 
 #include "cli/given_settings.h"
 #include "controlspace/sources/point_source.h"
 #include "controlspace/study/study.h"
+#include "controlspace/study/workload.h"
 
 namespace controlspace {
 
@@ -26,14 +26,17 @@ std::vector<std::filesystem::path> files_named(const std::filesystem::path& inpu
 /// on the paper's sphere. Throws InputError.
 Study study_of_input(const std::filesystem::path& input, const GivenSettings& given);
 
-/// The target of K_oV where neither a study file nor a setting says how it is made: isotropic
-/// sources are followed until lengths are shown to be within 1.1x of the exact field's; others,
-/// where that takes long, are inserted and graded.
+/// The largest factor between lengths that trees are adapted to by default.
+double default_within_of(const Workload& workload);
+
+/// The target of K_oV, and of what follows primitives or another field, where neither a study file
+/// nor a setting says how it is made: lengths within 1.1x of the exact field's; with tensors 1.2x,
+/// or as near as 50000 leaves come.
 class DefaultTarget {
 public:
     DefaultTarget(const std::filesystem::path& input, const GivenSettings& given);
     /// Sets it, and returns whether it was set.
-    bool set(Case& c, std::span<const PointSource> sources) const;
+    bool set(Case& c, const Workload& workload) const;
 
 private:
     bool is_free_;  ///< whether nobody asks for a target

@@ -20,7 +20,6 @@
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/space/control_space_file.h"
 #include "controlspace/study/run.h"
-#include "modules/load.h"
 
 namespace controlspace {
 namespace {
@@ -43,22 +42,28 @@ Reference make_shared_reference(const Study& study, const Case& c, Mesher reques
     return reference;
 }
 
-/// Meshes the structure of a case.
-void mesh_case(const Study& study, const Case& c, const Reference& reference, MeshFolder& folder) {
+/// Meshes the structure of a case. A default target that is missed is no failure: a remark says how
+/// far the structure is from the field.
+void mesh_case(const Study& study, const Case& c, bool is_by_default, const Reference& reference,
+               MeshFolder& folder) {
+    const MeshRow row{.setting = c, .mesher = reference.mesher};
     std::unique_ptr<ControlSpace> space;
     const auto make = [&](MeshRow& made) -> const ControlSpace& {
-        load_module_of(c.structure);  // before its creation is timed
+        start_library_of(c.structure);
         const Filled filled = make_and_fill(study, c, program_rows(), reference.workload);
         space = filled.build(c);
-        made.shortfall = filled.creation.shortfall;
+        if (!is_by_default) made.shortfall = filled.creation.shortfall;
+        const std::string remark = remark_on(filled.creation, space->footprint());
+        if (made.shortfall.empty() && !remark.empty()) {
+            print_error(fmt::format("{}: {}\n", mesh_label(row), remark));
+        }
         made.creation_s = filled.creation.insert_s.front() + filled.creation.gradation_s.front();
         const Accuracy delta_r = accuracy(*space, reference.probes);
         made.delta_r_max = delta_r.max;
         made.delta_r_mean = delta_r.mean;
         return *space;
     };
-    folder.add({.setting = c, .mesher = reference.mesher}, reference.workload.domain,
-               *reference.field, make);
+    folder.add(row, reference.workload.domain, *reference.field, make);
 }
 
 /// Meshes the cases of a study, and their exact fields.
@@ -81,12 +86,12 @@ void mesh_study(const Study& study, const DefaultTarget& target, MeshFolder& fol
             reference = make_shared_reference(study, c, settings.mesher);
             is_new_field = true;
         }
-        target.set(c, reference->workload.sources);
+        const bool is_by_default = target.set(c, reference->workload);
         if (settings.exact && std::exchange(is_new_field, false)) {
             folder.add({.setting = c, .exact = true, .mesher = reference->mesher},
                        reference->workload.domain, *reference->field);
         }
-        mesh_case(study, c, *reference, folder);
+        mesh_case(study, c, is_by_default, *reference, folder);
     }
     folder.end();
 }

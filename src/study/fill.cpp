@@ -34,12 +34,6 @@ void add_remark(Creation& creation, const std::string& remark) {
     creation.remark.append(creation.remark.empty() ? "" : "; ").append(remark);
 }
 
-/// Whether any source is a tensor, or the continuous field may have tensors.
-bool has_tensors(const Workload& workload) {
-    return (workload.field.field && !workload.field.is_isotropic) ||
-           !std::ranges::all_of(workload.sources, is_isotropic, &PointSource::metric);
-}
-
 void adapt(Filled& filled, const Case& c, const Workload& workload) {
     AdaptationGoal goal{.sources = workload.sources,
                         .continuous = workload.field.field,
@@ -48,6 +42,7 @@ void adapt(Filled& filled, const Case& c, const Workload& workload) {
                         .h_max = c.sources.h_max,
                         .places = workload.field.places};
     if (c.target_delta) goal.target = *c.target_delta;
+    if (c.max_leaves) goal.max_leaves = *c.max_leaves;
     // Of tensors, δ allows more along one direction alone than along all at once.
     const bool is_along = has_tensors(workload);
     if (c.within && is_along) goal.target = nonconformity_along(*c.within);

@@ -199,6 +199,11 @@ std::vector<PointSource> read_source_file(const SourcesChoice& choice, const Fil
     return read_files(choice, readers).all;
 }
 
+bool has_tensors(const Workload& workload) {
+    return (workload.field.field && !workload.field.is_isotropic) ||
+           !std::ranges::all_of(workload.sources, is_isotropic, &PointSource::metric);
+}
+
 Workload make_workload(const Study& study, const SourcesChoice& choice,
                        const FileReaders& readers) {
     Workload workload;

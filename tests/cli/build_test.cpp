@@ -156,7 +156,12 @@ TEST_CASE("how far a structure is from the exact field is told, and what to do")
     box.write("t.csv",
               "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n0,0,0,0.1,0.2,0.1,0,0,0\n"
               "1,1,1,0.3,0.2,0.1,0,0,0\n");
-    CHECK_THAT(box.run("build t.csv -o f.ctrl").err, Contains("K_oV: lengths within "));
+    const Outcome tensors = box.run("build t.csv -o f.ctrl");
+    CHECK(tensors.status == 0);
+    CHECK_THAT(tensors.err, Contains("at worst where sampled: lengths within 1.1"));
+    CHECK(box.run("build t.csv -o f.ctrl --within 1.2").err == tensors.err);
+    // Inserted and graded on request.
+    CHECK_THAT(box.run("build t.csv -o f.ctrl --tau 1").err, Contains("K_oV: lengths within "));
 }
 
 TEST_CASE("what is read is not written over") {

@@ -66,6 +66,9 @@ TEST_CASE("an export that cannot be made ends with one line, and leaves no file"
         {"-o /dev/full s.csv", "/dev/full"},
         {"-o out.vdb s.csv --samples 5", "--samples is for .structured, .msh and .vti"},
         {"-o out.vtu s.csv --voxel 0.1", "--voxel is for .vdb"},
+        // Before anything is read.
+        {"-o out.vti no.csv --samples 1", "1 samples: give 2 to 8192"},
+        {"-o out.vti no.csv --slice w", "'w' is no axis"},
         {"-o /proc/out.vdb s.csv", "/proc/out.vdb"},
     }));
     INFO(arguments);

@@ -158,7 +158,7 @@ TEST_CASE("commands on files that cannot be carried out end with one line") {
         {"info s.stl --surface-crease 200", "--surface-crease: 200 is out of range"},
         {"info s.stl --elements-across 0", "--elements-across: 0 is not positive"},
         {"query s.csv", "POINTS"},
-        {"query s.csv p.csv", "p.csv:1: column 'z' is missing"},
+        {"query s.csv p.csv", "p.csv:1: column 'z' is missing: name the columns"},
         {"query s.csv none.csv", "none.csv holds no points"},
         {"query s.csv s.csv -o no/out.csv", "cannot write"},
         {"query s.csv s.csv --structures K_oL,K_V", "2 cases"},

@@ -120,8 +120,10 @@ private:
             const auto end = begin + static_cast<std::ptrdiff_t>(c.count);
             if (c != position && std::find(begin, end, true) == end) continue;
             if (const auto missing = std::find(begin, end, false); missing != end) {
-                fail(fmt::format("column '{}' is missing beside the others of its kind",
-                                 names[static_cast<std::size_t>(missing - present.begin())]));
+                fail(fmt::format("column '{}' is missing{}",
+                                 names[static_cast<std::size_t>(missing - present.begin())],
+                                 c == position ? ": name the columns in the first line"
+                                               : " beside the others of its kind"));
             }
             if (c == position) continue;
             if (form_.count > 0) {

@@ -138,11 +138,14 @@ void write_octree(const std::filesystem::path& path, const ControlSpace& space) 
     write_vtk_octrees(path, space.domain(), counts, trees);
 }
 
+void require_slice_samples(int samples) {
+    if (samples >= 2 && samples <= 8192) return;
+    throw InputError(fmt::format("{} samples: give 2 to 8192", samples));
+}
+
 void write_slice(const std::filesystem::path& path, const ControlSpace& field, const Box& domain,
                  const Slice& slice) {
-    if (slice.samples < 2 || slice.samples > 8192) {
-        throw InputError(fmt::format("{} samples: give 2 to 8192", slice.samples));
-    }
+    require_slice_samples(slice.samples);
     if (!(slice.at >= domain.low[slice.axis] && slice.at <= domain.high[slice.axis])) {
         throw InputError(fmt::format("a slice at {} = {} is outside the domain {}",
                                      "xyz"[slice.axis], slice.at, to_string(domain)));

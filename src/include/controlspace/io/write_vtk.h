@@ -32,9 +32,12 @@ struct Slice {
     int samples = 512;  ///< points along the longer edge of the domain
 };
 
+/// Throws InputError unless there are from 2 to 8192 samples.
+void require_slice_samples(int samples);
+
 /// The field on a slice through `domain` as an image (.vti), with data of points; points along the
 /// shorter edge have the same distance as along the longer one, or nearly. Throws InputError for a
-/// slice outside the domain, and unless there are from 2 to 8192 samples.
+/// slice outside the domain, and as require_slice_samples.
 void write_slice(const std::filesystem::path& path, const ControlSpace& field, const Box& domain,
                  const Slice& slice);
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -26,6 +28,9 @@ struct AdaptationGoal {
     /// Further places where trees are compared with the field, such as the middle of what is small
     /// in `continuous`; they may be outside the domain.
     std::span<const Point> places = {};
+    /// Trees with this many leaves are cut no further. What is farthest from the field is cut
+    /// first.
+    std::size_t max_leaves = std::numeric_limits<std::size_t>::max();
 };
 
 struct AdaptationReport {

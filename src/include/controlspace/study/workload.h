@@ -35,6 +35,9 @@ struct Workload {
     double finest_length = 0;  ///< smallest requested length, of sources and field
 };
 
+/// Whether any source is a tensor, or the continuous field may have tensors.
+bool has_tensors(const Workload& workload);
+
 /// The sources in the file of `choice` (of kind `file`), by the reader for its ending, or by
 /// read_sources. Throws InputError.
 std::vector<PointSource> read_source_file(const SourcesChoice& choice, const FileReaders& readers);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <span>
@@ -34,6 +35,7 @@ public:
         : tree_(tree),
           storage_(storage),
           field_(field),
+          max_leaves_(goal.max_leaves),
           next_to_sources_(tree, storage, field, goal.sources) {
         if (field.has_ranges()) {
             for (const std::uint32_t i : field.kept()) {
@@ -90,7 +92,7 @@ private:
     template <class Split>
     bool round(bool proved, Split&& split) {
         field_.forget_if_full();
-        const std::vector<LeafBox> young = leaves_in_state(LeafState::changed);
+        std::vector<LeafBox> young = leaves_in_state(LeafState::changed);
         if (proved && covers()) {
             cover(young);
         } else {
@@ -100,6 +102,10 @@ private:
             sample(young, proved);
         }
         for (const LeafBox& l : young) states_[l.leaf] = LeafState::settled;
+        if (tree_.leaves() + Node::arity * young.size() > max_leaves_) {
+            std::ranges::stable_sort(young, std::greater(),
+                                     [&](const LeafBox& l) { return departures_[l.leaf].worst; });
+        }
         bool changes = false;
         std::vector<LeafIndex> cut;
         for (const LeafBox& l : young) {
@@ -296,6 +302,7 @@ private:
     const Topology<Node>& tree_;
     Storage& storage_;
     const GoalField& field_;
+    const std::size_t max_leaves_;
     std::vector<Point> sources_;
     std::vector<Metric> at_sources_;  // the field there
     NextToSources<Node, Storage> next_to_sources_;

@@ -22,6 +22,8 @@ namespace controlspace {
 [[noreturn]] void fail_too_large(std::size_t bytes, std::size_t max_bytes);
 /// AdaptationReport::shortfall where leaves of the deepest level are not cut.
 std::string depth_shortfall(int max_depth);
+/// The same where there are as many leaves as allowed.
+std::string leaves_shortfall(std::size_t max_leaves);
 
 /// A tree over a box whose leaves are cut, for sources or to follow a field: what MetricTree and
 /// SourceTree share. `Node` is how a box is cut, `Storage` what leaves hold (storage.h).
@@ -63,8 +65,11 @@ protected:
         AdaptationReport report;
         bool too_deep = false;
         bool too_short = false;
+        bool too_many = false;
         TreeAdaptation adaptation(topology_, storage_, field, goal);
         report.reached = adaptation.run(true, [&](const Box& box, const auto& along, auto& cut) {
+            too_many = topology_.leaves() >= goal.max_leaves;
+            if (too_many) return false;
             if (is_negligible(box, field.largest_ratio())) {
                 too_short = true;
                 return false;
@@ -75,7 +80,9 @@ protected:
         });
         report.met = report.reached <= goal.target;
         report.is_bound = report.met && adaptation.shows_bounds();
-        if (too_deep) {
+        if (too_many) {
+            report.shortfall = leaves_shortfall(goal.max_leaves);
+        } else if (too_deep) {
             report.shortfall = depth_shortfall(cuts().max_depth());
         } else if (too_short) {
             report.shortfall =
