@@ -373,20 +373,21 @@ TEST_CASE("a target out of reach is told, with what was reached") {
     CHECK_THROWS_AS(small->adapt({sources, nullptr, g, 0.01}), InputError);
 }
 
-CASE_OF_EACH(entry, all_trees(), "a tree of limited size comes nearer to the field with its size") {
+CASE_OF_EACH(entry, vertex_trees(),
+             "a tree of limited size comes nearer to the field with its size") {
     const std::vector<PointSource> sources = tensors(40);
     double before = std::numeric_limits<double>::infinity();
-    for (const std::size_t most : {40, 400, 4000}) {
+    for (const std::size_t most : {40, 400}) {
         CAPTURE(most);
         const auto space = editable(entry.make({.domain = domain}));
-        AdaptationGoal goal{sources, nullptr, g, 1e-4};
+        AdaptationGoal goal{sources, nullptr, g, 0.02};
         goal.max_leaves = most;
         const AdaptationReport report = space->adapt(goal);
         CHECK_FALSE(report.met);
         CHECK(report.shortfall.find("more than " + std::to_string(most) + " leaves") == 0);
         const std::size_t cells = space->footprint().cells;
         CHECK(cells >= most);
-        if (entry.id != "K_oLB") CHECK(cells < most + 8);
+        CHECK(cells < most + 8);
         CHECK(report.reached < before);
         before = report.reached;
     }
