@@ -132,7 +132,7 @@ public:
         std::vector<Point> moved;
         if (!std::ranges::all_of(x, [&](const Point& p) { return box.contains(p); })) {
             moved.assign(x.begin(), x.end());
-            for (Point& p : moved) p = p.cwiseMax(box.low).cwiseMin(box.high);
+            for (Point& p : moved) p = nearest_in(box, p);
             x = moved;
         }
         std::vector<Metric> own;

@@ -68,7 +68,7 @@ public:
 protected:
     /// The cell that `x` was found in, up to the place itself where rounding puts it outside.
     Box widened(const Box& cell, const Point& x) const {
-        const Point place = x.cwiseMax(domain_.low).cwiseMin(domain_.high);
+        const Point place = nearest_in(domain_, x);
         return {cell.low.cwiseMin(place), cell.high.cwiseMax(place)};
     }
     /// `x` along axis `a` in units of cells, within [0, cells].

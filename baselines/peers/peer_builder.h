@@ -133,7 +133,7 @@ private:
         for (std::size_t first = 0; first < x.size(); first += most) {
             const std::size_t count = std::min(most, x.size() - first);
             for (std::size_t i = 0; i < count; ++i) {
-                inside[i] = x[first + i].cwiseMax(domain_.low).cwiseMin(domain_.high);
+                inside[i] = nearest_in(domain_, x[first + i]);
             }
             lengths({inside.data(), count}, {h.data(), count});
             take(first, {h.data(), count});

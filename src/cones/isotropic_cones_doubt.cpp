@@ -89,7 +89,7 @@ std::optional<Doubt> IsotropicCones::doubt_of_long(const TrilinearLengths& lengt
                 if (least[i] >= 0) continue;
                 // The place of the box next to the source.
                 const Point q = leaf.position[i];
-                const Point nearest = q.cwiseMax(box.low).cwiseMin(box.high);
+                const Point nearest = nearest_in(box, q);
                 const double own = lengths.at_place(nearest);
                 if (own > factor * leaf[i].length_at(nearest)) {
                     doubt = {nearest, true};

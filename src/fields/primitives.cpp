@@ -146,9 +146,7 @@ private:
     bool has_file_ = false, has_radius_ = false, has_length_ = false, has_ratio_ = false;
 };
 
-double distance_from_box(const Box& box, const Point& p) {
-    return (p - p.cwiseMax(box.low).cwiseMin(box.high)).norm();
-}
+double distance_from_box(const Box& box, const Point& p) { return (p - nearest_in(box, p)).norm(); }
 
 /// A line from a to b: places by how far along it they are, and how far beside.
 struct Axis3 {

@@ -50,9 +50,6 @@ Steepness steepness(const ControlSpace& space, const Box& domain,
                     std::span<const PointSource> sources, std::uint64_t seed, std::size_t pairs) {
     constexpr double nearest = 0.01, farthest = 10;  // to a source
     RandomFractions fraction(seed);
-    const auto inside = [&](const Point& x) -> Point {
-        return x.cwiseMax(domain.low).cwiseMin(domain.high);
-    };
     std::vector<Point> p(pairs), q(pairs);
     std::vector<Vector> ways(pairs);  // from p to q, in metric space
     for (std::size_t i = 0; i < pairs; ++i) {
@@ -61,8 +58,8 @@ Steepness steepness(const ControlSpace& space, const Box& domain,
             const auto k =
                 static_cast<std::size_t>(fraction() * static_cast<double>(sources.size()));
             const double away = between_on_log_scale(nearest, farthest, fraction);
-            p[i] = inside(sources[k].position +
-                          away * (sources[k].metric.matrix() * unit_vector(fraction)));
+            p[i] = nearest_in(domain, sources[k].position + away * (sources[k].metric.matrix() *
+                                                                    unit_vector(fraction)));
         }
         ways[i] =
             between_on_log_scale(shortest_pair, longest_pair, fraction) * unit_vector(fraction);
@@ -74,7 +71,7 @@ Steepness steepness(const ControlSpace& space, const Box& domain,
         if (!is_positive_definite(at_p[i])) return {infinity, infinity};
         q[i] = p[i] + at_p[i].matrix() * ways[i];
         if (flat) q[i][*flat] = p[i][*flat];
-        if (q[i] != inside(q[i])) q[i] = p[i];  // no pair
+        if (q[i] != nearest_in(domain, q[i])) q[i] = p[i];  // no pair
     }
     sample_parallel(space, q, at_q);
 

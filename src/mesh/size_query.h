@@ -22,7 +22,7 @@ struct UnitFrame {
     /// The place that is (x, y, z) in the frame; in the domain for all places in the frame's box.
     Point to_domain(double x, double y, double z) const {
         const Point p = domain.low + scale * Vector(x, y, z);
-        return p.cwiseMax(domain.low).cwiseMin(domain.high);
+        return nearest_in(domain, p);
     }
 
     Point from_domain(const Point& p) const { return (p - domain.low) / scale; }

@@ -83,7 +83,7 @@ double GoalField::largest_departure(const Box& domain, const Sample& sample_spac
         const PointSource& source = sources_[k * sources_.size() / near_sources];
         const Vector reach = Vector::Constant(mean_length(source.metric));
         const Box around{source.position - reach, source.position + reach};
-        x.push_back(place_in(around, k).cwiseMax(domain.low).cwiseMin(domain.high));
+        x.push_back(nearest_in(domain, place_in(around, k)));
     }
     std::vector<Metric> own(x.size());
     std::vector<Metric> exact(x.size());

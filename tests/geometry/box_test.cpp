@@ -70,3 +70,22 @@ TEST_CASE("the box around points has a volume, whatever their shape") {
     CHECK(bounding_box({points.data(), 1}, 0) == Box{Point::Constant(-0.5), Point::Constant(0.5)});
     CHECK_THROWS_AS(bounding_box({}, 0.1), InputError);
 }
+
+TEST_CASE("no point of a box is nearer than the nearest") {
+    const Box box{Point(-3, 10, 7), Point(-1, 14, 7)};
+    constexpr int n = 7;
+    const auto lattice = [](const Box& in, int i) -> Point {
+        const Vector t(i % n, i / n % n, i / (n * n));
+        return in.low + (t / (n - 1)).cwiseProduct(in.edges());
+    };
+    const Box around{Point(-6, 4, 5), Point(2, 18, 9)};
+    for (int i = 0; i < n * n * n; ++i) {
+        const Point x = lattice(around, i);
+        const Point nearest = nearest_in(box, x);
+        REQUIRE(box.contains(nearest));
+        if (box.contains(x)) CHECK(nearest == x);
+        for (int k = 0; k < n * n; ++k) {
+            CHECK((x - nearest).norm() <= (x - lattice(box, k)).norm() + 1e-12);
+        }
+    }
+}

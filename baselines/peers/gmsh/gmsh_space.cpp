@@ -122,7 +122,7 @@ void GmshSpace::for_each_inside(std::span<const Point> x, const auto& answer) co
                 "Gmsh was closed, by a mesh that it made meanwhile: build the structure anew");
         }
         for (std::size_t i = 0; i < x.size(); ++i) {
-            answer(i, x[i].cwiseMax(domain_.low).cwiseMin(domain_.high));
+            answer(i, nearest_in(domain_, x[i]));
         }
     });
 }

@@ -95,8 +95,7 @@ private:
         std::vector<Point> centres;
         for (netgen::GradingBox* box : boxes_()) {
             const netgen::Point<3> c = box->PMid();
-            centres.push_back(
-                Point(c(0), c(1), c(2)).cwiseMax(domain().low).cwiseMin(domain().high));
+            centres.push_back(nearest_in(domain(), Point(c(0), c(1), c(2))));
         }
         std::vector<Metric> exact(centres.size());
         field.evaluate(centres, exact);

@@ -48,7 +48,7 @@ AdaptationReport BackgroundTets::adapt(const AdaptationGoal& goal) {
     for (const PointSource& source : goal.sources) places.push_back(source.position);
     std::vector<Comparison> named;  // each is searched from the one before
     for (const std::uint32_t i : spatial_order(places)) {
-        named.push_back({{}, clamped(places[i])});
+        named.push_back({{}, nearest_in(domain(), places[i])});
     }
     ask(named, wanted);
     // Beside the largest errors that are found there may be somewhat larger ones.

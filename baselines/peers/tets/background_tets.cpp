@@ -176,7 +176,7 @@ ControlNodes BackgroundTets::control_nodes(Neighbourhood) const {
 // By the vertices of the smallest face that holds the place, in their order: whichever of the
 // tetrahedra around it the walk ends in, the bits are the same.
 BackgroundTets::Place BackgroundTets::locate(const Point& x, Delaunay::Cell_handle start) const {
-    const Point p = clamped(x);
+    const Point p = nearest_in(domain(), x);
     Delaunay::Locate_type type;
     int i, j;
     Place place;

@@ -88,8 +88,6 @@ private:
     double bytes() const;
     /// With so many vertices more.
     double bytes_with(std::size_t vertices) const;
-    /// The place nearest to x in the domain.
-    Point clamped(const Point& x) const { return x.cwiseMax(domain().low).cwiseMin(domain().high); }
     struct Comparison;
     static void ask(std::span<Comparison> places, const ControlSpace& goal);
     void compare(std::span<Comparison> places) const;

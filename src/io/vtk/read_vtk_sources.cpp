@@ -213,7 +213,7 @@ public:
         const vtkNew<vtkGenericCell> cell;
         std::vector<double> weights(largest_cell_);
         for (std::size_t i = 0; i < x.size(); ++i) {
-            out[i] = at(x[i].cwiseMax(domain_.low).cwiseMin(domain_.high), cell, weights);
+            out[i] = at(nearest_in(domain_, x[i]), cell, weights);
         }
     }
     Box domain() const override { return domain_; }

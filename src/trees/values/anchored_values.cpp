@@ -94,7 +94,7 @@ Metric AnchoredValues::cones_in_turn(const Point& x, std::span<const SourceIndex
 }
 
 Metric AnchoredValues::value(const Box& domain, LeafIndex leaf, const Point& place) const {
-    const Point x = place.cwiseMax(domain.low).cwiseMin(domain.high);
+    const Point x = nearest_in(domain, place);
     const auto anchors = anchors_.of(leaf);
     if (!continuous_) return cones_at(x, anchors);
     const Metric further = sample_at(*continuous_, x);
@@ -121,12 +121,6 @@ void AnchoredValues::take_over(const AdaptationGoal& goal) {
     sources_ = {};
     for (const PointSource& source : goal.sources) sources_.add(source);
 }
-
-namespace {
-
-Point nearest_in(const Box& box, const Point& x) { return x.cwiseMax(box.low).cwiseMin(box.high); }
-
-}  // namespace
 
 bool AnchoredValues::is_covered(SourceIndex source, std::span<const SourceIndex> others,
                                 const Box& box, int halvings) const {

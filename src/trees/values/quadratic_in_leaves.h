@@ -52,7 +52,7 @@ private:
     template <class Value>
     Value one(LeafIndex leaf, const Point& place) const {
         const Box& box = values_.box(leaf);
-        const Point x = place.cwiseMax(box.low).cwiseMin(box.high);
+        const Point x = nearest_in(box, place);
         PartsAcross across = values_.parts_across(leaf, x);
         for (std::size_t face = 0; face < 6; ++face) {
             Ref& part = across[face];
@@ -76,7 +76,7 @@ private:
             const Box& box = values_.box(leaves[i]);
             low[i] = box.low;
             high[i] = box.high;
-            x[i] = places[i].cwiseMax(box.low).cwiseMin(box.high);
+            x[i] = nearest_in(box, places[i]);
             across[i] = values_.parts_across(leaves[i], x[i]);
             for (std::size_t face = 0; face < 6; ++face) {
                 going[left] = static_cast<std::uint8_t>(8 * i + face);

@@ -19,7 +19,7 @@ public:
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         assert(x.size() == out.size());
         for (std::size_t i = 0; i < x.size(); ++i) {
-            out[i] = formula_(Point(x[i].cwiseMax(domain_.low).cwiseMin(domain_.high)));
+            out[i] = formula_(nearest_in(domain_, x[i]));
         }
     }
     Box domain() const override { return domain_; }

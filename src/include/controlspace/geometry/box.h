@@ -34,6 +34,11 @@ inline Point corner(const Box& box, int i) {
             (i & 4) != 0 ? box.high.z() : box.low.z()};
 }
 
+/// The point of `box` nearest to `x`.
+inline Point nearest_in(const Box& box, const Point& x) {
+    return x.cwiseMax(box.low).cwiseMin(box.high);
+}
+
 /// Smallest box around `points`, each side moved outwards by `margin` times the longest edge.
 /// Where the points have no extent along an axis (a plane, a line, one point), the box gets that of
 /// its longest edge, or 1 if there is none, so that it always has a volume. Throws InputError for

@@ -121,7 +121,7 @@ public:
                 const auto axis = static_cast<Axis>(i / 2);
                 x[i] = departure.where;
                 x[i][axis] += i % 2 == 0 ? step[axis] : -step[axis];
-                x[i] = x[i].cwiseMax(of.box.low).cwiseMin(of.box.high);
+                x[i] = nearest_in(of.box, x[i]);
             }
             const double before = departure.worst;
             compare_with(of, nearby, x, false, departure, {});

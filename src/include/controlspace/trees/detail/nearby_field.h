@@ -12,6 +12,9 @@
 namespace controlspace {
 
 /// Evaluates the field of a goal in one box after another, on one thread: a copy for each.
+///
+/// `enter` has to be called before anything is evaluated. A copy has not entered a box, whatever
+/// the original has: what is gathered in a box belongs to one object.
 class NearbyField {
 public:
     explicit NearbyField(const GoalField& field);

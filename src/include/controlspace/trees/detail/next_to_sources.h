@@ -169,7 +169,7 @@ private:
     // A quadratic function has its minimum in a box inside of it, in a face, an edge or a corner.
     Point nearest_place(std::size_t source, const Box& box) const {
         const Point& q = sources_[source].position;
-        Point nearest = q.cwiseMax(box.low).cwiseMin(box.high);
+        Point nearest = nearest_in(box, q);
         if (is_isotropic(sources_[source].metric) || nearest == q) return nearest;
         // Mostly it is where the nearest place of a plane between the source and the box is.
         const Eigen::Matrix3d squared = square(sources_[source].metric).matrix();
@@ -192,7 +192,7 @@ private:
                 right[i] = rest % 3 == 0 ? box.low[i] : box.high[i];
             }
             const Vector at = equations.inverse() * right;
-            const Point x = at.cwiseMax(box.low).cwiseMin(box.high);
+            const Point x = nearest_in(box, at);
             const double distance = (x - q).dot(a * (x - q));
             if (!(distance < least)) continue;
             least = distance;
