@@ -52,10 +52,11 @@ void mesh_case(const Study& study, const Case& c, bool is_by_default, const Refe
         start_library_of(c.structure);
         const Filled filled = make_and_fill(study, c, program_rows(), reference.workload);
         space = filled.build(c);
-        if (!is_by_default) made.shortfall = filled.creation.shortfall;
-        const std::string remark = remark_on(filled.creation, space->footprint());
-        if (made.shortfall.empty() && !remark.empty()) {
+        if (is_by_default && !filled.creation.shortfall.empty()) {
+            const std::string remark = remark_on(filled.creation, space->footprint());
             print_error(fmt::format("{}: {}\n", mesh_label(row), remark));
+        } else {
+            made.shortfall = filled.creation.shortfall;
         }
         made.creation_s = filled.creation.insert_s.front() + filled.creation.gradation_s.front();
         const Accuracy delta_r = accuracy(*space, reference.probes);
