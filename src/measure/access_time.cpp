@@ -65,8 +65,8 @@ double quartile(std::vector<double> samples, int number) {
 }
 
 std::vector<AccessTime> access_times(std::span<const ControlSpace* const> spaces,
-                                     std::span<const Point> points, int repeats,
-                                     Calls calls, double shortest_s) {
+                                     std::span<const Point> points, int repeats, Calls calls,
+                                     double shortest_s) {
     if (points.empty()) throw InputError("access time at no places: give at least one point");
     if (repeats < 1) throw InputError(fmt::format("{} timed repeats: give at least one", repeats));
 

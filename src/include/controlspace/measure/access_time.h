@@ -20,7 +20,8 @@ std::uint64_t checksum(std::span<const Metric> metrics);
 /// Throws InputError where there is no sample.
 double quartile(std::vector<double> samples, int number);
 
-/// How places are passed to a structure: all in one call of `sample`, or one in each, as meshers do.
+/// How places are passed to a structure: all in one call of `sample`, or one in each, as meshers
+/// do.
 enum class Calls { one, each };
 
 /// Raw samples of the access time t_a (paper §5.1), nanoseconds per query on one thread.
