@@ -83,6 +83,12 @@ std::vector<Row> rows_to_go_on_from(const StoredResults& earlier, const Study& s
             "row {} is {}, which is no case {} of this study: give the study that was interrupted",
             i + 1, structure_label(earlier.rows[i].setting), i + 1));
     }
+    if (earlier.complete && earlier.rows.size() < cases.size()) {
+        throw InputError(fmt::format(
+            "these results are complete with {} cases, and this study has {}: run it anew, or the "
+            "others alone",
+            earlier.rows.size(), cases.size()));
+    }
     if (earlier.complete) throw InputError("these results are complete: nothing is left to run");
     require_same_program(earlier.provenance, now);
     return earlier.rows;

@@ -75,7 +75,10 @@ TEST_CASE("what must not be mixed does not go on") {
     CHECK_THROWS_WITH(run.go_on({}, now), Contains("the compiler"));
 
     run.earlier.complete = true;
-    CHECK_THROWS_WITH(run.go_on(), Contains("complete"));
+    CHECK_THROWS_WITH(run.go_on(), Contains("2 cases, and this study has 3"));
+    run.earlier.rows.push_back(sample_row(run.cases[2]));
+    CHECK_THROWS_WITH(run.go_on(), Contains("nothing is left"));
+    run.earlier.rows.pop_back();
     run.earlier.complete = false;
     std::swap(run.cases[0], run.cases[2]);
     CHECK_THROWS_WITH(run.go_on(), Contains("row 1 is K_L") && Contains("no case 1"));
