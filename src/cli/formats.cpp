@@ -9,11 +9,11 @@
 #include <string_view>
 #include <utility>
 
-#include "cli/child_reading.h"
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/io/read_vdb.h"
 #include "controlspace/io/read_vtk_sources.h"
+#include "controlspace/io/require_readable.h"
 #include "gmsh/cad_surface.h"
 #include "io/surface/surface_distance.h"
 #include "io/surface/surface_mesh.h"

@@ -16,8 +16,8 @@ namespace controlspace {
 // missing (with a list of what is there), of another type, empty, or under a transform that is not
 // linear; and for voxels whose values cannot be used.
 //
-// OpenVDB trusts what a file says: a damaged one may crash it, or take all memory. Read files of
-// unknown origin in a process of their own first, as the program does.
+// OpenVDB trusts what a file says: a damaged one may crash it, or take all memory. For files of
+// unknown origin call require_readable first (controlspace/io/require_readable.h).
 
 /// How a surface in a .vdb file becomes sources. Exactly one of `h` and `per_radius` is given.
 struct VdbSurface {

@@ -19,8 +19,8 @@ namespace controlspace {
 /// the file has room for; for an array that is missing, or of another number of components; and for
 /// points and metrics that cannot be sources, by their number.
 ///
-/// VTK trusts what a file says: a damaged one may crash it, or take all memory. Read files of
-/// unknown origin in a process of their own first, as the program does.
+/// VTK trusts what a file says: a damaged one may crash it, or take all memory. For files of
+/// unknown origin call require_readable first (controlspace/io/require_readable.h).
 std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
                                           const std::string& array = {});
 

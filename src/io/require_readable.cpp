@@ -1,4 +1,6 @@
-#include "cli/child_reading.h"
+#include "controlspace/io/require_readable.h"
+
+#ifdef __linux__
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,6 +18,7 @@
 #include <string>
 
 #include "controlspace/error.h"
+#include "io/give_up_rights.h"
 #include "io/text/metric_rows.h"
 
 namespace controlspace {
@@ -67,6 +70,7 @@ rlim_t time_limit(const std::filesystem::path& file) {
     limit(RLIMIT_CORE, 0);
     if (limits_memory) limit(RLIMIT_AS, memory_limit(file));
     limit(RLIMIT_CPU, time_limit(file));
+    give_up_rights();
     int status = failed;
     try {
         read();
@@ -112,3 +116,13 @@ void require_readable(const std::filesystem::path& file, const std::function<voi
 }
 
 }  // namespace controlspace
+
+#else
+
+namespace controlspace {
+
+void require_readable(const std::filesystem::path&, const std::function<void()>& read) { read(); }
+
+}  // namespace controlspace
+
+#endif
