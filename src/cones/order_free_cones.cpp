@@ -179,7 +179,7 @@ double OrderFreeCones::growth(const Point& p, const Eigen::Matrix3d& h,
 
 OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* further,
                                              const Start& start, double tolerance, Start* found,
-                                             Scope scope) const {
+                                             std::optional<int> levels) const {
     const double allowed_gap = gap_of(tolerance);
     const double allowed = std::exp(0.9 * allowed_gap / 3);
     const double gap = 0.1 * allowed_gap;
@@ -203,12 +203,12 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
         if (!tree_.empty()) {
             Exceeded exceeded(limit);
             const Exceeding exceeding(p, answer.factor);
-            const Core::Nearby nearby(core, tree_, scope == Scope::one_level ? 1 : 2);
+            const Core::Nearby nearby(core, tree_, levels.value_or(2));
             for (const std::uint32_t node : nearby.nodes()) {
                 find_exceeded(tree_, node, {}, exceeding, exceeded);
             }
             const auto is_new = [&](const Exceeded::Cone& cone) { return !core.has(cone.member); };
-            if (std::ranges::none_of(exceeded.cones(), is_new) && scope == Scope::all) {
+            if (std::ranges::none_of(exceeded.cones(), is_new) && !levels) {
                 find_exceeded(tree_, 0, nearby.nodes(), exceeding, exceeded);
             }
             if (std::ranges::any_of(exceeded.cones(), is_new) && round < most_rounds) {
@@ -225,7 +225,7 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
             // Exceeded cones of the core set itself: that is rounding. H is made smaller until it
             // exceeds none.
             constexpr int most_times = 20;
-            for (int time = 1; !exceeded.empty() && scope == Scope::all; ++time) {
+            for (int time = 1; !exceeded.empty() && !levels; ++time) {
                 for (const Exceeded::Cone& cone : exceeded.cones()) {
                     limit = std::max(limit, growth(p, answer.factor, member(cone.member)));
                 }
@@ -285,7 +285,7 @@ OrderFreeCones::Cell OrderFreeCones::made_cell(const std::array<std::int64_t, 4>
     Cell cell;
     cell.key = key;
     answer(centre, nullptr, from, std::max(tolerance_, tolerance_of_start), &cell.start,
-           key[0] >= first_rough_level ? Scope::two_levels : Scope::all);
+           key[0] >= first_rough_level ? std::optional(2) : std::nullopt);
     const Eigen::Matrix3d& h = cell.start.factor;
     const double shortest =
         std::sqrt(eigen_frame(Metric::from_matrix(h * h.transpose())).lengths[0]);
@@ -349,7 +349,7 @@ OrderFreeIntersection OrderFreeCones::intersect(const Point& p, const Metric* fu
 OrderFreeIntersection OrderFreeCones::intersect_close(const Point& p, const Metric* further,
                                                       const Start& near, Start& found) const {
     if (further != nullptr) require_valid(*further, failure_of("the further metric"));
-    return answer(p, further, near, tolerance_, &found, Scope::one_level);
+    return answer(p, further, near, tolerance_, &found, 1);
 }
 
 }  // namespace controlspace

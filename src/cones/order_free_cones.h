@@ -70,14 +70,14 @@ private:
         bool is_small = false;  ///< good for all places in it
     };
     class Core;
-    /// Which sources are searched: all, or only those below the nodes some levels above the members
-    /// of the core set.
-    enum class Scope { one_level, two_levels, all };
 
     PointSource member(std::uint32_t number) const;
     double growth(const Point& p, const Eigen::Matrix3d& h, const PointSource& source) const;
+    /// Searches the sources below the nodes so many `levels` above the members of the core set;
+    /// without a number, all.
     OrderFreeIntersection answer(const Point& p, const Metric* further, const Start& start,
-                                 double tolerance, Start* found, Scope scope = Scope::all) const;
+                                 double tolerance, Start* found,
+                                 std::optional<int> levels = {}) const;
     const Start& start_near(const Point& p, Search& search) const;
     std::array<std::int64_t, 4> cell_at(const Point& p, int level) const;
     Cell made_cell(const std::array<std::int64_t, 4>& key, const Start& from) const;
