@@ -42,7 +42,7 @@ Vector lattice_nodes(const Box& domain, const Vector& cells, Interpolation inter
 
 Vector whole_cells(const Vector& cells) { return (cells.array() * (1 - 1e-12)).ceil().max(1); }
 
-double finest_voxel(const SpaceOptions& options) {
+double longest_voxel_edge(const SpaceOptions& options) {
     if (options.voxel > 0) return options.voxel;
     if (!std::isfinite(options.finest_length) || !(options.finest_length > 0)) {
         throw InputError(
@@ -66,7 +66,7 @@ Voxels choose_voxels(const SpaceOptions& options, Interpolation interpolation,
     };
 
     const Vector edges = options.domain.edges();
-    const Vector wanted = whole_cells(edges / finest_voxel(options));
+    const Vector wanted = whole_cells(edges / longest_voxel_edge(options));
     if (fits(wanted)) return {wanted, ""};
 
     // Bisection over the number of cells along the longest edge.

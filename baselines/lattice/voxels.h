@@ -28,9 +28,9 @@ Vector whole_cells(const Vector& cells);
 
 /// Longest edge that voxels may have: `voxel`, or l_min * finest_length where that is 0.
 /// Throws InputError where the options name neither.
-double finest_voxel(const SpaceOptions& options);
+double longest_voxel_edge(const SpaceOptions& options);
 
-/// Cells with edges of at most finest_voxel (plus a relative 1e-12 for rounding) where a
+/// Cells with edges of at most longest_voxel_edge (plus a relative 1e-12 for rounding) where a
 /// grid of them fits `max_bytes`, the finest that fit otherwise. What has to fit is
 /// `bytes_of(nodes)`, the grid with so many nodes along x, y and z, and what gradation adds to it;
 /// besides, nodes must be fewer than 2^32. `bytes_of` must not shrink as nodes grow.

@@ -192,10 +192,11 @@ def fronts(rows):
 
 
 def front_of(rows, cost, error):
-    """The rows that no other beats: none is at most as large in both, and smaller in one."""
-    points = [(row[cost], row[error]) for row in rows]
-    return [row for row, (c, e) in zip(rows, points)
-            if not any(x <= c and y <= e and (x < c or y < e) for x, y in points)]
+    """The rows that no other beats, as in pareto.json: none of at most this error has a smaller
+    cost, beyond the quartiles of times, and none of equal cost a smaller error."""
+    points = [(row, row[cost], *row.spread(cost), row[error]) for row in rows]
+    return [row for row, at, low, _, e in points
+            if not any(y <= e and high < low or y < e and x == at for _, x, _, high, y in points)]
 
 
 def pareto_figures(rows, styles):

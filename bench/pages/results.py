@@ -68,9 +68,11 @@ class Row:
         return self.measures[key]
 
     def spread(self, key):
-        """Lower and upper quartile of a time of the paper's; any other measure is one number."""
-        time, unit = PAPER_TIMES.get(key, (None, 1))
-        return (self[f"{time}_q1"] * unit, self[f"{time}_q3"] * unit) if time else (self[key],) * 2
+        """Lower and upper quartile of a time; any other measure is one number."""
+        time, unit = PAPER_TIMES.get(key, (key, 1))
+        if f"{time}_q1" not in self.measures:
+            return self[key], self[key]
+        return self[f"{time}_q1"] * unit, self[f"{time}_q3"] * unit
 
 
 @dataclass

@@ -4,17 +4,14 @@
 #include <cmath>
 
 #include "controlspace/geometry/extent.h"
+#include "controlspace/metric/blend.h"
 
 namespace controlspace {
 
 double TrilinearLengths::at_place(const Point& x) const {
-    const Vector t = (x - box.low).cwiseQuotient(divisible_edges(box));
+    const auto weights = corner_weights((x - box.low).cwiseQuotient(divisible_edges(box)));
     double length = 0;
-    for (std::size_t i = 0; i < 8; ++i) {
-        double weight = 1;
-        for (Axis a = 0; a < 3; ++a) weight *= (i >> a & 1) != 0 ? t[a] : 1 - t[a];
-        length += weight * at[i];
-    }
+    for (std::size_t i = 0; i < 8; ++i) length += weights[i] * at[i];
     return length;
 }
 

@@ -58,15 +58,6 @@ std::vector<Metric> at_places(const ControlSpace& space, std::span<const Box> bo
     return metrics;
 }
 
-Metric trilinear(const std::array<Metric, 8>& corners, const Vector& t) {
-    const auto weight = [&](std::size_t c) {
-        double product = 1;
-        for (Axis a = 0; a < 3; ++a) product *= (c >> a & 1) != 0 ? t[a] : 1 - t[a];
-        return product;
-    };
-    return blend_lengths(8, weight, [&](std::size_t c) -> const Metric& { return corners[c]; });
-}
-
 /// The cells of a view of a structure. Those where the view is off are halved.
 class View {
 public:
@@ -135,7 +126,10 @@ private:
             return has_tensors_ ? to_riemannian(m) : m;
         });
         for (std::size_t i = 8; i < at.size(); ++i) {
-            const Metric read = trilinear(cell.corners, places()[i]);
+            const Metric read = blend_lengths(
+                corner_weights(places()[i]), [&](std::size_t c) -> auto& {
+                    return cell.corners[c];
+                });
             const auto m = has_tensors_ ? from_riemannian(read) : read;
             const double limit = has_tensors_ ? tensors_off : lengths_off;
             if (m && directional_nonconformity(*m, at[i]) <= limit) continue;

@@ -13,15 +13,6 @@
 
 namespace controlspace {
 
-/// Place of `x` in `box`, each coordinate from 0 to 1, as the weights of its eight corners.
-inline std::array<double, 8> corner_weights(const Box& box, const Point& x) {
-    const Vector t = (x - box.low).cwiseQuotient(divisible_edges(box));
-    const std::array<double, 2> wx{1 - t.x(), t.x()}, wy{1 - t.y(), t.y()}, wz{1 - t.z(), t.z()};
-    std::array<double, 8> weights{};
-    for (std::size_t i = 0; i < 8; ++i) weights[i] = wx[i & 1] * wy[i >> 1 & 1] * wz[i >> 2];
-    return weights;
-}
-
 /// The weights of the corners of some boxes, for a place in each: `corner_weights` side by side, in
 /// vectors.
 template <std::size_t most>

@@ -21,7 +21,7 @@ VertexValues::VertexValues(const SpaceOptions& options) : corners_(1), metrics_(
 // The control node at `x`, a place on the border or inside of a leaf with this box and these
 // corners; it is as large as the leaf's field there at most.
 NodeIndex VertexValues::vertex_at(const Point& x, const Box& box, const Corners& corners) {
-    const auto weights = corner_weights(box, x);
+    const auto weights = corner_weights((x - box.low).cwiseQuotient(divisible_edges(box)));
     const Metric requested = interpolate(corners, weights, metrics_.requested());
     const auto next = static_cast<NodeIndex>(positions_.size());
     if (places_.is_empty()) places_ = PlaceIndex(positions_);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <span>
 #include <type_traits>
@@ -52,25 +53,28 @@ Metric blend_lengths(std::span<const double> weights, MetricAt&& metric_at) {
         weights.size(), [&](std::size_t i) { return weights[i]; }, metric_at);
 }
 
-/// The same for metrics known to be isotropic, as their lengths: StoredLengths too.
-template <class WeightAt, class MetricAt>
-[[gnu::always_inline]] inline double blend_isotropic(std::size_t count, WeightAt&& weight_at,
-                                                     MetricAt&& metric_at) {
-    double sum = 0;
-    for (std::size_t i = 0; i < count; ++i) sum += weight_at(i) * length_of(metric_at(i));
-    return sum;
-}
-
-/// The weighted mean as a Metric; or, where all are known to be isotropic, as its length.
+/// The weighted mean as a Metric; or, where all are known to be isotropic, as its length:
+/// StoredLengths too.
 template <class Value, class WeightAt, class MetricAt>
 [[gnu::always_inline]] inline Value blend(std::size_t count, WeightAt&& weight_at,
                                           MetricAt&& metric_at) {
     using M = std::remove_cvref_t<decltype(metric_at(0))>;
     if constexpr (std::is_same_v<Value, double> || is_stored_length<M>) {
-        return isotropic_value<Value>(blend_isotropic(count, weight_at, metric_at));
+        double length = 0;
+        for (std::size_t i = 0; i < count; ++i) length += weight_at(i) * length_of(metric_at(i));
+        return isotropic_value<Value>(length);
     } else {
         return blend_lengths(count, weight_at, metric_at);
     }
+}
+
+/// The weights of a box's eight corners (x fastest) in a trilinear blend at the place that is the
+/// fractions `t` of its edges from its lowest corner.
+inline std::array<double, 8> corner_weights(const Vector& t) {
+    const std::array<double, 2> wx{1 - t.x(), t.x()}, wy{1 - t.y(), t.y()}, wz{1 - t.z(), t.z()};
+    std::array<double, 8> weights{};
+    for (std::size_t i = 0; i < 8; ++i) weights[i] = wx[i & 1] * wy[i >> 1 & 1] * wz[i >> 2];
+    return weights;
 }
 
 }  // namespace controlspace
