@@ -59,9 +59,7 @@ void mesh_case(const Study& study, const Case& c, bool is_by_default, const Refe
             made.shortfall = filled.creation.shortfall;
         }
         made.creation_s = filled.creation.insert_s.front() + filled.creation.gradation_s.front();
-        const Accuracy delta_r = accuracy(*space, reference.probes);
-        made.delta_r_max = delta_r.max;
-        made.delta_r_mean = delta_r.mean;
+        made.delta_r = accuracy(*space, reference.probes);
         return *space;
     };
     folder.add(row, reference.workload.domain, *reference.field, make);

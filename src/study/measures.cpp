@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <concepts>
 #include <functional>
 #include <limits>
-#include <utility>
 
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/study/measure.h"
@@ -16,29 +14,18 @@ using Samples = std::vector<double>;
 
 using F = Finished;
 
-/// A row of the number that `place` in `finished` leads to: a member, and its member or function.
-template <class Part, class Place>
-Measure row(const char* key, Part F::*part, Place place, Column column = {},
-            const char* unit = "") {
-    const auto value = [=](const F& f) -> MeasuredValue {
-        const auto number = std::invoke(place, f.*part);
-        if constexpr (std::integral<decltype(number)>) return static_cast<std::int64_t>(number);
-        return static_cast<double>(number);
-    };
-    return {key, unit, value, std::move(column)};
-}
-
 std::vector<Measure> size_rows() {
     return {
-        row("sources_inserted", &F::creation, &Creation::sources_inserted),
-        row("tree_nodes", &F::footprint, &Footprint::tree_nodes),
-        row("cells", &F::footprint, &Footprint::cells, {"cells", "{}"}),
-        row("control_nodes", &F::footprint, &Footprint::control_nodes),
-        row("depth", &F::footprint, &Footprint::depth),
-        row("bytes_total", &F::footprint, &Footprint::bytes_total, {"MB", "{:.2f}", 1e-6}, "byte"),
-        row("bytes_payload", &F::footprint, &Footprint::bytes_payload, {}, "byte"),
-        row("bytes_topology", &F::footprint, &Footprint::bytes_topology, {}, "byte"),
-        row("bytes_auxiliary", &F::footprint, &Footprint::bytes_auxiliary, {}, "byte"),
+        row_of("sources_inserted", &F::creation, &Creation::sources_inserted),
+        row_of("tree_nodes", &F::footprint, &Footprint::tree_nodes),
+        row_of("cells", &F::footprint, &Footprint::cells, {"cells", "{}"}),
+        row_of("control_nodes", &F::footprint, &Footprint::control_nodes),
+        row_of("depth", &F::footprint, &Footprint::depth),
+        row_of("bytes_total", &F::footprint, &Footprint::bytes_total, {"MB", "{:.2f}", 1e-6},
+               "byte"),
+        row_of("bytes_payload", &F::footprint, &Footprint::bytes_payload, {}, "byte"),
+        row_of("bytes_topology", &F::footprint, &Footprint::bytes_topology, {}, "byte"),
+        row_of("bytes_auxiliary", &F::footprint, &Footprint::bytes_auxiliary, {}, "byte"),
     };
 }
 
@@ -63,7 +50,7 @@ std::vector<Measure> time_rows() {
         {"grid ns", "{:.1f}", 1, "fastest access in grid order"});
     add("t_access_ns_single", "ns", [](const Finished& f) { return f.access_single.samples_ns; },
         {"single ns", "{:.1f}"});
-    rows.push_back(row("access_batch", &F::access_batch, std::identity()));
+    rows.push_back(row_of("access_batch", &F::access_batch, std::identity()));
     return rows;
 }
 
@@ -85,33 +72,34 @@ std::string found_by_probes(const Finished& f) {
 std::vector<Measure> accuracy_rows() {
     return {
         {"delta_S_max", "", [](const Finished& f) { return f.source_accuracy; }},
-        row("delta_R_max", &F::accuracy, &Accuracy::max, {"δ_R max", "{:.4f}"}),
-        row("delta_R_mean", &F::accuracy, &Accuracy::mean, {"δ_R mean", "{:.4f}"}),
-        row("delta_R_p95", &F::accuracy, &Accuracy::p95),
-        row("delta_R_p99", &F::accuracy, &Accuracy::p99, {"δ_R p99", "{:.4f}"}),
-        row("delta_R_fine_max", &F::accuracy_fine, &Accuracy::max, {"fine max", "{:.4f}"}),
-        row("delta_R_fine_mean", &F::accuracy_fine, &Accuracy::mean),
-        row("delta_R_fine_p95", &F::accuracy_fine, &Accuracy::p95),
-        row("delta_R_fine_p99", &F::accuracy_fine, &Accuracy::p99),
-        row("delta_metric_R_max", &F::accuracy, &Accuracy::riemannian_max),
-        row("coarser_max", &F::accuracy, &Accuracy::coarser_max),
-        row("coarser_share", &F::accuracy, &Accuracy::coarser_share),
-        row("coarser_fine_max", &F::accuracy_fine, &Accuracy::coarser_max),
-        row("coarser_fine_share", &F::accuracy_fine, &Accuracy::coarser_share,
-            {"fine coarser", "{:.2f} %", 100}),
-        row("finer_max", &F::accuracy, &Accuracy::finer_max),
-        row("finer_share", &F::accuracy, &Accuracy::finer_share),
-        row("finer_fine_max", &F::accuracy_fine, &Accuracy::finer_max),
-        row("finer_fine_share", &F::accuracy_fine, &Accuracy::finer_share,
-            {"fine finer", "{:.2f} %", 100}),
-        row("within_max", &F::accuracy, &Accuracy::within),
-        row("within_fine_max", &F::accuracy_fine, &Accuracy::within, {"within", "{:.3f}x"}),
-        row("G_det", &F::steepness, &Steepness::det, {"G_det", "{:.3f}"}),
-        row("G_dir", &F::steepness, &Steepness::dir, {"G_dir", "{:.3f}"}),
-        row("gradation_max_left", &F::creation,
-            [](const Creation& c) { return c.gradation.largest_ratio_left; }, {"G left", "{:.4f}"}),
-        row("gradation_operations", &F::creation,
-            [](const Creation& c) { return c.gradation.operations; }),
+        row_of("delta_R_max", &F::accuracy, &Accuracy::max, {"δ_R max", "{:.4f}"}),
+        row_of("delta_R_mean", &F::accuracy, &Accuracy::mean, {"δ_R mean", "{:.4f}"}),
+        row_of("delta_R_p95", &F::accuracy, &Accuracy::p95),
+        row_of("delta_R_p99", &F::accuracy, &Accuracy::p99, {"δ_R p99", "{:.4f}"}),
+        row_of("delta_R_fine_max", &F::accuracy_fine, &Accuracy::max, {"fine max", "{:.4f}"}),
+        row_of("delta_R_fine_mean", &F::accuracy_fine, &Accuracy::mean),
+        row_of("delta_R_fine_p95", &F::accuracy_fine, &Accuracy::p95),
+        row_of("delta_R_fine_p99", &F::accuracy_fine, &Accuracy::p99),
+        row_of("delta_metric_R_max", &F::accuracy, &Accuracy::riemannian_max),
+        row_of("coarser_max", &F::accuracy, &Accuracy::coarser_max),
+        row_of("coarser_share", &F::accuracy, &Accuracy::coarser_share),
+        row_of("coarser_fine_max", &F::accuracy_fine, &Accuracy::coarser_max),
+        row_of("coarser_fine_share", &F::accuracy_fine, &Accuracy::coarser_share,
+               {"fine coarser", "{:.2f} %", 100}),
+        row_of("finer_max", &F::accuracy, &Accuracy::finer_max),
+        row_of("finer_share", &F::accuracy, &Accuracy::finer_share),
+        row_of("finer_fine_max", &F::accuracy_fine, &Accuracy::finer_max),
+        row_of("finer_fine_share", &F::accuracy_fine, &Accuracy::finer_share,
+               {"fine finer", "{:.2f} %", 100}),
+        row_of("within_max", &F::accuracy, &Accuracy::within),
+        row_of("within_fine_max", &F::accuracy_fine, &Accuracy::within, {"within", "{:.3f}x"}),
+        row_of("G_det", &F::steepness, &Steepness::det, {"G_det", "{:.3f}"}),
+        row_of("G_dir", &F::steepness, &Steepness::dir, {"G_dir", "{:.3f}"}),
+        row_of("gradation_max_left", &F::creation,
+               [](const Creation& c) { return c.gradation.largest_ratio_left; },
+               {"G left", "{:.4f}"}),
+        row_of("gradation_operations", &F::creation,
+               [](const Creation& c) { return c.gradation.operations; }),
         // As text: JSON readers keep 53 bits of a number.
         {"checksum", "",
          [](const Finished& f) { return fmt::format("{:016x}", f.access_random.checksum); }},

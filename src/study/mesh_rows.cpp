@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <concepts>
+#include <functional>
 
 #include "controlspace/study/measure.h"
 #include "study/grouped.h"
@@ -14,9 +14,6 @@ namespace controlspace {
 namespace {
 
 using Rows = std::vector<const MeshRow*>;
-
-/// What was meshed may be the reference: there is no δ_R of it then.
-bool has_delta_r(const MeshRow& row) { return !row.exact && row.saved.empty(); }
 
 /// The mesh of the exact field that `row` is to be compared with.
 const MeshRow* exact_beside(const MeshRow& row, std::span<const MeshRow> rows) {
@@ -31,64 +28,33 @@ const MeshRow* exact_beside(const MeshRow& row, std::span<const MeshRow> rows) {
     return found;
 }
 
-/// A measure of meshes: in meshes.json where it has a key, in tables where it has a column.
-struct MeshMeasure {
-    std::string key;
-    Column column;
-    /// `exact`: the mesh of the exact field to compare with, or null.
-    std::function<MeasuredValue(const MeshRow& row, const MeshRow* exact)> value;
-};
-
-/// A row of a number that `get` returns.
-template <class Get>
-MeshMeasure row(const char* key, const Column& column, Get get) {
-    return {key, column, [get](const MeshRow& mesh, const MeshRow*) -> MeasuredValue {
-                const auto number = get(mesh);
-                if constexpr (std::integral<decltype(number)>) {
-                    return static_cast<std::int64_t>(number);
-                } else {
-                    return number;
-                }
-            }};
-}
-/// A row of a number that meshes of the reference do not have.
-template <class Get>
-MeshMeasure compared(const char* key, const Column& column, Get get) {
-    return row(key, column, [get](const MeshRow& mesh) {
-        return has_delta_r(mesh) ? MeasuredValue(get(mesh)) : MeasuredValue();
-    });
-}
-
-const std::vector<MeshMeasure>& mesh_measures() {
-    using Row = const MeshRow&;
-    static const std::vector<MeshMeasure> all{
-        row("tets", {"tets", "{}"}, [](Row r) { return r.conformity.tets; }),
-        row("nodes", {"nodes", "{}"}, [](Row r) { return r.conformity.nodes; }),
-        row("edges", {}, [](Row r) { return r.conformity.edges; }),
-        row("creation_s", {}, [](Row r) { return r.creation_s; }),
-        row("mesh_s", {"s", "{:.1f}"}, [](Row r) { return r.cost.seconds; }),
-        row("mesh_processor_s", {"CPU s", "{:.1f}"},
-            [](Row r) { return r.cost.processor_seconds; }),
-        row("peak_bytes", {"MB", "{:.0f}", 1e-6}, [](Row r) { return r.cost.peak_bytes; }),
-        row("L_R", {"L_R", "{:.4f}"}, [](Row r) { return r.conformity.l_r; }),
-        {"",
-         {"-exact", "{:+.4f}"},
-         [](Row r, const MeshRow* exact) {
-             return exact != nullptr ? MeasuredValue(r.conformity.l_r - exact->conformity.l_r)
-                                     : MeasuredValue();
-         }},
-        row("L_R_middle", {"middle", "{:.4f}"}, [](Row r) { return r.conformity.l_r_middle; }),
-        row("unit_share", {"unit", "{:.4f}"}, [](Row r) { return r.conformity.unit_share; }),
-        row("mean_length", {"length", "{:.3f}"}, [](Row r) { return r.conformity.mean_length; }),
-        row("quality_min", {"q min", "{:.3f}"}, [](Row r) { return r.conformity.quality_min; }),
-        row("quality_mean", {"q mean", "{:.3f}"}, [](Row r) { return r.conformity.quality_mean; }),
-        row("queries", {"queries", "{}"}, [](Row r) { return r.cost.queries; }),
-        row("query_s", {}, [](Row r) { return r.cost.query_seconds; }),
+std::span<const MeasureOf<MeshRow>> mesh_measures() {
+    using R = MeshRow;
+    static const std::vector<MeasureOf<R>> all{
+        row_of("tets", &R::conformity, &Conformity::tets, {"tets", "{}"}),
+        row_of("nodes", &R::conformity, &Conformity::nodes, {"nodes", "{}"}),
+        row_of("edges", &R::conformity, &Conformity::edges),
+        row_of("creation_s", &R::creation_s, std::identity(), {}, "s"),
+        row_of("mesh_s", &R::cost, &MeshCost::seconds, {"s", "{:.1f}"}, "s"),
+        row_of("mesh_processor_s", &R::cost, &MeshCost::processor_seconds, {"CPU s", "{:.1f}"},
+               "s"),
+        row_of("peak_bytes", &R::cost, &MeshCost::peak_bytes, {"MB", "{:.0f}", 1e-6}, "byte"),
+        row_of("L_R", &R::conformity, &Conformity::l_r, {"L_R", "{:.4f}"}),
+        row_of("", &R::beside_exact, std::identity(), {"-exact", "{:+.4f}"}),
+        row_of("L_R_middle", &R::conformity, &Conformity::l_r_middle, {"middle", "{:.4f}"}),
+        row_of("unit_share", &R::conformity, &Conformity::unit_share, {"unit", "{:.4f}"}),
+        row_of("mean_length", &R::conformity, &Conformity::mean_length, {"length", "{:.3f}"}),
+        row_of("quality_min", &R::conformity, &Conformity::quality_min, {"q min", "{:.3f}"}),
+        row_of("quality_mean", &R::conformity, &Conformity::quality_mean, {"q mean", "{:.3f}"}),
+        row_of("queries", &R::cost, &MeshCost::queries, {"queries", "{}"}),
+        row_of("query_s", &R::cost, &MeshCost::query_seconds, {}, "s"),
         // Of the processors' time: on a shared machine the clock goes on while others run.
-        row("", {"share", "{:.2f} %", 100},
-            [](Row r) { return r.cost.query_seconds / r.cost.processor_seconds; }),
-        compared("delta_R_max", {"δ_R max", "{:.3f}"}, [](Row r) { return r.delta_r_max; }),
-        compared("delta_R_mean", {"δ_R mean", "{:.4f}"}, [](Row r) { return r.delta_r_mean; }),
+        row_of("", &R::cost,
+               [](const MeshCost& cost) { return cost.query_seconds / cost.processor_seconds; },
+               {"share", "{:.2f} %", 100}),
+        row_of("delta_R_max", &R::delta_r, &Accuracy::max, {"δ_R max", "{:.3f}"}),
+        row_of("delta_R_mean", &R::delta_r, &Accuracy::mean, {"δ_R mean", "{:.4f}"}),
+        {"shortfall", "", &R::shortfall, {"remark", "{}"}},
     };
     return all;
 }
@@ -97,10 +63,10 @@ const std::vector<MeshMeasure>& mesh_measures() {
 std::string correlation_text(const Rows& rows) {
     std::vector<double> l_r, largest, mean;
     for (const MeshRow* row : rows) {
-        if (!has_delta_r(*row) || !row->error.empty()) continue;
+        if (!row->delta_r || !row->error.empty()) continue;
         l_r.push_back(row->conformity.l_r);
-        largest.push_back(row->delta_r_max);
-        mean.push_back(row->delta_r_mean);
+        largest.push_back(row->delta_r->max);
+        mean.push_back(row->delta_r->mean);
     }
     const auto with_largest = spearman(l_r, largest), with_mean = spearman(l_r, mean);
     if (!with_largest || !with_mean) return "";
@@ -110,31 +76,15 @@ std::string correlation_text(const Rows& rows) {
         *with_largest, *with_mean);
 }
 
-TextTable measure_table(const std::string& title, const Rows& rows, std::span<const MeshRow> all) {
-    TextTable table{
+TextTable table_of(const std::string& title, const Rows& rows) {
+    return measure_table(
         "Meshes: " + title,
         "L_R: share of edges of metric length 0.8 to 1.25; middle: by the metric at their middle "
         "alone; -exact: less that of the mesh of the exact field; unit: share from 1/√2 to √2. "
         "q: quality in the metric. share: of the processors' time, in the queries of the field." +
             correlation_text(rows),
-        {{"field", Align::left}},
-        {}};
-    for (const MeshMeasure& measure : mesh_measures()) {
-        if (!measure.column.header.empty()) table.columns.push_back({measure.column.header});
-    }
-    table.columns.push_back({"remark", Align::left});
-    for (const MeshRow* row : rows) {
-        auto& cells = table.rows.emplace_back();
-        cells.push_back(mesh_label(*row));
-        for (const MeshMeasure& measure : mesh_measures()) {
-            if (measure.column.header.empty()) continue;
-            cells.push_back(cell_of(
-                row->error.empty() ? measure.value(*row, exact_beside(*row, all)) : MeasuredValue(),
-                measure.column));
-        }
-        cells.push_back(row->error.empty() ? row->shortfall : "failed: " + row->error);
-    }
-    return table;
+        "field", mesh_measures(), rows, mesh_label,
+        [](const MeasureOf<MeshRow>& measure, const MeshRow& row) { return measure.value(row); });
 }
 
 TextTable histogram_table(const std::string& title, const Rows& rows) {
@@ -169,12 +119,11 @@ Json json_of(const MeshRow& row) {
     json["mesher"] = name_of(row.mesher);
     json["error"] = row.error;
     if (!row.error.empty()) return json;
-    if (!row.shortfall.empty()) json["shortfall"] = row.shortfall;
     json["histogram"] = row.conformity.histogram;
-    for (const MeshMeasure& measure : mesh_measures()) {
-        const MeasuredValue value = measure.value(row, nullptr);
-        if (measure.key.empty() || std::holds_alternative<std::monostate>(value)) continue;
-        json[measure.key] = to_json(value);
+    for (const MeasureOf<MeshRow>& measure : mesh_measures()) {
+        const Json value = to_json(measure.value(row));
+        if (measure.key.empty() || value.is_null() || value == "") continue;
+        json[measure.key] = value;
     }
     return json;
 }
@@ -191,10 +140,17 @@ std::string mesh_setting(const MeshRow& row) {
 
 std::string mesh_tables(std::span<const MeshRow> rows, TableStyle style) {
     std::vector<TextTable> tables;
-    for (const auto& [title, members] : grouped(rows, [](const MeshRow& row) {
+    std::vector<MeshRow> compared(rows.begin(), rows.end());
+    for (MeshRow& row : compared) {
+        if (const MeshRow* exact = exact_beside(row, rows)) {
+            row.beside_exact = row.conformity.l_r - exact->conformity.l_r;
+        }
+    }
+    for (const auto& [title, members] :
+         grouped(std::span<const MeshRow>(compared), [](const MeshRow& row) {
              return fmt::format("{}, {}", name_of(row.mesher), mesh_setting(row));
          })) {
-        tables.push_back(measure_table(title, members, rows));
+        tables.push_back(table_of(title, members));
         tables.push_back(histogram_table(title, members));
     }
     return render(tables, style);

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "controlspace/measure/accuracy.h"
 #include "controlspace/mesh/conformity.h"
 #include "controlspace/mesh/mesh_run.h"
 #include "controlspace/study/case.h"
@@ -26,8 +28,8 @@ struct MeshRow {
     Conformity conformity = {};  ///< to the reference
     double creation_s = 0;       ///< of the structure
     MeshCost cost = {};          ///< memory: of the program and, if that is more, of MMG
-    double delta_r_max = 0;      ///< δ_R of the structure
-    double delta_r_mean = 0;
+    std::optional<Accuracy> delta_r = {};  ///< δ_R of the structure; none: the reference was meshed
+    std::optional<double> beside_exact = {};  ///< L_R less that of the mesh of the exact field
 };
 
 /// All tables: the measures and the histogram for each setting, with how L_R goes with δ_R.

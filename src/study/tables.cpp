@@ -9,8 +9,6 @@
 namespace controlspace {
 namespace {
 
-constexpr std::string_view absent = "–";
-
 using Rows = std::vector<const Row*>;
 
 /// "Fastest access: K_L s_L." where its quartiles are below those of all others; otherwise those
@@ -32,33 +30,22 @@ std::string verdict(const Measure& measure, const Rows& rows, const StudyRows& c
                        fmt::join(labels, "; "));
 }
 
-TextTable table_of(const std::string& title, const Rows& rows, const StudyRows& columns) {
-    TextTable table{
-        title,
+TextTable table_of(const std::string& setting, const Rows& rows, const StudyRows& columns) {
+    TextTable table = measure_table(
+        "All measures: " + setting,
         "δ of isotropic lengths that differ by a factor k is √3(k + 1/k - 2): 0.02 is 1.11, 0.1 is "
         "1.27. Fine: at the finer probes. Within: largest factor there between a requested length "
         "and the reference's, longer or shorter, in any direction. Coarser, finer: share of them "
         "where a requested length is longer, shorter by over 1 %. G_det, G_dir: "
         "largest growth of the finished field between places 0.01 to 1 metric length apart, of "
         "elements' mean length and of any length, as gradation ratios.",
-        {{"structure", Align::left}},
-        {}};
-    for (const Row* row : rows) {
-        table.rows.push_back({structure_label(row->setting, columns.parameters)});
-    }
-    for (const Measure& measure : columns.measures) {
-        if (measure.column.header.empty()) continue;
-        const bool is_text = measure.key == "remark";
-        table.columns.push_back({measure.column.header, is_text ? Align::left : Align::right});
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            const auto value = rows[i]->values.find(measure.key);
-            table.rows[i].push_back(value != rows[i]->values.end()
-                                        ? cell_of(value->second, measure.column)
-                                    : is_text ? "failed: " + rows[i]->error
-                                              : std::string(absent));
-        }
-        table.note += verdict(measure, rows, columns);
-    }
+        "structure", columns.measures, rows,
+        [&](const Row& row) { return structure_label(row.setting, columns.parameters); },
+        [](const Measure& measure, const Row& row) {
+            const auto value = row.values.find(measure.key);
+            return value != row.values.end() ? value->second : MeasuredValue();
+        });
+    for (const Measure& measure : columns.measures) table.note += verdict(measure, rows, columns);
     return table;
 }
 
@@ -74,7 +61,7 @@ std::string cell_of(const MeasuredValue& value, const Column& column) {
         return column.format == "{}" ? fmt::format("{}", *whole)
                                      : scaled(static_cast<double>(*whole));
     }
-    return std::string(absent);
+    return "–";
 }
 
 std::vector<TextTable> measure_tables(std::span<const Row> rows, const StudyRows& columns) {
@@ -82,7 +69,7 @@ std::vector<TextTable> measure_tables(std::span<const Row> rows, const StudyRows
     for (const auto& [setting, members] : grouped(rows, [&](const Row& row) {
              return setting_label(row.setting, columns.parameters);
          })) {
-        tables.push_back(table_of("All measures: " + setting, members, columns));
+        tables.push_back(table_of(setting, members, columns));
     }
     return tables;
 }

@@ -19,8 +19,7 @@ MeshRow row_of(const std::string& structure, double l_r, double delta_r) {
     row.cost.seconds = 20;
     row.cost.processor_seconds = 10;
     row.cost.query_seconds = 0.5;
-    row.delta_r_max = delta_r;
-    row.delta_r_mean = delta_r / 10;
+    row.delta_r = Accuracy{.max = delta_r, .mean = delta_r / 10};
     return row;
 }
 
@@ -28,6 +27,7 @@ std::vector<MeshRow> sample_rows() {
     std::vector<MeshRow> rows{row_of("K_oL", 0.8025, 0), row_of("K_oL", 0.7512, 1.9),
                               row_of("K_oLB", 0.7634, 0.6), row_of("K_oV", 0.7957, 0.2)};
     rows.front().exact = true;
+    rows.front().delta_r.reset();
     return rows;
 }
 

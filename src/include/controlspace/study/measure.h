@@ -1,11 +1,13 @@
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -69,13 +71,37 @@ struct Column {
     std::string least = {};
 };
 
-/// One measure: the row that drives results.json in both directions, results.csv and all tables.
-struct Measure {
-    std::string key;   ///< in results.json and results.csv
+/// One measure of a `Subject`: the row that drives its files (results.json in both directions and
+/// results.csv; meshes.json) and its tables.
+template <class Subject>
+struct MeasureOf {
+    std::string key;   ///< in files; empty: only in tables
     std::string unit;  ///< empty for pure numbers and texts
-    std::function<MeasuredValue(const Finished&)> value;
+    std::function<MeasuredValue(const Subject&)> value;
     Column column = {};
 };
+/// One of a structure of a study.
+using Measure = MeasureOf<Finished>;
+
+/// A row of the number that `place` in a part of the subject leads to: a member of that, its own
+/// function, or any other. Of a part that is optional and missing, none.
+template <class Subject, class Part, class Place>
+MeasureOf<Subject> row_of(const char* key, Part Subject::*part, Place place, Column column = {},
+                          const char* unit = "") {
+    const auto number = [=](const auto& x) -> MeasuredValue {
+        const auto found = std::invoke(place, x);
+        if constexpr (std::integral<decltype(found)>) return static_cast<std::int64_t>(found);
+        return static_cast<double>(found);
+    };
+    const auto value = [=](const Subject& subject) {
+        if constexpr (requires { (subject.*part).has_value(); }) {
+            return subject.*part ? number(*(subject.*part)) : MeasuredValue();
+        } else {
+            return number(subject.*part);
+        }
+    };
+    return {key, unit, value, std::move(column)};
+}
 
 /// All measures of the library, in the order of columns.
 std::span<const Measure> measures();

@@ -16,7 +16,10 @@
 
 namespace controlspace {
 
-struct Measure;
+struct Finished;
+template <class Subject>
+struct MeasureOf;
+using Measure = MeasureOf<Finished>;
 std::span<const Measure> measures();
 
 /// The rows of a study. Programs may add their own to those of the library.
