@@ -104,6 +104,11 @@ def split_of(row):
     return None if row.setting.get("target_delta") else row.setting.get("split")
 
 
+def split_structure(row):
+    """"K_L s_M", the structure and its split."""
+    return f"{structure_of(row)} {split_of(row) or ''}"
+
+
 def log_ticks(low, high):
     """Every power of ten and, the fewer these are, the more places between them; at least three
     numbers, for however narrow an interval."""
@@ -199,27 +204,33 @@ def front_of(rows, cost, error):
             if not any(y <= e and high < low or y < e and x == at for _, x, _, high, y in points)]
 
 
+def draw_front(ax, rows, cost, error, name_of, style_of):
+    """Rows by a cost and an error, each (key, label), and a line along their front. Those of the same
+    name are drawn in the style of it."""
+    (x, x_label), (y, y_label) = cost, error
+    front = sorted(front_of(rows, x, y), key=lambda r: r[x])
+    ax.step([r[x] for r in front], [drawn(r[y]) for r in front], where="post", color="#888888",
+            label="front")
+    for name, same in grouped(rows, name_of).items():
+        ax.plot([r[x] for r in same], [drawn(r[y]) for r in same], linestyle="", label=name,
+                markersize=7, **style_of(name))
+    log_axis(ax.xaxis, x_label)
+    log_axis(ax.yaxis, y_label)
+    return front
+
+
 def pareto_figures(rows, styles):
     for work, members in fronts(rows).items():
         for (which, error_label, error), (against, cost_label, cost) in product(FRONT_ERRORS, COSTS):
-            def plot(figure, members=members, cost=cost, error=error, cost_label=cost_label,
-                     error_label=error_label):
+            def plot(figure, members=members, cost=(cost, cost_label), error=(error, error_label)):
                 ax = figure.subplots()
-                front = sorted(front_of(members, cost, error), key=lambda r: r[cost])
-                ax.step([r[cost] for r in front], [drawn(r[error]) for r in front], where="post",
-                        color="#888888", label="front")
-                for (structure, split), same in grouped(
-                        members, lambda r: (structure_of(r), split_of(r))).items():
-                    ax.plot([r[cost] for r in same], [drawn(r[error]) for r in same], linestyle="",
-                            label=f"{structure} {split or ''}", markersize=7,
-                            **styles(structure, split))
                 ax.margins(x=0.2, y=0.1)
-                log_axis(ax.xaxis, cost_label)
-                log_axis(ax.yaxis, error_label)
-                label_apart(ax, [(r[cost], drawn(r[error]), r.method) for r in front])
+                front = draw_front(ax, members, cost, error, split_structure,
+                                   lambda name: styles(*name.split(" ", 1)))
+                label_apart(ax, [(r[cost[0]], drawn(r[error[0]]), r.method) for r in front])
                 legend_below(ax)
             yield Spec("pareto", {"which": which, "against": against, "work": work}, plot,
-                       height=440 + 7 * len({(structure_of(r), split_of(r)) for r in members}))
+                       height=440 + 7 * len(set(map(split_structure, members))))
 
 
 def label_apart(ax, points):

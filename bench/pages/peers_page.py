@@ -67,20 +67,13 @@ def reaches(row, delta):
     return largest_delta(row) <= 1.01 * delta
 
 
-def quartiles(row, cost):
-    if cost == "memory_MB":
-        return row[cost], row[cost]
-    key = "t_creation_s" if cost == "creation_s" else cost
-    return row[f"{key}_q1"], row[f"{key}_q3"]
-
-
 def cheapest(rows, cost):
     """The structure that costs least, and those whose quartiles overlap with its."""
     if not rows:
         return []
-    limit = quartiles(min(rows, key=lambda row: row[cost]), cost)[1]
+    limit = min(rows, key=lambda row: row[cost]).spread(cost)[1]
     return list(dict.fromkeys(figures.structure_of(row) for row in sorted(rows, key=lambda r: r[cost])
-                              if quartiles(row, cost)[0] <= limit))
+                              if row.spread(cost)[0] <= limit))
 
 
 def least(rows, cost, structure):
@@ -189,7 +182,7 @@ def rows_table(work):
         return row.method.removeprefix(figures.structure_of(row)).lstrip(" ,") or "–"
 
     def time(row, cost, digits):
-        low, high = quartiles(row, cost)
+        low, high = row.spread(cost)
         if cost == "creation_s" and len(row["t_creation_s_samples"]) == 1:
             return fixed(row[cost], digits)
         return f"{fixed(row[cost], digits)} ({fixed(low, digits)}–{fixed(high, digits)})"
@@ -214,31 +207,23 @@ def rows_table(work):
 
 def front_figure(work, styles):
     rows = [row for row in work.rows if math.isfinite(largest_delta(row))]
-    structures = list(dict.fromkeys(map(figures.structure_of, rows)))
     for row in rows:
         row.measures["largest_delta"] = largest_delta(row)
-    lines = math.ceil((len(structures) + 1) / 4)
+    lines = math.ceil((len(set(map(figures.structure_of, rows))) + 1) / 4)
+
+    def style_of(structure):
+        return styles(structure) | ({} if is_foreign(structure) else {"fillstyle": "none"})
 
     def plot(figure):
         axes = figure.subplot_mosaic([[0, 1], [2, 3], ["legend"] * 2],
                                      height_ratios=[300, 300, 18 * lines])
         for i, (label, cost) in enumerate(COSTS):
             ax = axes[i]
-            front = sorted(figures.front_of(rows, cost, "largest_delta"), key=lambda r: r[cost])
-            ax.step([r[cost] for r in front], [figures.drawn(largest_delta(r)) for r in front],
-                    where="post", color="#888888", label="front")
-            for structure in structures:
-                same = [r for r in rows if figures.structure_of(r) == structure]
-                style = styles(structure)
-                if not is_foreign(structure):
-                    style["fillstyle"] = "none"
-                ax.plot([r[cost] for r in same], [figures.drawn(largest_delta(r)) for r in same],
-                        linestyle="", label=structure, markersize=7, **style)
             for delta in DELTAS:
                 ax.axhline(delta, color="#888888", linewidth=0.8, linestyle=":")
             ax.margins(x=0.1, y=0.1)
-            figures.log_axis(ax.xaxis, label)
-            figures.log_axis(ax.yaxis, "largest δ")
+            figures.draw_front(ax, rows, (cost, label), ("largest_delta", "largest δ"),
+                               figures.structure_of, style_of)
         axes["legend"].axis("off")
         axes["legend"].legend(*axes[0].get_legend_handles_labels(), loc="center", ncols=4, fontsize=9.5)
 

@@ -98,7 +98,14 @@ Study study_of_input(const std::filesystem::path& input, const GivenSettings& gi
 DefaultTarget::DefaultTarget(const std::filesystem::path& input, const GivenSettings& given)
     : is_free_(input.extension() != ".toml" && !are_given(given, {"target_delta", "within"})),
       applies_(is_free_ && !are_given(given, {"field", "tau", "epsilon", "law", "schedule",
-                                              "neighbourhood", "reference"})) {}
+                                              "neighbourhood", "reference"})) {
+    if (!is_free_) return;
+    if_given(given, "max_leaves", ValueType::whole_number, [&](const Values& values) {
+        Case asked;
+        set_checked(number<Case>(&Case::max_leaves, at_least(0)), asked, values);
+        max_leaves_ = asked.max_leaves;
+    });
+}
 
 double default_within_of(const Workload& workload) {
     return has_tensors(workload) ? default_within_of_tensors : default_within;
@@ -112,7 +119,8 @@ bool DefaultTarget::set(Case& c, const Workload& workload) const {
     }
     c.within = default_within_of(workload);
     c.target_delta = nonconformity_of_factor(*c.within);
-    if (has_tensors(workload)) c.max_leaves = default_max_leaves;
+    c.max_leaves = max_leaves_.value_or(has_tensors(workload) ? default_max_leaves : 0);
+    if (c.max_leaves == 0) c.max_leaves.reset();
     return true;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "cli/given_settings.h"
@@ -41,6 +43,7 @@ public:
 private:
     bool is_free_;  ///< whether nobody asks for a target
     bool applies_;
+    std::optional<std::size_t> max_leaves_;  ///< that are asked for, without a target; 0: no limit
 };
 
 /// The one case of a study that makes one structure. Throws InputError where it has more.

@@ -40,6 +40,9 @@ bool is_inserted_into(const CatalogueEntry& entry, const Case& c) {
 bool is_sized_by_tau(const CatalogueEntry& entry, const Case& c) {
     return is_inserted_into(entry, c) || (entry.has<VoxelSize>() && !c.voxel);
 }
+bool is_adapted_tree(const CatalogueEntry& entry, const Case& c) {
+    return entry.has<SourceLeaves>() && (c.target_delta || has_field(c.sources));
+}
 /// Adapted trees are the same with all rules.
 bool is_cut_by_rule(const CatalogueEntry& entry, const Case& c) {
     return entry.has<SplitRules>() && !c.target_delta;
@@ -147,7 +150,8 @@ CaseParameter form_of_g_r(const char* key, const char* help, double (*convert)(d
 Topic topic_of(const CaseParameter& row) {
     static const std::map<Topic, std::set<std::string>> others{
         {Topic::accuracy,
-         {"within", "target_delta", "equal_delta", "equal_memory", "epsilon", "tau", "reference"}},
+         {"within", "target_delta", "max_leaves", "equal_delta", "equal_memory", "epsilon", "tau",
+          "reference"}},
         {Topic::fields, {"field"}},
         {Topic::paper, {"law", "schedule", "intersection", "interpolation", "neighbourhood"}}};
     for (const auto& [topic, keys] : others) {
@@ -216,6 +220,11 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
             "The same as the largest factor by which a length may differ from the exact field in "
             "any direction: 1.1 is target_delta = 0.01575, with tensors 0.00909; 0: not given",
             target_factor(), {0}, {"within {:.4g}x"}, chooses_nodes),
+        row(structure, "max_leaves", "",
+            "Leaves at which the adaptation of trees stops, though it misses its target; 0: no "
+            "limit",
+            number<Case>(&Case::max_leaves, at_least(1), Zero::is_none), {0}, {"to {} leaves"},
+            is_adapted_tree),
         row(structure, "equal_delta", "",
             "Largest delta_R, at all probes, for which voxels are chosen (and prune_delta, where "
             "that saves memory); 0: not chosen. For trees see target_delta",

@@ -109,6 +109,21 @@ TEST_CASE("a target that is missed is reported, with status 3, and what was made
     check_refused(box.run("query s.csv places.csv --within 1.1 --target-delta 0.1"), "--within");
 }
 
+TEST_CASE("adaptation stops at so many leaves as a setting allows") {
+    const Sandbox box("build-max-leaves");
+    box.write("s.csv", sources_csv);
+    const std::string build = "build s.csv -o f.ctrl --max-leaves ";
+    const Outcome asked = box.run(build + "20 --structures K_oL --target-delta 0.01");
+    CHECK(asked.status == 3);
+    CHECK_THAT(asked.err, Contains("missed: more than 20 leaves"));
+    const Outcome by_default = box.run(build + "20");
+    CHECK(by_default.status == 0);
+    CHECK_THAT(by_default.err, Contains("missed: more than 20 leaves"));
+    CHECK_THAT(box.run(build + "20 --tau 1").err, Contains("without effect: max_leaves"));
+    check_refused(box.run(build + "-1"), "--max-leaves");
+    check_refused(box.run(build + "20,40"), "--max-leaves");
+}
+
 TEST_CASE("leaves that the depth limit keeps too long are remarked on") {
     const Sandbox box("build-depth");
     box.write("s.csv", "x,y,z,h\n0,0,0,0.01\n1,1,1,0.1\n");

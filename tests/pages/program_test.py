@@ -7,6 +7,8 @@ import unittest
 from pathlib import Path
 
 from samples import run
+from pages import figures  # noqa: E402
+from pages.results import read_results  # noqa: E402
 
 PROGRAM = sys.argv.pop()
 QUICK = ("--access-points 100 --access-repeats 3 --fine-probe-grid 5 --quiet "
@@ -29,6 +31,13 @@ class Pages(unittest.TestCase):
             self.assertEqual(outcome.returncode, 0, outcome.stderr)
             page = (out / "report.html").read_text()
             self.assertIn("compare --access-points 100", page)
+            rows = figures.fronts(read_results(out).rows)
+            plots = json.loads((out / "pareto.json").read_text())
+            self.assertEqual(len(plots), 4)
+            for plot in plots:
+                front = figures.front_of(rows[plot["work"]], plot["cost"], plot["error"])
+                self.assertEqual([row.method for row in front],
+                                 [point["label"] for point in plot["points"] if point["front"]])
             has_fields = any(row.get("fields") for row in
                              json.loads((out / "results.json").read_text())["rows"])
             self.assertEqual("cross-validation" in page, has_fields)

@@ -104,6 +104,12 @@ class Figures(unittest.TestCase):
         self.assertEqual([(r[0], r[4]) for r in table.rows],
                          [("direct", "memory, access"), ("K_oL", "memory")])
 
+    def test_a_time_within_the_quartiles_of_another_is_on_its_front(self):
+        fast, other, slow = results_of([json_row(**times("t_access_ns_random", *samples)) for samples in
+                                        ([48, 50, 54], [50, 52, 54], [60, 62, 64])]).rows
+        front = figures.front_of([fast, other, slow], "t_access_ns_random", "delta_R_fine_max")
+        self.assertEqual(front, [fast, other])
+
     def test_access_times_of_a_group_are_a_figure_for_each_order(self):
         found = list(figures.access_figures(results_of(three_rows()).rows))
         self.assertEqual(len(found), 3)

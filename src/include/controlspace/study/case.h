@@ -51,7 +51,7 @@ struct Case {
     std::optional<double> target_delta = {};
     /// Where the target was given as the largest factor between lengths in any direction.
     std::optional<double> within = {};
-    /// Leaves after which adaptation stops, where nobody asked for the target.
+    /// Trees: leaves at which adaptation stops, though it misses its target; none: no limit.
     std::optional<std::size_t> max_leaves = {};
     /// Grids only: δ_R, or memory [MB], that voxels are chosen for.
     std::optional<double> equal_delta = {};
