@@ -13,18 +13,6 @@ Access<MeshSettings> number_of(Place place, const Check& check = positive) {
     return number<MeshSettings>(place, check);
 }
 
-Access<MeshSettings> yes_or_no() {
-    Access<MeshSettings> access;
-    access.type = ValueType::text;
-    access.set = [](MeshSettings& s, const Values& v) {
-        const std::string& word = v.front().text();
-        if (word != "yes" && word != "no") throw InputError("give yes or no");
-        s.exact = word == "yes";
-    };
-    access.get = [](const MeshSettings& s) { return Values{s.exact ? "yes" : "no"}; };
-    return access;
-}
-
 Access<MeshSettings> kinds_of_files() {
     Access<MeshSettings> access;
     access.type = ValueType::text;
@@ -89,7 +77,8 @@ std::span<const Parameter<MeshSettings>> mesh_parameters() {
          number_of(of(mmg, &MmgOptions::rounds), within(1, 100))},
         {"time_limit", "s", "MMG: time limit of each round",
          number_of(of(mmg, &MmgOptions::time_limit_s))},
-        {"exact", "", "yes or no: mesh the exact field too, to compare with", yes_or_no()},
+        {"exact", "", "Mesh the exact field too, to compare with",
+         word<MeshSettings>(&MeshSettings::exact)},
         {"files", "",
          "Files of each mesh: msh (Gmsh), mesh (Medit, with its .sol), vtu (VTK); or none",
          kinds_of_files()},

@@ -43,6 +43,10 @@ struct Words<Mesher> {
         {Mesher::mmg, "mmg", "MMG3D"}};
 };
 template <>
+struct Words<bool> {
+    static constexpr Word<bool> table[] = {{true, "yes", "it is"}, {false, "no", "it is not"}};
+};
+template <>
 struct Words<MeshStart> {
     static constexpr Word<MeshStart> table[] = {
         {MeshStart::coarse, "coarse", "a coarse mesh"},

@@ -45,7 +45,7 @@ Numbers numbers_of(std::span<const Metric> metrics) {
 
 Numbers sampled(const ControlSpace& space, std::span<const Point> places) {
     std::vector<Metric> metrics(places.size());
-    space.sample(places, metrics);
+    sample_parallel(space, places, metrics);
     return numbers_of(metrics);
 }
 
@@ -133,9 +133,7 @@ FieldFiles write_sampled_fields(const std::filesystem::path& folder, const Finis
     files.exact_probes = "fields/exact-probes.npy";
     if (!has_exact) {
         const auto reference = make_reference(finished.study, finished.setting, finished.workload);
-        std::vector<Metric> metrics(slice.size());
-        sample_parallel(*reference, slice, metrics);
-        write(files.exact_slice, "exact", "slice", {m, m, 6}, numbers_of(metrics));
+        write(files.exact_slice, "exact", "slice", {m, m, 6}, sampled(*reference, slice));
         write(files.exact_probes, "exact", "probes", {nz, ny, nx, 6},
               numbers_of(finished.probes.coarse.reference));
     }

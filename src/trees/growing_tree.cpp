@@ -25,9 +25,8 @@ std::string depth_shortfall(int max_depth) {
 }
 
 std::string leaves_shortfall(std::size_t max_leaves) {
-    return fmt::format(
-        "more than {} leaves are needed: a target of your own (--within 1.2) sets no limit",
-        max_leaves);
+    return fmt::format("more than {} leaves are needed: raise max_leaves (0: no limit)",
+                       max_leaves);
 }
 
 }  // namespace controlspace

@@ -185,7 +185,7 @@ TEST_CASE("what cannot be meshed ends with one line, and leaves no folder") {
         {"--files msh,none", "--files: unknown kind of file 'none'"},
         {"--rounds 0", "--rounds"},
         {"--time-limit 0", "--time-limit"},
-        {"--exact maybe", "--exact: give yes or no"},
+        {"--exact maybe", "--exact: unknown value 'maybe': give yes, no"},
         {"--mesh-threads 0", "--mesh-threads"},
         {"--structures uniform-nearest --equal-delta 0.1", "equal_delta"},
         {"--kd-depth 1000 --structures K_L", "depth"},
