@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "controlspace/baselines/catalogue.h"
+#include "controlspace/geometry/extent.h"
 #include "controlspace/metric/blend.h"
 #include "geometry/point_order.h"
-#include "trees/values/trilinear_in_leaves.h"
 #include "works.h"
 
 using namespace controlspace;
@@ -112,7 +112,7 @@ Governing governing(const ControlSpace& space, const NodesAt& at, const std::vec
             continue;
         }
         Governing::Eight& eight = found.eight.emplace_back();
-        eight.weights = corner_weights(box, p);
+        eight.weights = corner_weights((p - box.low).cwiseQuotient(divisible_edges(box)));
         for (int c = 0; c < 8; ++c) eight.nodes[static_cast<std::size_t>(c)] = at(corner(box, c));
     }
     return found;

@@ -23,30 +23,25 @@ class Corners {
 public:
     Corners(const openvdb::math::Transform& transform, const openvdb::CoordBBox& voxels,
             const Point& x) {
+        Vector fractions;
         const openvdb::Vec3d at = transform.worldToIndex({x.x(), x.y(), x.z()});
         for (int a = 0; a < 3; ++a) {
-            const auto i = static_cast<std::size_t>(a);
             // Comparisons that send not-a-number to the low side.
             const double above = at[a] > voxels.min()[a] ? at[a] : voxels.min()[a];
             const double t = above < voxels.max()[a] ? above : voxels.max()[a];
             low_[a] = static_cast<openvdb::Int32>(std::floor(t));
-            high_weight_[i] = t - low_[a];
+            fractions[a] = t - low_[a];
         }
+        weights_ = corner_weights(fractions);
     }
     Coord voxel(int corner) const {
         return low_.offsetBy(corner & 1, corner >> 1 & 1, corner >> 2);
     }
-    double weight(int corner) const {
-        double w = 1;
-        for (std::size_t a = 0; a < 3; ++a) {
-            w *= (corner >> a & 1) != 0 ? high_weight_[a] : 1 - high_weight_[a];
-        }
-        return w;
-    }
+    double weight(int corner) const { return weights_[static_cast<std::size_t>(corner)]; }
 
 private:
     Coord low_;
-    std::array<double, 3> high_weight_;
+    std::array<double, 8> weights_;
 };
 
 Metric metric_from(const openvdb::Vec3s& diagonal, const openvdb::Vec3s& off_diagonal) {

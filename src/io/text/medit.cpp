@@ -81,15 +81,7 @@ std::vector<PointSource> read_medit_sources(const std::filesystem::path& mesh,
 std::vector<PointSource> read_medit_required_edges(const std::filesystem::path& mesh) {
     const std::string bytes = read_binary_file(mesh);
     const std::vector<Point> vertices = parse_medit_vertices(bytes, mesh);
-    MeditReader file(bytes, mesh);
-    std::vector<std::array<std::size_t, 2>> edges(file.find(medit_edges, 0, 3));
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-        for (std::size_t& end : edges[i]) {
-            const auto most = static_cast<std::int64_t>(vertices.size());
-            end = static_cast<std::size_t>(file.integer({"edge", i}, most)) - 1;
-        }
-        file.skip_reference({"edge", i});
-    }
+    const auto edges = read_medit_elements<2>(bytes, mesh, medit_edges, vertices.size());
     struct Lengths {
         double sum = 0;
         std::size_t count = 0;

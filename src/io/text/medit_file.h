@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "files/output_file.h"
 #include "io/text/scanner.h"
@@ -64,6 +66,25 @@ private:
     std::int64_t code_ = 0;  ///< the same, in binary data
     std::size_t next_ = 0;   ///< where the next binary block begins
 };
+
+/// The numbers of the vertices, of which there are so many, of all elements of a kind, from 0.
+template <std::size_t n>
+std::vector<std::array<std::uint32_t, n>> read_medit_elements(std::string_view bytes,
+                                                              const std::filesystem::path& path,
+                                                              const MeditKeyword& keyword,
+                                                              std::size_t vertices) {
+    // Elements stand in any order in the file: each kind is searched for from its beginning.
+    MeditReader file(bytes, path);
+    const auto most = static_cast<std::int64_t>(vertices);
+    std::vector<std::array<std::uint32_t, n>> elements(file.find(keyword, 0, n + 1));
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+        for (std::uint32_t& corner : elements[i]) {
+            corner = static_cast<std::uint32_t>(file.integer({keyword.word, i}, most) - 1);
+        }
+        file.skip_reference({keyword.word, i});
+    }
+    return elements;
+}
 
 /// Writes a Medit mesh or solution: binary where the name ends in b (.meshb, .solb), of version 2,
 /// or 3 where `data_bytes`, the size of all rows, does not fit 32 bits; text otherwise.

@@ -12,6 +12,7 @@
 #include "controlspace/error.h"
 #include "controlspace/geometry/extent.h"
 #include "controlspace/geometry/subdivision.h"
+#include "controlspace/metric/blend.h"
 #include "files/output_file.h"
 #include "io/text/cells.h"
 #include "io/text/lengths_at.h"
@@ -42,11 +43,10 @@ struct Grid {
             t[a] = std::clamp(steps - i, 0.0, 1.0);
         }
         double length = 0;
+        const auto weights = corner_weights(t);
         for (int c = 0; c < 8; ++c) {
-            const int i = c & 1, j = c >> 1 & 1, k = c >> 2 & 1;
-            length += (i != 0 ? t.x() : 1 - t.x()) * (j != 0 ? t.y() : 1 - t.y()) *
-                      (k != 0 ? t.z() : 1 - t.z()) *
-                      lengths[index(cell[0] + i, cell[1] + j, cell[2] + k)];
+            length += weights[static_cast<std::size_t>(c)] *
+                      lengths[index(cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2))];
         }
         return length;
     }
