@@ -83,6 +83,15 @@ Access<Study> field_lengths() {
         });
 }
 
+Access<Study> field_largest() {
+    Access<Study> access = number<Study>(
+        of(sources, field, &FieldChoice::lengths, &SurfaceLengths::largest), positive);
+    access.get = [get = access.get](const Study& s) {
+        return s.sources.field.lengths.largest == SurfaceLengths{}.largest ? Values{} : get(s);
+    };
+    return access;
+}
+
 Access<Study> density_sizes() {
     Access<Study> access;
     access.at_most = 2;
@@ -227,9 +236,7 @@ std::vector<Parameter<Study>> table() {
                        at_least(0)),
          making, field_surface, fields},
         {"field_largest", length,
-         "Length up to which they grow; left out: half of the domain's diagonal",
-         length_or_none(of(sources, field, &FieldChoice::lengths, &SurfaceLengths::largest),
-                        largest_magnitude),
+         "Length up to which they grow; left out: half of the domain's diagonal", field_largest(),
          making, field_surface, fields},
         {"field_file", "", "The file of the field file: a .vdb, or the cells of a .vtu or .vti",
          text<Study>(of(sources, field, &FieldChoice::file)), making, field_file, fields},
