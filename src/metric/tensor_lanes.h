@@ -149,17 +149,20 @@ inline Pivots room_below(const Metric& a2, const Lanes& b_factor, const TensorLa
     return {xx, yy, zz};
 }
 
-/// The least of three numbers that are all positive where most I - T is positive definite, and not
+/// The least of three numbers that are all positive where the tensor is positive definite, and not
 /// all where it is not.
 template <int n>
-LanesOf<n> least_minor(const LanesOf<n>& most, const TensorLanesOf<n>& t) {
-    const LanesOf<n> x = most - t.xx;
-    const LanesOf<n> y = most - t.yy;
-    const LanesOf<n> z = most - t.zz;
-    const LanesOf<n> xy = x * y - t.xy.square();
+LanesOf<n> least_minor(const TensorLanesOf<n>& t) {
+    const LanesOf<n> xy = t.xx * t.yy - t.xy.square();
     const LanesOf<n> determinant =
-        z * xy - x * t.yz.square() - y * t.xz.square() - 2 * t.xy * t.xz * t.yz;
-    return x.min(xy).min(determinant);
+        t.zz * xy - t.xx * t.yz.square() - t.yy * t.xz.square() + 2 * t.xy * t.xz * t.yz;
+    return t.xx.min(xy).min(determinant);
+}
+/// The same of most I - T.
+template <int n>
+LanesOf<n> least_minor(const LanesOf<n>& most, const TensorLanesOf<n>& t) {
+    return least_minor(
+        TensorLanesOf<n>{most - t.xx, most - t.yy, most - t.zz, -t.xy, -t.xz, -t.yz});
 }
 
 }  // namespace controlspace

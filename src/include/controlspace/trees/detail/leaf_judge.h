@@ -9,27 +9,13 @@
 
 #include "controlspace/geometry/detail/place_sequence.h"
 #include "controlspace/metric/nonconformity.h"
+#include "controlspace/trees/detail/departure.h"
 #include "controlspace/trees/detail/leaf_places.h"
 #include "controlspace/trees/detail/nearby_field.h"
 #include "controlspace/trees/detail/sample_leaves.h"
 #include "controlspace/trees/topology.h"
 
 namespace controlspace {
-
-/// How a leaf compares with the field.
-struct Departure {
-    double worst = 0;             ///< δ, or a bound: lower above the target, upper below 3/4 of it
-    Point where = Point::Zero();  ///< the place of it
-    std::array<double, 3> along{};  ///< how much speaks for a cut across each axis
-    bool is_elsewhere = false;      ///< above the target only at a place that was not fitted to
-
-    bool is_unknown() const { return std::isinf(worst); }
-    void take(double delta, const Point& x) {
-        if (!(delta > worst)) return;
-        worst = delta;
-        where = x;
-    }
-};
 
 /// Compares the leaves of a tree with the field of a goal.
 template <class Node, class Storage>

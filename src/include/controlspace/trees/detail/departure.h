@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "controlspace/geometry/point.h"
+
+namespace controlspace {
+
+/// How a leaf compares with the field.
+struct Departure {
+    double worst = 0;             ///< δ, or a bound: lower above the target, upper below 3/4 of it
+    Point where = Point::Zero();  ///< the place of it
+    std::array<double, 3> along{};  ///< how much speaks for a cut across each axis
+    bool is_elsewhere = false;      ///< above the target only at a place that was not fitted to
+
+    bool is_unknown() const { return std::isinf(worst); }
+    void take(double delta, const Point& x) {
+        if (!(delta > worst)) return;
+        worst = delta;
+        where = x;
+    }
+    /// The same of all that are given, whatever their order.
+    void take(const Departure& other) {
+        const auto key = [](const Departure& d) {
+            return std::tuple(d.worst, d.where.x(), d.where.y(), d.where.z());
+        };
+        if (!(key(*this) < key(other))) return;
+        worst = other.worst;
+        where = other.where;
+    }
+};
+
+}  // namespace controlspace

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "controlspace/geometry/box.h"
+#include "controlspace/metric/metric.h"
+#include "controlspace/sources/point_source.h"
+#include "controlspace/trees/detail/departure.h"
+
+namespace controlspace {
+
+/// Compares metrics in a box with the cones of sources, one cone at a time. A cone is smallest at
+/// its source, and in a box at the place that is nearest to the source in the source's metric.
+class SingleCones {
+public:
+    using MetricAt = std::function<Metric(const Point&)>;
+
+    /// The sources must outlive it; those without a gradation ratio have this one.
+    SingleCones(std::span<const PointSource> sources, double ratio, double target);
+
+    std::size_t size() const { return sources_.size(); }
+    const Point& position(std::size_t source) const { return sources_[source].position; }
+
+    /// How far the metric is beyond the cone where that is smallest in the box: a lower bound of
+    /// the departure from the field; nothing if it is far below the target.
+    Departure at_nearest_place(std::size_t source, const Box& box, const MetricAt& metric_at) const;
+
+    /// The worst for all cones, of metrics that are trilinear in the box between these corners: at
+    /// the nearest places, and elsewhere where a cone is exceeded by more than the target allows.
+    Departure worst_in(const Box& box, const std::array<Metric, 8>& at_corners,
+                       const MetricAt& metric_at) const;
+
+private:
+    struct Part;
+    Point nearest_place(std::size_t source, const Box& box) const;
+    Departure beyond(std::size_t source, const Metric& own, double most, const Point& x) const;
+    unsigned doubtful_corners(std::size_t source, const Part& part, double most) const;
+    void find_exceeded(std::size_t source, const Part& leaf, Departure& departure) const;
+
+    std::span<const PointSource> sources_;
+    double ratio_, target_;
+    double of_interest_, most_;  // factors of a cone: a quarter of the target, and the target
+    std::vector<Metric> inverse_squares_;  // of the sources
+};
+
+}  // namespace controlspace

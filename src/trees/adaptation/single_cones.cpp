@@ -1,0 +1,186 @@
+#include "controlspace/trees/detail/single_cones.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <limits>
+
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/sources/cone.h"
+#include "controlspace/trees/detail/in_parallel.h"
+#include "metric/tensor_lanes.h"
+
+namespace controlspace {
+
+/// Metrics of a box, trilinear between its corners.
+struct SingleCones::Part {
+    Box box;
+    TensorLanes at;
+    unsigned known = 0;  // corners that have been compared with the cone
+
+    // Across an axis.
+    std::pair<Part, Part> halves(Axis axis) const {
+        std::pair<Part, Part> parts{*this, *this};
+        auto& [low, high] = parts;
+        low.box.high[axis] = high.box.low[axis] = box.centre()[axis];
+        const int bit = 1 << axis;
+        for (int c = 0; c < 8; ++c) {
+            if ((c & bit) != 0) continue;
+            const Metric middle =
+                Metric::from_matrix(0.5 * (at[c].matrix() + at[c | bit].matrix()));
+            low.at.set(c | bit, middle);
+            high.at.set(c, middle);
+            low.known &= ~(1U << (c | bit));
+            high.known &= ~(1U << c);
+        }
+        return parts;
+    }
+};
+
+namespace {
+
+constexpr double share_of_interest = 0.25;
+
+// Bit c: corner c has the higher coordinate along the axis.
+Lanes side_of_corners(Axis axis) {
+    Lanes side;
+    for (int c = 0; c < 8; ++c) side[c] = (c >> axis & 1) != 0 ? 1 : -1;
+    return side;
+}
+
+}  // namespace
+
+SingleCones::SingleCones(std::span<const PointSource> sources, double ratio, double target)
+    : sources_(sources),
+      ratio_(ratio),
+      target_(target),
+      of_interest_(largest_factor_within(share_of_interest * target)),
+      most_(largest_factor_within(target)),
+      inverse_squares_(sources.size()) {
+    in_parallel(sources_.size(), [&](std::size_t i) {
+        EigenFrame frame = eigen_frame(sources_[i].metric);
+        for (double& length : frame.lengths) length = 1 / (length * length);
+        inverse_squares_[i] = metric_from_frame(frame.lengths, frame.directions);
+    });
+}
+
+Departure SingleCones::at_nearest_place(std::size_t source, const Box& box,
+                                        const MetricAt& metric_at) const {
+    const Point x = nearest_place(source, box);
+    return beyond(source, metric_at(x), of_interest_, x);
+}
+
+// Of a metric at x that is longer than the cone by more than this factor.
+Departure SingleCones::beyond(std::size_t source, const Metric& own, double most,
+                              const Point& x) const {
+    const Metric& metric = sources_[source].metric;
+    const double factor = cone_factor(sources_[source], ratio_, x);
+    Departure departure;
+    if (!is_within(own, most, factor * metric)) {
+        departure.take(directional_nonconformity(own, intersection(own, factor * metric)), x);
+    }
+    return departure;
+}
+
+Departure SingleCones::worst_in(const Box& box, const std::array<Metric, 8>& at_corners,
+                                const MetricAt& metric_at) const {
+    Part leaf{box, {}};
+    for (int c = 0; c < 8; ++c) leaf.at.set(c, at_corners[static_cast<std::size_t>(c)]);
+    Departure worst;
+    for (std::size_t k = 0; k < size(); ++k) {
+        if (doubtful_corners(k, leaf, of_interest_) == 0) continue;
+        Departure departure = at_nearest_place(k, box, metric_at);
+        if (!(departure.worst > target_)) find_exceeded(k, leaf, departure);
+        worst.take(departure);
+    }
+    return worst;
+}
+
+// Bits of corners; if none, trilinear metrics are nowhere in the box longer than the cone by more
+// than a factor. They are not if they are not at the corners, when the cone's own factor, which is
+// convex, is replaced by a tangent at the centre: |T(x) M^-1| is a convex function of T, and T a
+// mean of the corners'. At a corner, T is within k M where k² M² - T² is positive definite.
+unsigned SingleCones::doubtful_corners(std::size_t source, const Part& part, double most) const {
+    constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+    const Metric& metric = sources_[source].metric;
+    const double slope = cone_growth(sources_[source], ratio_) - 1;
+    const Vector from_source = part.box.centre() - position(source);
+    const double distance = std::max(metric_length(metric, from_source), 1e-150);
+    const Vector rise = (slope / distance * (inverse_squares_[source].matrix() * from_source))
+                            .cwiseProduct(0.5 * part.box.edges());
+    static const std::array sides{side_of_corners(0), side_of_corners(1), side_of_corners(2)};
+    const Lanes tangent =
+        1 + slope * distance + rise.x() * sides[0] + rise.y() * sides[1] + rise.z() * sides[2];
+    const Lanes k2 = (most * tangent.max(0)).square();
+    const TensorLanes own = square(part.at);
+    const Metric of_source = square(metric);
+    const Lanes doubt = rounding * k2 * (of_source.xx + of_source.yy + of_source.zz);
+    const TensorLanes room{k2 * of_source.xx - own.xx - doubt, k2 * of_source.yy - own.yy - doubt,
+                           k2 * of_source.zz - own.zz - doubt, k2 * of_source.xy - own.xy,
+                           k2 * of_source.xz - own.xz,         k2 * of_source.yz - own.yz};
+    const Lanes least = least_minor(room);
+    unsigned corners = 0;
+    for (int c = 0; c < 8; ++c) corners |= static_cast<unsigned>(!(least[c] > 0)) << c;
+    return corners;
+}
+
+// In halves of the leaf, halves of these and so on, across edges that are the longest in the
+// source's metric, as long as the cone may be exceeded in them.
+void SingleCones::find_exceeded(std::size_t source, const Part& leaf, Departure& departure) const {
+    constexpr std::size_t most_parts = 256;
+    std::vector<Part> parts{leaf};
+    for (std::size_t k = 0; !parts.empty() && k < most_parts; ++k) {
+        Part part = parts.back();
+        parts.pop_back();
+        const unsigned doubtful = doubtful_corners(source, part, most_);
+        if (doubtful == 0) continue;
+        for (int c = 0; c < 8; ++c) {
+            if (((doubtful & ~part.known) >> c & 1) == 0) continue;
+            departure.take(beyond(source, part.at[c], most_, corner(part.box, c)));
+            if (departure.worst > target_) return;
+        }
+        part.known |= doubtful;
+        const auto lengths = metric_edge_lengths(sources_[source].metric, part.box.edges());
+        const auto [low, high] =
+            part.halves(static_cast<Axis>(std::ranges::max_element(lengths) - lengths.begin()));
+        parts.push_back(low);
+        parts.push_back(high);
+    }
+}
+
+// A quadratic function has its minimum in a box inside of it, in a face, an edge or a corner.
+Point SingleCones::nearest_place(std::size_t source, const Box& box) const {
+    const Point& q = position(source);
+    Point nearest = nearest_in(box, q);
+    if (is_isotropic(sources_[source].metric) || nearest == q) return nearest;
+    // Mostly it is where the nearest place of a plane between the source and the box is.
+    const Eigen::Matrix3d squared = square(sources_[source].metric).matrix();
+    for (Axis i = 0; i < 3; ++i) {
+        if (nearest[i] == q[i]) continue;
+        Point x = q + (nearest[i] - q[i]) / squared(i, i) * squared.col(i);
+        x[i] = nearest[i];
+        if (box.contains(x)) return x;
+    }
+    const Eigen::Matrix3d a = inverse_squares_[source].matrix();
+    double least = (nearest - q).dot(a * (nearest - q));
+    for (int sides = 0; sides < 27; ++sides) {
+        // Coordinates on a side are given, at the others the slope is zero.
+        Eigen::Matrix3d equations = a;
+        Vector right = a * q;
+        for (Axis i = 0, rest = sides; i < 3; ++i, rest /= 3) {
+            if (rest % 3 == 2) continue;
+            equations.row(i).setZero();
+            equations(i, i) = 1;
+            right[i] = rest % 3 == 0 ? box.low[i] : box.high[i];
+        }
+        const Vector at = equations.inverse() * right;
+        const Point x = nearest_in(box, at);
+        const double distance = (x - q).dot(a * (x - q));
+        if (!(distance < least)) continue;
+        least = distance;
+        nearest = x;
+    }
+    return nearest;
+}
+
+}  // namespace controlspace
