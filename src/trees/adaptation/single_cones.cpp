@@ -56,6 +56,7 @@ SingleCones::SingleCones(std::span<const PointSource> sources, double ratio, dou
       target_(target),
       of_interest_(largest_factor_within(share_of_interest * target)),
       most_(largest_factor_within(target)),
+      most_along_(largest_factor_along(target)),
       inverse_squares_(sources.size()) {
     in_parallel(sources_.size(), [&](std::size_t i) {
         EigenFrame frame = eigen_frame(sources_[i].metric);
@@ -90,7 +91,9 @@ Departure SingleCones::worst_in(const Box& box, const std::array<Metric, 8>& at_
     for (std::size_t k = 0; k < size(); ++k) {
         if (doubtful_corners(k, leaf, of_interest_) == 0) continue;
         Departure departure = at_nearest_place(k, box, metric_at);
-        if (!(departure.worst > target_)) find_exceeded(k, leaf, departure);
+        for (const double most : {most_along_, most_}) {
+            if (!(departure.worst > target_)) find_exceeded(k, leaf, most, departure);
+        }
         worst.take(departure);
     }
     return worst;
@@ -125,14 +128,15 @@ unsigned SingleCones::doubtful_corners(std::size_t source, const Part& part, dou
 }
 
 // In halves of the leaf, halves of these and so on, across edges that are the longest in the
-// source's metric, as long as the cone may be exceeded in them.
-void SingleCones::find_exceeded(std::size_t source, const Part& leaf, Departure& departure) const {
+// source's metric, as long as the cone may be exceeded by the factor in them.
+void SingleCones::find_exceeded(std::size_t source, const Part& leaf, double most,
+                                Departure& departure) const {
     constexpr std::size_t most_parts = 256;
     std::vector<Part> parts{leaf};
     for (std::size_t k = 0; !parts.empty() && k < most_parts; ++k) {
         Part part = parts.back();
         parts.pop_back();
-        const unsigned doubtful = doubtful_corners(source, part, most_);
+        const unsigned doubtful = doubtful_corners(source, part, most);
         if (doubtful == 0) continue;
         for (int c = 0; c < 8; ++c) {
             if (((doubtful & ~part.known) >> c & 1) == 0) continue;

@@ -94,15 +94,15 @@ public:
         }
     }
 
-    /// Hill climb from the worst place so far, where that is not far below the target. Where the
-    /// field takes long, it ends once gains like the last one would not reach the target.
+    /// Hill climb from the worst place so far, as long as that comes near enough to the target: the
+    /// nearer, the longer it has taken.
     void climb(const LeafBox& of, NearbyField& nearby, Departure& departure) const {
-        constexpr int rounds = 5;
-        constexpr double near = 0.5;
-        if (!(departure.worst > near * target_)) return;
+        constexpr int rounds = 10;
         Vector step = 0.2 * of.box.edges();
         std::array<Point, 6> x;
         for (int round = 0; round < rounds && !(departure.worst > target_); ++round) {
+            const double near = 0.5 + 0.04 * round;
+            if (!(departure.worst > near * target_)) return;
             for (std::size_t i = 0; i < x.size(); ++i) {
                 const auto axis = static_cast<Axis>(i / 2);
                 x[i] = departure.where;
@@ -111,10 +111,7 @@ public:
             }
             const double before = departure.worst;
             compare_with(of, nearby, x, false, departure, {});
-            const double gain = departure.worst - before;
-            if (!(gain > 0)) step *= 0.4;
-            const int left = rounds - 1 - round;
-            if (nearby.takes_long() && !(departure.worst + left * gain > target_)) return;
+            if (!(departure.worst > before)) step *= 0.4;
         }
     }
 

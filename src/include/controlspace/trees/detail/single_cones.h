@@ -39,11 +39,13 @@ private:
     Point nearest_place(std::size_t source, const Box& box) const;
     Departure beyond(std::size_t source, const Metric& own, double most, const Point& x) const;
     unsigned doubtful_corners(std::size_t source, const Part& part, double most) const;
-    void find_exceeded(std::size_t source, const Part& leaf, Departure& departure) const;
+    void find_exceeded(std::size_t source, const Part& leaf, double most,
+                       Departure& departure) const;
 
     std::span<const PointSource> sources_;
     double ratio_, target_;
-    double of_interest_, most_;  // factors of a cone: a quarter of the target, and the target
+    // Factors of a cone: in all directions a quarter of the target and the target, and in one.
+    double of_interest_, most_, most_along_;
     std::vector<Metric> inverse_squares_;  // of the sources
 };
 

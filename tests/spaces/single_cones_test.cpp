@@ -1,0 +1,129 @@
+#include "controlspace/trees/detail/single_cones.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/sources/cone.h"
+
+using namespace controlspace;
+
+namespace {
+
+constexpr double target = 0.1;
+constexpr double ratio = 1.25;
+
+class Random {
+public:
+    double between(double low, double high) {
+        return std::uniform_real_distribution<>(low, high)(generator_);
+    }
+    Point place() { return {between(0, 1), between(0, 1), between(0, 1)}; }
+    Metric disc(double anisotropy) {
+        const Vector normal = (place() - Vector::Constant(0.5)).normalized();
+        return layer_metric(normal, 0.2 / anisotropy, 0.2);
+    }
+
+private:
+    std::mt19937_64 generator_{5};
+};
+
+Metric trilinear(const Box& box, const std::array<Metric, 8>& at_corners, const Point& x) {
+    const Vector u = (x - box.low).cwiseQuotient(box.edges());
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (int c = 0; c < 8; ++c) {
+        double weight = 1;
+        for (Axis a = 0; a < 3; ++a) weight *= (c >> a & 1) != 0 ? u[a] : 1 - u[a];
+        sum += weight * at_corners[static_cast<std::size_t>(c)].matrix();
+    }
+    return Metric::from_matrix(sum);
+}
+
+Metric cone_at(const PointSource& source, const Point& x) {
+    return cone_factor(source, ratio, x) * source.metric;
+}
+
+double beyond(const Metric& own, const Metric& cone) {
+    return directional_nonconformity(own, intersection(own, cone));
+}
+
+}  // namespace
+
+TEST_CASE("no metric that passes is longer than a cone anywhere in its box") {
+    Random random;
+    int passed = 0;
+    int found = 0;
+    for (int k = 0; k < 300; ++k) {
+        const double anisotropy = std::pow(10, random.between(0, 3));
+        const PointSource source{random.place(), random.disc(anisotropy)};
+        const Point low = random.place() - Vector::Constant(0.5);
+        const Box box{low, low + 0.2 * random.place() + Vector::Constant(0.01)};
+        std::array<Metric, 8> at_corners;
+        const double least = random.between(0.8, 1.3);
+        for (int c = 0; c < 8; ++c) {
+            at_corners[static_cast<std::size_t>(c)] =
+                random.between(least, 1.35) * cone_at(source, corner(box, c));
+        }
+        const auto own = [&](const Point& x) { return trilinear(box, at_corners, x); };
+        const Departure worst =
+            SingleCones({&source, 1}, ratio, target).worst_in(box, at_corners, own);
+        if (worst.worst > target) {
+            ++found;
+            REQUIRE(beyond(own(worst.where), cone_at(source, worst.where)) ==
+                    Approx(worst.worst).epsilon(1e-9));
+            continue;
+        }
+        ++passed;
+        for (int i = 0; i < 300; ++i) {
+            const Point x = box.low + box.edges().cwiseProduct(random.place());
+            REQUIRE(beyond(own(x), cone_at(source, x)) <= target * (1 + 1e-9));
+        }
+    }
+    CHECK(passed > 50);
+    CHECK(found > 50);
+}
+
+TEST_CASE("a cone is exceeded inside a box whose corners are within it") {
+    const Metric metric = layer_metric(Vector(1, 2, 3).normalized(), 0.01, 0.1);
+    const Box box{Point(0, 0, 0), Point(1, 1, 1)};
+    const PointSource source{Point(0.4, 0.6, 1.001), metric};
+    const Metric own = 2 * metric;
+    std::array<Metric, 8> at_corners;
+    at_corners.fill(own);
+    for (int c = 0; c < 8; ++c) REQUIRE(is_within(own, 1, cone_at(source, corner(box, c))));
+    const Departure worst =
+        SingleCones({&source, 1}, ratio, target).worst_in(box, at_corners, [&](const Point&) {
+            return own;
+        });
+    CHECK(worst.worst > target);
+    CHECK((worst.where - source.position).norm() < 0.01);
+    const SingleCones far({&source, 1}, ratio, target);
+    const Box elsewhere{Point(0, 0, -2), Point(1, 1, -1)};
+    CHECK(far.worst_in(elsewhere, at_corners, [&](const Point&) { return own; }).worst == 0);
+}
+
+TEST_CASE("the nearest place of a box is where the cone is smallest") {
+    Random random;
+    for (int k = 0; k < 100; ++k) {
+        const PointSource source{2 * random.place(), random.disc(30)};
+        const Box box{Point(0, 0, 0), Point(0.3, 1, 0.6)};
+        Point asked = Point::Zero();
+        const auto long_everywhere = [&](const Point& x) {
+            asked = x;
+            return Metric::isotropic(10);
+        };
+        const Departure at =
+            SingleCones({&source, 1}, ratio, target).at_nearest_place(0, box, long_everywhere);
+        REQUIRE(at.worst > target);
+        REQUIRE(box.contains(asked));
+        const double least = metric_length(source.metric, asked - source.position);
+        for (int i = 0; i < 200; ++i) {
+            const Point x = box.edges().cwiseProduct(random.place());
+            REQUIRE(metric_length(source.metric, x - source.position) >= least * (1 - 1e-9));
+        }
+    }
+}
