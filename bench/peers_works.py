@@ -115,14 +115,7 @@ def blade(folder, quick):
 
 def coast(folder, quick):
     """Fractal coast line in a plane"""
-    # Midpoints of edges, displaced across them at random, again and again: dimension 1.2.
-    random = np.random.default_rng(1)
-    x = np.array([[0.3, 0.3], [1.1, 0.2], [1.7, 0.5], [0.8, 0.8]])
-    while len(x) < (2**13 if quick else 2**20):
-        edge = np.roll(x, -1, axis=0) - x
-        shift = random.normal(0, 0.16, len(x))[:, None] * edge[:, ::-1] * [-1, 1]
-        x = np.stack([x, x + edge / 2 + shift], axis=1).reshape(-1, 2)
-    x = np.clip(x, [0, 0], [2, 1])
+    x = coast_line(2**13 if quick else 2**20)
     h = 0.004 + 0.012 * np.cos(3 * x[:, 0]) ** 2
     np.savetxt(folder / "sources.csv", np.c_[x, 0 * h, h], "%.9g", ",", header="x,y,z,h", comments="")
     return {"sources": "sources.csv", "domain": [0, 2, 0, 1, 0, 0], "creation_repeats": 1}
@@ -133,6 +126,18 @@ ISOTROPIC, TENSORS = (
         (sphere, planes, scattered, clustered, bracket, junction, blade, coast),
         (sphere_layers, planes_layers, thin_layers, ugawg_linear, ugawg_polar, predicted)))
 WORKS = {**ISOTROPIC, **TENSORS}
+
+
+def coast_line(count):
+    """`count` points or more, at most twice as many, of a closed line in [0, 2] x [0, 1]: midpoints of edges,
+    displaced across them at random, again and again; of dimension 1.2."""
+    random = np.random.default_rng(1)
+    x = np.array([[0.3, 0.3], [1.1, 0.2], [1.7, 0.5], [0.8, 0.8]])
+    while len(x) < count:
+        edge = np.roll(x, -1, axis=0) - x
+        shift = random.normal(0, 0.16, len(x))[:, None] * edge[:, ::-1] * [-1, 1]
+        x = np.stack([x, x + edge / 2 + shift], axis=1).reshape(-1, 2)
+    return np.clip(x, [0, 0], [2, 1])
 
 
 def scattered_points(quick):

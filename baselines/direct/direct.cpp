@@ -39,6 +39,7 @@ public:
     }
     GradationReport grade(const GradationOptions& options) {
         require_valid(options);
+        if (ratio_ != options.ratio) search_.reset();
         ratio_ = options.ratio;
         return {};
     }
@@ -87,6 +88,7 @@ public:
         require_valid(GradationOptions{.ratio = ratio_});
         OwnGrowths growths;
         growths.load(state, "sources.growths", positions.size());
+        search_.reset();
         sources_.clear();
         sources_.reserve(positions.size());
         for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -97,12 +99,23 @@ public:
     const Box& domain() const { return domain_; }
     double ratio() const { return ratio_; }
     Metric largest() const { return largest_metric(domain_, h_max_); }
-    IntersectionRule rule() const { return intersection_; }
     const std::vector<PointSource>& all() const { return sources_; }
     const ControlSpace* continuous() const { return continuous_.get(); }
 
+    /// The search among them, made once for all that is built.
+    std::shared_ptr<const ConeField> search() const {
+        constexpr double tolerance = 1e-3;  // of order-free intersections
+        if (!search_) {
+            search_ = std::make_shared<const ConeField>(
+                sources_, ratio_, largest(),
+                intersection_ == IntersectionRule::order_free ? tolerance : 0, intersection_);
+        }
+        return search_;
+    }
+
 private:
     void append(const PointSource& source, std::size_t index) {
+        search_.reset();
         require_valid(source, index, domain_);
         if (sources_.size() >= std::numeric_limits<std::uint32_t>::max() / 2) {
             throw InputError("sources kept as they are: give fewer than 2^31");
@@ -116,31 +129,31 @@ private:
     IntersectionRule intersection_;
     std::vector<PointSource> sources_;
     std::shared_ptr<const ControlSpace> continuous_;
+    mutable std::shared_ptr<const ConeField> search_;  ///< none since the last change
 };
 
 /// The search among them.
 class Direct final : public ControlSpace, public HasControlNodes, public Saved {
 public:
     explicit Direct(std::shared_ptr<const Sources> sources)
-        : sources_(std::move(sources)),
-          cones_(sources_->all(), sources_->ratio(), sources_->largest(),
-                 sources_->rule() == IntersectionRule::order_free ? tolerance : 0,
-                 sources_->rule()) {}
+        : sources_(std::move(sources)), search_(sources_->search()), cones_(*search_) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
-        const Box& box = sources_->domain();
         std::vector<Point> moved;
-        if (!std::ranges::all_of(x, [&](const Point& p) { return box.contains(p); })) {
-            moved.assign(x.begin(), x.end());
-            for (Point& p : moved) p = nearest_in(box, p);
-            x = moved;
-        }
+        x = inside(x, moved);
         std::vector<Metric> own;
         if (sources_->continuous() != nullptr) {
             own.resize(x.size());
             sources_->continuous()->sample(x, own);
         }
         cones_.evaluate(x, out, own);
+    }
+    void sample_lengths(std::span<const Point> x, std::span<double> out) const override {
+        if (sources_->continuous() != nullptr || !cones_.is_isotropic()) {
+            return ControlSpace::sample_lengths(x, out);
+        }
+        std::vector<Point> moved;
+        cones_.evaluate_lengths(inside(x, moved), out);
     }
     Box domain() const override { return sources_->domain(); }
     std::optional<Box> cell_at(const Point&) const override { return domain(); }
@@ -163,10 +176,18 @@ public:
     void save(StateWriter& state) const override { sources_->save(state); }
 
 private:
-    static constexpr double tolerance = 1e-3;  // of order-free intersections
+    /// The nearest places in the domain, in `moved` where they are others.
+    std::span<const Point> inside(std::span<const Point> x, std::vector<Point>& moved) const {
+        const Box& box = sources_->domain();
+        if (std::ranges::all_of(x, [&](const Point& p) { return box.contains(p); })) return x;
+        moved.assign(x.begin(), x.end());
+        for (Point& p : moved) p = nearest_in(box, p);
+        return moved;
+    }
 
     std::shared_ptr<const Sources> sources_;
-    ConeField cones_;
+    std::shared_ptr<const ConeField> search_;
+    const ConeField& cones_;
 };
 
 std::unique_ptr<ControlSpace> Sources::finished(std::shared_ptr<const Sources> sources) {
@@ -174,6 +195,7 @@ std::unique_ptr<ControlSpace> Sources::finished(std::shared_ptr<const Sources> s
 }
 
 AdaptationReport Sources::adapt(const AdaptationGoal& goal) {
+    search_.reset();
     h_max_ = std::min(h_max_, goal.h_max);
     AdaptationGoal bounded = goal;
     bounded.h_max = h_max_;

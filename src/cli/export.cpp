@@ -98,7 +98,7 @@ Action add_export(Options& options) {
         for (FieldFormat& format : add(options)) job->formats.push_back(std::move(format));
     }
     options.add({"--samples", "COUNT",
-                 fmt::format("Samples along the longest edge (default: {} of a .vti, {} of others)",
+                 fmt::format("Samples along the longest edge (default: {} of a .vti, .npy or .nc, {} of others)",
                              Slice{}.samples, grid_samples),
                  samples_group},
                 job->samples);

@@ -35,7 +35,7 @@ struct FieldFormat {
 };
 
 /// The group of --samples, the option of all formats that are sampled in equal steps.
-inline constexpr const char* samples_group = "A .vti, .structured or .msh file";
+inline constexpr const char* samples_group = "A .vti, .npy, .nc, .structured or .msh file";
 
 /// Of grids, where it is not given.
 inline constexpr int grid_samples = 129;

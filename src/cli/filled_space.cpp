@@ -72,7 +72,8 @@ FilledSpace made_or_loaded(const std::filesystem::path& input, const std::filesy
     filled.remark = remark_on(made.creation, filled.space->footprint());
     filled.missed_target = !is_by_default && !made.creation.shortfall.empty();
     filled.origin = Origin{std::move(study), c, std::move(workload)};
-    if (!c.target_delta && !has_field(c.sources)) {
+    const bool is_exact_field = c.structure == "direct";
+    if (!c.target_delta && !has_field(c.sources) && !is_exact_field) {
         if (observer.phase_started) observer.phase_started("comparing");
         filled.within = largest_factor(*filled.origin, *filled.space);
     }

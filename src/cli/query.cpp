@@ -18,6 +18,7 @@
 #include "cli/options.h"
 #include "cli/standard_output.h"
 #include "controlspace/error.h"
+#include "controlspace/space/sample_parallel.h"
 #include "io/text/csv.h"
 
 namespace controlspace {
@@ -114,8 +115,9 @@ int query(const Query& job) {
     }
     const std::vector<Point> points = read_csv_points(job.points);
     std::vector<Metric> metrics(points.size());
-    const FilledSpace filled = filled_space(
-        job, "sampling", [&](const auto& made, auto&) { made.space->sample(points, metrics); });
+    const FilledSpace filled = filled_space(job, "sampling", [&](const auto& made, auto&) {
+        sample_parallel(*made.space, points, metrics);
+    });
     std::vector<PointSource> answers(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) answers[i] = {points[i], metrics[i]};
     write_csv_sources(job.output, answers);

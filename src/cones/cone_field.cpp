@@ -64,10 +64,27 @@ void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out,
     assert(x.size() == out.size());
     Memory memory;
     if (std::holds_alternative<AnisotropicCones>(cones_)) return evaluate(x, out, memory, further);
+    if (further.empty() && is_isotropic()) {
+        std::vector<double> lengths(x.size());
+        evaluate_lengths(x, lengths);
+        std::transform(lengths.begin(), lengths.end(), out.begin(), Metric::isotropic);
+        return;
+    }
     // Near the last place the hint is good, and the sources are in the caches.
     for (const std::uint32_t i : spatial_order(x)) {
         out[i] = at(x[i], further.empty() ? nullptr : &further[i], memory);
     }
+}
+
+void ConeField::evaluate_lengths(std::span<const Point> x, std::span<double> lengths) const {
+    const auto& cones = std::get<IsotropicCones>(cones_);
+    const std::vector<std::uint32_t> order = spatial_order(x);
+    std::vector<Point> places(x.size());
+    std::vector<double> found(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) places[i] = x[order[i]];
+    IsotropicCones::Hint hint = 0;
+    cones.smallest_lengths(places, found, hint);
+    for (std::size_t i = 0; i < x.size(); ++i) lengths[order[i]] = found[i];
 }
 
 void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out, Memory& memory,

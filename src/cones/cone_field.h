@@ -53,6 +53,8 @@ public:
     /// calling thread; thread-safe.
     void evaluate(std::span<const Point> x, std::span<Metric> out,
                   std::span<const Metric> further = {}) const;
+    /// The same of an isotropic field: the lengths of these metrics, to the bit.
+    void evaluate_lengths(std::span<const Point> x, std::span<double> lengths) const;
     /// The same for places that come in an order in which neighbours are near to each other.
     void evaluate(std::span<const Point> x, std::span<Metric> out, Memory& memory,
                   std::span<const Metric> further = {}) const;

@@ -34,6 +34,9 @@ public:
     double smallest_length(const Point& p, Hint& hint) const;
     /// The same, or up to the fraction `tolerance` more.
     double smallest_length(const Point& p, double tolerance, Hint& hint) const;
+    /// The same at each of `x`, to the bit, all at once: by far faster where neighbours in `x` are
+    /// near to each other.
+    void smallest_lengths(std::span<const Point> x, std::span<double> lengths, Hint& hint) const;
 
     /// Bounds of the smallest length in a box: `least` is met there, up to rounding, and `most` is
     /// the largest of one source's cone that stays below all others' largest; not above the cap.
@@ -98,6 +101,10 @@ private:
     std::uint32_t source_in(Hint leaf, Eigen::Index lane) const {
         return tree_.indices()[leaf * std::size_t{leaf_size} + static_cast<std::size_t>(lane)];
     }
+    /// Calls add(cone) for all cones that can be the smallest somewhere in `box`, until it answers
+    /// false; then, returns false.
+    template <class Add>
+    bool visit_uncovered(const Box& box, Hint& hint, const Add& add) const;
     void visit_leaf(Hint leaf, const Point& p, double& smallest, Hint& hint) const;
     std::optional<Doubt> doubt_of_long(const TrilinearLengths& lengths, double factor) const;
     std::optional<Doubt> doubt_of_short(const TrilinearLengths& lengths, double factor,

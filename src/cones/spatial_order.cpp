@@ -38,7 +38,7 @@ std::vector<std::uint32_t> spatial_order(std::span<const Point> points) {
         keys[i] =
             (spread(cell(p, 0)) | spread(cell(p, 1)) << 1 | spread(cell(p, 2)) << 2) << 32 | i;
     }
-    std::sort(keys.begin(), keys.end());
+    if (!std::is_sorted(keys.begin(), keys.end())) std::sort(keys.begin(), keys.end());
     std::transform(keys.begin(), keys.end(), order.begin(),
                    [](std::uint64_t key) { return static_cast<std::uint32_t>(key); });
     return order;

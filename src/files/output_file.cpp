@@ -19,6 +19,23 @@ std::filesystem::path without_links(const std::filesystem::path& path) {
 
 }  // namespace
 
+void require_room(const std::filesystem::path& path, std::uintmax_t bytes) {
+    std::error_code unknown;
+    const std::filesystem::path target = without_links(path);
+    if (std::filesystem::exists(target, unknown) &&
+        !std::filesystem::is_regular_file(target, unknown)) {
+        return;
+    }
+    const std::filesystem::path folder =
+        target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
+    const auto space = std::filesystem::space(folder, unknown);
+    if (unknown || bytes <= space.available) return;
+    constexpr double mb = 1e6;
+    throw InputError(fmt::format(
+        "cannot write {}: it takes {:.1f} MB, and the disk has {:.1f} MB left", path.string(),
+        static_cast<double>(bytes) / mb, static_cast<double>(space.available) / mb));
+}
+
 std::filesystem::path OutputFile::partial(const std::filesystem::path& path) {
     static const unsigned process = std::random_device{}();
     return without_links(path) += fmt::format(".{}.partial", process);

@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <string_view>
 #include <utility>
 
 namespace controlspace {
+
+/// Throws InputError unless the disk of `path` has room for so many bytes more; where that is not
+/// known, it is left to writing.
+void require_room(const std::filesystem::path& path, std::uintmax_t bytes);
 
 /// A file that is written whole or not at all: the bytes go to a temporary file beside it, which is
 /// renamed by `commit` and removed without it. Every writer of this program uses this. What is not

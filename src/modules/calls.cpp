@@ -15,6 +15,11 @@ AnalyticField read_vtk_field(const fs::path& path, const std::string& array) {
     return module_table<VtkModule>("vtk").read_vtk_field(path, array);
 }
 
+void write_netcdf(const fs::path& path, const ControlSpace& space, const Raster& raster,
+                  const RasterProgress& progress) {
+    module_table<NetcdfModule>("netcdf").write_netcdf(path, space, raster, progress);
+}
+
 SurfaceMesh read_surface_mesh(const fs::path& path) {
     return module_table<CgalModule>("cgal").read_surface_mesh(path);
 }

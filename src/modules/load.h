@@ -17,7 +17,7 @@ namespace controlspace {
 //
 // To add a function: a member of the table, its value in the module, and its call.
 
-/// Loads the module `name` ("openvdb", "vtk", "cgal", "gmsh") unless it is loaded already. Throws
+/// Loads the module `name` ("openvdb", "vtk", "netcdf", "cgal", "gmsh") unless it is loaded already. Throws
 /// InputError where it is missing, of another version, or misses a library itself.
 void load_module(const std::string& name);
 

@@ -8,6 +8,7 @@
 #include "controlspace/io/read_vtk_sources.h"
 #include "controlspace/io/write_vdb.h"
 #include "gmsh/cad_surface.h"
+#include "io/netcdf/write_netcdf.h"
 #include "io/surface/surface_distance.h"
 #include "io/surface/surface_mesh.h"
 #include "io/surface/surface_sources.h"
@@ -31,6 +32,12 @@ struct VtkModule {
     std::string_view version;
     decltype(&controlspace::read_vtk_sources) read_vtk_sources;
     decltype(&controlspace::read_vtk_field) read_vtk_field;
+};
+
+/// The module of netCDF: rasters.
+struct NetcdfModule {
+    std::string_view version;
+    decltype(&controlspace::write_netcdf) write_netcdf;
 };
 
 /// The module of CGAL: sources from surfaces.

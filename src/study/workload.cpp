@@ -162,9 +162,13 @@ struct JoinedSources {
 JoinedSources read_files(const SourcesChoice& choice, const FileReaders& readers) {
     JoinedSources joined;
     for (const auto& file : choice.files) {
-        const auto more = read_one(file, choice, readers);
+        auto more = read_one(file, choice, readers);
         joined.of_file.push_back(more.size());
-        joined.all.insert(joined.all.end(), more.begin(), more.end());
+        if (joined.all.empty()) {
+            joined.all = std::move(more);  // a single file may fill the memory
+        } else {
+            joined.all.insert(joined.all.end(), more.begin(), more.end());
+        }
     }
     return joined;
 }

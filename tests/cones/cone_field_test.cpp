@@ -90,6 +90,47 @@ TEST_CASE("Isotropic sources with ratios of their own: the smallest cone, to the
     CHECK(evaluated(field, points) == by_definition(sources, points));
 }
 
+TEST_CASE("Lengths of a batch are those of single searches, to the bit, in any company") {
+    Draw draw(11);
+    std::vector<PointSource> sources = scattered(draw, 3000, 1);
+    const bool is_flat = GENERATE(false, true);
+    const auto slopes = GENERATE(table<double, double>({{1.25, 1.25}, {1, 3}, {1, 1}, {1, 1e6}}));
+    for (PointSource& s : sources) {
+        if (is_flat) s.position.z() = 0;
+        s.growth = draw.uniform(std::get<0>(slopes), std::get<1>(slopes));
+    }
+    // Some lie on a line at equal distances, where two are as near; and some twice.
+    for (int i = 0; i < 400; ++i) {
+        sources.push_back({Point(i / 400., 0.5, 0), Metric::isotropic(0.02), 1.25});
+    }
+    sources.insert(sources.end(), sources.begin(), sources.begin() + 100);
+    const ConeField field(sources, g, wide);
+
+    std::vector<Point> x;
+    for (int j = 0; j < 40; ++j) {
+        for (int i = 0; i < 50; ++i) x.emplace_back(i / 50., j / 400. + 0.45, 0);
+    }
+    for (const Point& p : places(draw, 500)) x.push_back(2 * p);
+    std::vector<double> lengths(x.size());
+    field.evaluate_lengths(x, lengths);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        ConeField::Memory memory;
+        Metric alone;
+        field.evaluate({&x[i], 1}, {&alone, 1}, memory);
+        double smallest = wide.xx;
+        for (const PointSource& s : sources) {
+            smallest = std::min(smallest, cone_factor(s, g, x[i]) * s.metric.xx);
+        }
+        if (lengths[i] != alone.xx || lengths[i] != smallest) ++wrong;
+    }
+    CHECK(wrong == 0);
+    // Neighbours in the batch change nothing.
+    std::vector<double> part(37);
+    field.evaluate_lengths(std::span(x).subspan(1000, part.size()), part);
+    CHECK(std::equal(part.begin(), part.end(), lengths.begin() + 1000));
+}
+
 TEST_CASE("A source in a steeper cone is dropped only where that stays below it up to the cap") {
     const PointSource steep{Point::Zero(), Metric::isotropic(0.1), 2};
     const auto dropped = [&](const PointSource& other) {

@@ -171,17 +171,16 @@ Metric metric_in_frame(std::span<const double> v, const Table& table) {
 std::vector<PointSource> parse_csv_sources(std::string_view text,
                                            const std::filesystem::path& path) {
     Table table(text, path, /*positions_alone=*/false);
-    std::vector<Point> positions;
-    std::vector<double> growths;
+    // In place, as there may be as many as fit into memory.
+    std::vector<PointSource> sources;
+    sources.reserve(static_cast<std::size_t>(std::ranges::count(text, '\n')));
     MetricRows metrics([&] { return table.where(); }, length_tensor);
     while (const Table::Values* row = table.next()) {
-        positions.emplace_back(row->data());
-        growths.push_back((*row)[growth]);
-        if (!is_source_growth(growths.back())) {
-            table.fail(fmt::format(
-                "g = {}: give the gradation ratio of the source, from 1 to 1e6, or 0 for the "
-                "field's",
-                growths.back()));
+        PointSource& source = sources.emplace_back();
+        source.position = Point(row->data());
+        source.growth = (*row)[growth];
+        if (!is_source_growth(source.growth)) {
+            table.fail(fmt::format("g = {}: {}", source.growth, growth_rule));
         }
         std::span<const double> v = std::span(*row).subspan(table.form().first);
         const std::size_t lengths = table.form() == size ? 1 : table.form() == frame ? 3 : 0;
@@ -190,16 +189,20 @@ std::vector<PointSource> parse_csv_sources(std::string_view text,
             table.fail(
                 fmt::format("{} = {}: {}", names[table.form().first + i], v[i], length_rule));
         }
-        if (table.form() == frame) {
+        if (table.form() == size) {
+            source.metric = Metric::isotropic(v[0]);
+        } else if (table.form() == frame) {
             const auto numbers = numbers_of(metric_in_frame(v, table), length_tensor);
             metrics.add(std::span(numbers).first(length_tensor.numbers));
         } else {
             metrics.add(v.first(table.form().count));
         }
     }
-    if (positions.empty()) fail_empty(path, "sources");
-    std::vector<PointSource> sources = sources_from(positions, metrics.take());
-    for (std::size_t i = 0; i < sources.size(); ++i) sources[i].growth = growths[i];
+    if (sources.empty()) fail_empty(path, "sources");
+    if (table.form() != size) {
+        const std::vector<Metric> tensors = metrics.take();
+        for (std::size_t i = 0; i < sources.size(); ++i) sources[i].metric = tensors[i];
+    }
     return sources;
 }
 

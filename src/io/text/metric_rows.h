@@ -36,6 +36,10 @@ std::array<double, 9> numbers_of(const Metric& m, const TensorLayout& layout);
 /// Completes the message about a number for which is_length is false.
 inline constexpr std::string_view length_rule = "a length must be positive, from 1e-50 to 1e+50";
 
+/// The same about a number for which is_source_growth is false.
+inline constexpr std::string_view growth_rule =
+    "give the gradation ratio of the source, from 1 to 1e6, or 0 for the field's";
+
 /// Thrown where tensors of a file are not positive definite, and nothing else about it is wrong.
 class IndefiniteTensors : public InputError {
 public:

@@ -9,6 +9,7 @@
 #include "io/text/csv.h"
 #include "io/text/medit.h"
 #include "io/text/msh.h"
+#include "io/text/npy.h"
 #include "io/text/pos.h"
 
 namespace controlspace {
@@ -71,6 +72,7 @@ std::vector<PointSource> read_sources(const std::filesystem::path& path, const s
     }
     const std::string extension = lower_case_extension(path);
     if (extension == ".csv") return read_csv_sources(path);
+    if (extension == ".npy") return read_npy_sources(path);
     if (extension == ".mesh") return read_medit_mesh(path, ".sol", ".solb");
     if (extension == ".sol") return read_medit_sources(mesh_of(path, ".mesh", ".meshb"), path);
     if (extension == ".meshb") return read_medit_mesh(path, ".solb", ".sol");
@@ -81,8 +83,8 @@ std::vector<PointSource> read_sources(const std::filesystem::path& path, const s
     if (path == "/dev/stdin" || !std::filesystem::is_regular_file(path, ignored)) {
         return read_csv_sources(path);
     }
-    throw InputError(
-        fmt::format("{}: name a .csv, a .mesh beside a .sol, a .pos or a .msh", path.string()));
+    throw InputError(fmt::format("{}: name a .csv, a .npy, a .mesh beside a .sol, a .pos or a .msh",
+                                 path.string()));
 }
 
 std::string place_of_source(const std::filesystem::path& path, std::size_t index) {

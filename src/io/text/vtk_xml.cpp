@@ -48,14 +48,19 @@ public:
         text_ += fmt::format("</{}>\n", element);
     }
 
+    std::string head() const {
+        return fmt::format("{}</{}>\n<AppendedData encoding=\"raw\">\n_", text_, type_);
+    }
+    static constexpr std::string_view tail = "\n</AppendedData>\n</VTKFile>\n";
+
     void write(const std::filesystem::path& path) const {
         OutputFile file(path);
-        file.print("{}</{}>\n<AppendedData encoding=\"raw\">\n_", text_, type_);
+        file.write(head());
         for (const std::string_view bytes : arrays_) {
             file.write_raw(std::uint64_t{bytes.size()});
             file.write(bytes);
         }
-        file.write("\n</AppendedData>\n</VTKFile>\n");
+        file.write(tail);
         file.commit();
     }
 
@@ -65,6 +70,18 @@ private:
     std::vector<std::string_view> arrays_;
     std::uint64_t offset_ = 0;
 };
+
+/// The beginning of an image.
+Xml image(const Point& origin, const Vector& spacing, const std::array<int, 3>& counts) {
+    const std::string extent =
+        fmt::format("0 {} 0 {} 0 {}", counts[0] - 1, counts[1] - 1, counts[2] - 1);
+    Xml xml("ImageData");
+    xml.add(fmt::format(
+        "<ImageData WholeExtent=\"{}\" Origin=\"{} {} {}\" Spacing=\"{} {} {}\">\n"
+        "<Piece Extent=\"{}\">\n",
+        extent, origin.x(), origin.y(), origin.z(), spacing.x(), spacing.y(), spacing.z(), extent));
+    return xml;
+}
 
 }  // namespace
 
@@ -124,16 +141,22 @@ void write_vtk_grid(const std::filesystem::path& path, std::span<const Point> po
 
 void write_vtk_image(const std::filesystem::path& path, const Point& origin, const Vector& spacing,
                      const std::array<int, 3>& counts, std::span<const VtkArray> point_data) {
-    const std::string extent =
-        fmt::format("0 {} 0 {} 0 {}", counts[0] - 1, counts[1] - 1, counts[2] - 1);
-    Xml xml("ImageData");
-    xml.add(fmt::format(
-        "<ImageData WholeExtent=\"{}\" Origin=\"{} {} {}\" Spacing=\"{} {} {}\">\n"
-        "<Piece Extent=\"{}\">\n",
-        extent, origin.x(), origin.y(), origin.z(), spacing.x(), spacing.y(), spacing.z(), extent));
+    Xml xml = image(origin, spacing, counts);
     xml.add_arrays("PointData", point_data);
     xml.add("</Piece>\n");
     xml.write(path);
+}
+
+std::pair<std::string, std::string> vtk_image_frame(const Point& origin, const Vector& spacing,
+                                                    const std::array<int, 3>& counts,
+                                                    std::string_view array, std::uint64_t bytes) {
+    Xml xml = image(origin, spacing, counts);
+    xml.add("<PointData>\n");
+    xml.add_array(array, "Float64", 1, std::vector<double>());
+    xml.add("</PointData>\n</Piece>\n");
+    std::string head = xml.head();
+    head.append(reinterpret_cast<const char*>(&bytes), sizeof bytes);
+    return {std::move(head), std::string(Xml::tail)};
 }
 
 void write_vtk_octrees(const std::filesystem::path& path, const Box& domain,

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "controlspace/geometry/box.h"
@@ -48,6 +50,12 @@ void write_vtk_grid(const std::filesystem::path& path, std::span<const Point> po
 /// An image of counts[0] x counts[1] x counts[2] points, x fastest: .vti.
 void write_vtk_image(const std::filesystem::path& path, const Point& origin, const Vector& spacing,
                      const std::array<int, 3>& counts, std::span<const VtkArray> point_data);
+
+/// What comes before and after the `bytes` of the only array of such an image, of doubles, which
+/// are written in between: for images that are larger than memory.
+std::pair<std::string, std::string> vtk_image_frame(const Point& origin, const Vector& spacing,
+                                                    const std::array<int, 3>& counts,
+                                                    std::string_view array, std::uint64_t bytes);
 
 /// A tree of branch factor 2, breadth first, x fastest among siblings: which boxes have children,
 /// how many boxes each level has, and the data of all boxes.

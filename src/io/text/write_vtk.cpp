@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -11,6 +10,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/geometry/subdivision.h"
+#include "controlspace/io/write_lengths.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/sample_parallel.h"
 #include "geometry/point_order.h"
@@ -146,34 +146,14 @@ void require_slice_samples(int samples) {
 void write_slice(const std::filesystem::path& path, const ControlSpace& field, const Box& domain,
                  const Slice& slice) {
     require_slice_samples(slice.samples);
-    if (!(slice.at >= domain.low[slice.axis] && slice.at <= domain.high[slice.axis])) {
-        throw InputError(fmt::format("a slice at {} = {} is outside the domain {}",
-                                     "xyz"[slice.axis], slice.at, to_string(domain)));
-    }
-    Vector edges = domain.edges();
-    edges[slice.axis] = 0;
-    Point origin = domain.low;
-    origin[slice.axis] = slice.at;
-    std::array<int, 3> counts{1, 1, 1};
-    Vector spacing = Vector::Ones();
-    for (Axis a = 0; a < 3; ++a) {
-        if (edges[a] == 0) continue;
-        const double steps =
-            std::max(1.0, std::round(edges[a] / edges.maxCoeff() * (slice.samples - 1)));
-        counts[static_cast<std::size_t>(a)] = static_cast<int>(steps) + 1;
-        spacing[a] = edges[a] / steps;
-    }
+    const Raster raster = raster_of(domain, slice);
     std::vector<Point> places;
-    for (int k = 0; k < counts[2]; ++k) {
-        for (int j = 0; j < counts[1]; ++j) {
-            for (int i = 0; i < counts[0]; ++i) {
-                places.push_back(origin + spacing.cwiseProduct(Vector(i, j, k)));
-            }
-        }
+    for (std::size_t j = 0; j < raster.rows(); ++j) {
+        for (std::size_t i = 0; i < raster.columns(); ++i) places.push_back(raster.at(i, j));
     }
     std::vector<Metric> metrics(places.size());
     sample_parallel(field, places, metrics);
-    write_vtk_image(path, origin, spacing, counts, metric_arrays(metrics));
+    write_vtk_image(path, raster.origin, raster.spacing, raster.counts, metric_arrays(metrics));
 }
 
 void write_vtk_sources(const std::filesystem::path& path, std::span<const PointSource> sources) {

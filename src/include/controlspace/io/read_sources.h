@@ -14,6 +14,7 @@ namespace controlspace {
 ///     tensor M, whose eigenvalues are lengths), or h1, h2, h3, e1x, e1y, e1z, e2x, e2y, e2z
 ///     (lengths along two orthogonal directions and normal to both); and g, if there is such a
 ///     column, the gradation ratio of the source's own;
+///   - `.npy`: an array of NumPy of doubles with rows x, y, z, h or x, y, z, h, g;
 ///   - `.mesh`, `.meshb`, `.sol` or `.solb`: a Medit mesh or solution that has the other beside it
 ///     under the same name, with lengths, or Riemannian metrics M^-2 as xx xy yy xz yz zz; a mesh
 ///     without a solution gives the lengths of its required edges, at their ends;

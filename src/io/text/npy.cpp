@@ -1,0 +1,151 @@
+#include "io/text/npy.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string_view>
+
+#include "controlspace/error.h"
+#include "files/text_file.h"
+#include "io/text/metric_rows.h"
+
+namespace controlspace {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the files say so");
+
+// https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html: these eight bytes, the
+// length of the header in two bytes (four from version 2 on), and the header, a dictionary of
+// Python.
+constexpr std::string_view magic("\x93NUMPY\x01\x00", 8);
+
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
+    throw InputError(fmt::format("{}: {}", path.string(), what));
+}
+
+/// A file that is read from front to back.
+class Bytes {
+public:
+    explicit Bytes(const std::filesystem::path& path)
+        : path_(path), file_(std::fopen(path.string().c_str(), "rb"), &std::fclose) {
+        if (!file_) fail(path, fmt::format("cannot read: {}", std::strerror(errno)));
+    }
+    void read(void* to, std::size_t count) {
+        if (std::fread(to, 1, count, file_.get()) == count) return;
+        if (std::ferror(file_.get()) != 0) fail(path_, std::strerror(errno));
+        fail(path_, "it is cut off: save it again by numpy.save");
+    }
+    std::string text(std::size_t count) {
+        std::string text(count, ' ');
+        read(text.data(), count);
+        return text;
+    }
+    std::uintmax_t position() const { return static_cast<std::uintmax_t>(std::ftell(file_.get())); }
+
+private:
+    const std::filesystem::path& path_;
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+};
+
+/// The value of a key of the header, up to a separator.
+std::string_view value_of(std::string_view header, std::string_view key, std::string_view end) {
+    const std::size_t at = header.find(fmt::format("'{}':", key));
+    if (at == header.npos) return {};
+    std::string_view value = header.substr(at + key.size() + 3);
+    value.remove_prefix(std::min(value.find_first_not_of(' '), value.size()));
+    return value.substr(0, value.find(end));
+}
+
+struct Shape {
+    std::size_t rows = 0, columns = 0;
+};
+
+Shape read_header(Bytes& bytes, const std::filesystem::path& path) {
+    const std::string start = bytes.text(magic.size());
+    const auto version = static_cast<unsigned char>(start[6]);
+    if (start.substr(0, 6) != magic.substr(0, 6) || version < 1 || version > 3) {
+        fail(path, "it is no array of NumPy: save it by numpy.save");
+    }
+    std::uint32_t size = 0;
+    bytes.read(&size, version == 1 ? 2 : 4);
+    constexpr std::uint32_t most = 1 << 16;
+    if (size > most) fail(path, "its header is damaged: save it again by numpy.save");
+    const std::string header = bytes.text(size);
+    if (value_of(header, "descr", ",") != "'<f8'") {
+        fail(path, "it holds no doubles: save array.astype('<f8')");
+    }
+    if (value_of(header, "fortran_order", ",") != "False") {
+        fail(path, "it is stored by columns: save numpy.ascontiguousarray(array)");
+    }
+    Shape shape;
+    const std::string_view both = value_of(header, "shape", ")");
+    const std::size_t comma = both.find(',');
+    const bool are_two =
+        both.starts_with('(') && comma != both.npos &&
+        parse_number(both.substr(1, comma - 1), shape.rows) &&
+        parse_number(both.substr(both.find_first_not_of(' ', comma + 1)), shape.columns);
+    if (!are_two || (shape.columns != 4 && shape.columns != 5) || shape.rows == 0) {
+        fail(path, fmt::format("its shape is {}): give rows x, y, z, h or x, y, z, h, g", both));
+    }
+    return shape;
+}
+
+PointSource source_of(std::span<const double> row, std::size_t index,
+                      const std::filesystem::path& path) {
+    const auto refuse = [&](std::string_view name, double value, std::string_view rule) {
+        throw InputError(
+            fmt::format("{}, row {}: {} = {}: {}", path.string(), index, name, value, rule));
+    };
+    for (std::size_t a = 0; a < 3; ++a) {
+        if (!is_coordinate(row[a])) {
+            refuse(std::string_view("xyz").substr(a, 1), row[a],
+                   "give a finite number, of at most 1e+50");
+        }
+    }
+    if (!is_length(row[3])) refuse("h", row[3], length_rule);
+    const double growth = row.size() > 4 ? row[4] : 0;
+    if (!is_source_growth(growth)) refuse("g", growth, growth_rule);
+    return {Point(row.data()), Metric::isotropic(row[3]), growth};
+}
+
+}  // namespace
+
+std::string npy_header(std::size_t rows, std::size_t columns) {
+    constexpr std::size_t alignment = 64;  // of the numbers
+    std::string header = fmt::format(
+        "{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", rows, columns);
+    const std::size_t unpadded = magic.size() + 2 + header.size() + 1;
+    header.append((alignment - unpadded % alignment) % alignment, ' ').append("\n");
+    std::string bytes(magic);
+    bytes.push_back(static_cast<char>(header.size() % 256));
+    bytes.push_back(static_cast<char>(header.size() / 256));
+    return bytes.append(header);
+}
+
+std::vector<PointSource> read_npy_sources(const std::filesystem::path& path) {
+    Bytes bytes(path);
+    const auto [rows, columns] = read_header(bytes, path);
+    // Before memory is allocated for them.
+    const std::uintmax_t numbers =
+        (std::filesystem::file_size(path) - bytes.position()) / sizeof(double);
+    if (numbers / columns < rows) {
+        fail(path, fmt::format("it has {} of {} rows: save it again by numpy.save",
+                               numbers / columns, rows));
+    }
+    std::vector<PointSource> sources;
+    sources.reserve(rows);
+    std::array<double, 5> row{};
+    const std::span<double> used = std::span(row).first(columns);
+    for (std::size_t i = 0; i < rows; ++i) {
+        bytes.read(used.data(), used.size_bytes());
+        sources.push_back(source_of(used, i, path));
+    }
+    return sources;
+}
+
+}  // namespace controlspace
