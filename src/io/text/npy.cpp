@@ -83,12 +83,11 @@ Shape read_header(Bytes& bytes, const std::filesystem::path& path) {
         fail(path, "it is stored by columns: save numpy.ascontiguousarray(array)");
     }
     Shape shape;
-    const std::string_view both = value_of(header, "shape", ")");
-    const std::size_t comma = both.find(',');
-    const bool are_two =
-        both.starts_with('(') && comma != both.npos &&
-        parse_number(both.substr(1, comma - 1), shape.rows) &&
-        parse_number(both.substr(both.find_first_not_of(' ', comma + 1)), shape.columns);
+    const std::string_view both = value_of(header, "shape", ")");  // "(2, 5"
+    const std::size_t comma = both.find(", ");
+    const bool are_two = both.starts_with('(') && comma != both.npos &&
+                         parse_number(both.substr(1, comma - 1), shape.rows) &&
+                         parse_number(both.substr(comma + 2), shape.columns);
     if (!are_two || (shape.columns != 4 && shape.columns != 5) || shape.rows == 0) {
         fail(path, fmt::format("its shape is {}): give rows x, y, z, h or x, y, z, h, g", both));
     }
