@@ -97,13 +97,13 @@ std::vector<FieldFormat> add_vtk_formats(Options& options) {
                            {image_group, samples_group},
                            [check](const auto&, auto samples) { check(true, samples); }};
     };
-    return {raster_format(".npy", write_lengths),
-            raster_format(".nc", write_netcdf),
-            {{".vtu"}, [nodes](const Export& e) { return write_grid(e, *nodes); }, {grid_group}},
+    return {{{".vtu"}, [nodes](const Export& e) { return write_grid(e, *nodes); }, {grid_group}},
             {{".vti"},
              [slice](const Export& e) { return write_image(e, *slice); },
              {image_group, samples_group, vti_group},
              [slice, check](const auto&, auto samples) { check(slice->lengths, samples); }},
+            raster_format(".npy", write_lengths),
+            raster_format(".nc", write_netcdf),
             {{".htg"}, [](const Export& e) {
                  write_octree(e.output, *e.filled.space);
                  return written(e, "an octree");

@@ -60,8 +60,9 @@ void keep_smallest_at_each_place(std::vector<ConeTreeItem>& items,
                                  std::span<const PointSource> sources, double g) {
     const auto slope = [&](const ConeTreeItem& item) { return slope_of(sources[item.index], g); };
     tbb::parallel_sort(items.begin(), items.end(), [&](const auto& a, const auto& b) {
-        return std::tuple(a.coordinates, slope(a), a.index) <
-               std::tuple(b.coordinates, slope(b), b.index);
+        // Sources are far away in memory: only of the same place are they looked at.
+        if (a.coordinates != b.coordinates) return a.coordinates < b.coordinates;
+        return std::tuple(slope(a), a.index) < std::tuple(slope(b), b.index);
     });
     const auto end =
         std::unique(items.begin(), items.end(), [&](const ConeTreeItem& a, const ConeTreeItem& b) {
@@ -158,6 +159,13 @@ void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const PointS
         Eigen::Index lane = 0;
         for (const ConeTreeItem& item : of_leaf) leaf.set(lane++, cone_of(sources[item.index], g));
     };
+    // Lanes without a source or a child have infinite lengths.
+    const auto least_slope = [&](std::uint32_t number) -> double {
+        const auto least = [](const auto& of) {
+            return (of.length < infinity).select(of.slope, infinity).minCoeff();
+        };
+        return tree_.is_leaf(number) ? least(tree_.leaf(number)) : least(tree_.node(number));
+    };
     const auto make_node = [&](std::span<const Tree::Child> children, Node& node, std::uint32_t) {
         for (std::size_t i = 0; i < children.size(); ++i) {
             const auto& [number, of_child] = children[i];
@@ -170,10 +178,7 @@ void IsotropicCones::build(std::span<ConeTreeItem> items, std::span<const PointS
             node.radius[lane] = cylinder.radius;
             node.length[lane] = tree_.is_leaf(number) ? tree_.leaf(number).length.minCoeff()
                                                       : tree_.node(number).length.minCoeff();
-            node.slope[lane] = infinity;
-            for (const ConeTreeItem& item : of_child) {
-                node.slope[lane] = std::min(node.slope[lane], slope_of(sources[item.index], g));
-            }
+            node.slope[lane] = least_slope(number);
         }
     };
     tree_.build(items, leaf_size, make_leaf, make_node);

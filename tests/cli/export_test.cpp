@@ -64,7 +64,7 @@ TEST_CASE("an export that cannot be made ends with one line, and leaves no file"
         {"-o none/out.vdb s.csv", "none/out.vdb"},
         {"-o . s.csv", ".: name a file of one of .csv"},
         {"-o /dev/full s.csv", "/dev/full"},
-        {"-o out.vdb s.csv --samples 5", "--samples is for .structured, .msh and .vti"},
+        {"-o out.vdb s.csv --samples 5", "--samples is for .structured, .msh, .vti, .npy and .nc"},
         {"-o out.vtu s.csv --voxel 0.1", "--voxel is for .vdb"},
         // Before anything is read.
         {"-o out.vti no.csv --samples 1", "1 samples: give 2 to 8192"},

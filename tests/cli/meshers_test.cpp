@@ -180,7 +180,7 @@ TEST_CASE("files of sizes that cannot be written end with one line, and leave no
     const auto [arguments, expected] = GENERATE(table<std::string, std::string>({
         {"-o part.node", "name part.b.node"},
         {"-o a.msh --samples 1", "1 samples along the longest edge: give 2 to 512"},
-        {"-o a.msz --samples 9", "--samples is for .structured, .msh and .vti"},
+        {"-o a.msz --samples 9", "--samples is for .structured, .msh, .vti, .npy and .nc"},
         {"-o no/a.structured", "cannot write"},
         {"-o no/a.b.mtr", "cannot write"},
     }));
