@@ -1,0 +1,258 @@
+// The program controlspace-mpi: commands of `controlspace`, on all ranks of an MPI job.
+#define OMPI_SKIP_MPICXX 1
+#define MPICH_SKIP_MPICXX 1
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <mpi.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/filled_space.h"
+#include "cli/formats.h"
+#include "cli/help.h"
+#include "cli/input_study.h"
+#include "cli/options.h"
+#include "cli/paper_reference.h"
+#include "cli/peak_memory.h"
+#include "cli/standard_output.h"
+#include "cli/threads.h"
+#include "controlspace/error.h"
+#include "controlspace/io/read_sources.h"
+#include "controlspace/mpi/distributed_space.h"
+#include "io/text/csv.h"
+#include "mpi/exchange.h"
+#include "mpi/read_part.h"
+
+namespace controlspace {
+namespace {
+
+/// What a command is given.
+struct ParallelJob : Job {
+    std::filesystem::path points;
+    int octants = 128;
+};
+
+/// The structure of all ranks, with the study that it was made for.
+struct Made {
+    Study study;
+    std::unique_ptr<DistributedSpace> space;
+};
+
+void require_possible(const Case& c) {
+    if (has_field(c.sources)) {
+        throw InputError("ranks build fields of point sources: leave out primitives and --field");
+    }
+    if (c.law != GradationLaw::cone || c.schedule != GradationSchedule::sources) {
+        throw InputError("ranks grade by the sources: leave out --law and --schedule");
+    }
+    if (c.frozen != Frozen::no) throw InputError("ranks build no compact form: leave out --frozen");
+}
+
+/// This rank's share of the sources. Of one .csv it reads no more than that.
+Workload read_share(Ranks& ranks, const Study& study, const Case& c) {
+    Workload workload;
+    const auto& files = c.sources.files;
+    const bool is_by_parts = c.sources.kind == SourcesKind::file && files.size() == 1 &&
+                             lower_case_extension(files.front()) == ".csv" &&
+                             std::filesystem::is_regular_file(files.front()) &&
+                             c.sources.h_min == 0 && c.sources.h_max == largest_magnitude;
+    ranks.together([&] {
+        if (is_by_parts) {
+            workload.sources = read_csv_part(files.front(), ranks.rank(), ranks.size());
+            return;
+        }
+        workload = make_workload(study, c.sources, file_readers());
+        const auto border = [&](int r) {
+            const auto count = static_cast<std::ptrdiff_t>(workload.sources.size());
+            return workload.sources.begin() + count * r / ranks.size();
+        };
+        workload.sources = std::vector<PointSource>(border(ranks.rank()), border(ranks.rank() + 1));
+    });
+    if (!is_by_parts) return workload;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    std::vector<double> ends(6, infinity);  // the lowest coordinates, and the highest's negatives
+    for (const PointSource& s : workload.sources) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double x = s.position[static_cast<Axis>(a)];
+            ends[a] = std::min(ends[a], x);
+            ends[a + 3] = std::min(ends[a + 3], -x);
+        }
+    }
+    ranks.reduce(ends, MPI_MIN);
+    ranks.together([&] {
+        const std::vector<Point> corners{{ends[0], ends[1], ends[2]},
+                                         {-ends[3], -ends[4], -ends[5]}};
+        workload.domain = study.domain ? *study.domain : bounding_box(corners, study.margin);
+    });
+    return workload;
+}
+
+Made make(Ranks& ranks, const ParallelJob& job) {
+    const GivenSettings given = given_settings(job.given);
+    Made made;
+    Case c;
+    ranks.together([&] {
+        made.study = study_of_input(job.input, given);
+        c = only_case(made.study);
+        require_possible(c);
+    });
+    // Ranks share the processors.
+    const auto threads = limit_threads(made.study.threads == 0 ? 1 : made.study.threads);
+    Workload workload = read_share(ranks, made.study, c);
+    DistributedOptions options;
+    ranks.together([&] {
+        DefaultTarget(job.input, given).set(c, workload);
+        options = {.structure = c.structure,
+                   .space = space_options(made.study, c, workload),
+                   .target = c.target_delta,
+                   .octants_per_rank = static_cast<std::uint64_t>(std::max(job.octants, 0))};
+    });
+    made.space = std::make_unique<DistributedSpace>(ranks.comm(), workload.sources, options);
+    return made;
+}
+
+/// As JSON, on rank 0.
+std::string report_text(Ranks& ranks, const DistributedSpace& space) {
+    const RankReport r = space.report();
+    const std::string own = fmt::format(
+        "{{\"given\": {}, \"owned\": {}, \"kept\": {}, \"received\": {}, \"octants\": {}, "
+        "\"octants_of_all\": {}, \"leaves\": {}, \"bytes_sent\": {}, \"messages_sent\": {}, "
+        "\"cpu_s\": {:.4f}, \"peak_bytes\": {}}}\n",
+        r.given, r.owned, r.kept, r.received, r.octants, r.octants_of_all, r.leaves, r.bytes_sent,
+        r.messages_sent, r.cpu_s, peak_memory());
+    const auto all = ranks.gather(std::vector<char>(own.begin(), own.end())).values;
+    std::string text = "[" + std::string(all.begin(), all.end() - 1) + "]\n";
+    for (std::size_t i = text.find('\n'); i + 2 < text.size(); i = text.find('\n', i + 2)) {
+        text.insert(i, ",");
+    }
+    return text;
+}
+
+int remark(const Ranks& ranks, const DistributedSpace& space) {
+    if (space.report().met) return 0;
+    if (ranks.rank() == 0) {
+        print_error(fmt::format("target missed: {}\n", space.report().remark));
+    }
+    return some_failed;
+}
+
+int build(Ranks& ranks, const ParallelJob& job) {
+    const Made made = make(ranks, job);
+    const std::string text = report_text(ranks, *made.space);
+    ranks.together([&] {
+        if (ranks.rank() == 0) print_to(job.output, text);
+    });
+    return remark(ranks, *made.space);
+}
+
+int print_checksum(Ranks& ranks, const ParallelJob& job) {
+    const Made made = make(ranks, job);
+    const std::uint64_t sum = made.space->checksum(made.study.access_points, made.study.seed);
+    if (ranks.rank() == 0) print(fmt::format("checksum: {:016x}\n", sum));
+    return remark(ranks, *made.space);
+}
+
+int sample(Ranks& ranks, const ParallelJob& job) {
+    std::vector<Point> points;
+    ranks.together([&] {
+        require_no_input(job.output, {job.input, job.points});
+        if (ranks.rank() == 0) points = read_csv_points(job.points);
+    });
+    const Made made = make(ranks, job);
+    std::vector<Metric> metrics(points.size());
+    made.space->sample(points, metrics);
+    ranks.together([&] {
+        if (ranks.rank() != 0) return;
+        std::vector<PointSource> answers(points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) answers[i] = {points[i], metrics[i]};
+        write_csv_sources(job.output, answers);
+    });
+    return remark(ranks, *made.space);
+}
+
+struct CommandRow {
+    const char* name;
+    const char* description;
+    int (*run)(Ranks&, const ParallelJob&);
+};
+constexpr CommandRow commands[] = {
+    {"build", "Build one structure, and write what each rank held, sent and took, as JSON", build},
+    {"checksum", "Print the checksum of its metrics at the study's random places", print_checksum},
+    {"sample", "Write its metrics at given points", sample},
+};
+
+int run(Ranks& ranks, int argc, const char* const* argv) {
+    CLI::App app(
+        "Builds a control space of lengths on all ranks of an MPI job, with the same bits for any "
+        "number of ranks: K_oL, or, adapted (--within, --target-delta), K_oV.",
+        "controlspace-mpi");
+    app.require_subcommand(1);
+    app.footer(
+        "Examples:\n"
+        "  mpirun -n 4 controlspace-mpi checksum sources.csv --structures K_oL\n"
+        "  mpirun -n 4 controlspace-mpi sample sources.csv places.csv -o metrics.csv\n");
+    set_help(app);
+    std::vector<ParallelJob> jobs(std::size(commands));
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        CLI::App* command = app.add_subcommand(commands[i].name, commands[i].description);
+        Options options(*command);
+        ParallelJob& job = jobs[i];
+        job.output = "/dev/stdout";
+        add_study_input(options, job.input);
+        if (commands[i].run == sample) {
+            options.add({"POINTS", "FILE.csv", "Points: columns x, y and z", "", true}, job.points);
+        }
+        if (commands[i].run != print_checksum) {
+            options.add({"-o,--output", "FILE", "File to write"}, job.output);
+        }
+        options.add({"--octants", "N", "Octants per rank in which sources are shared out"},
+                    job.octants);
+        add_making_options(options, job);
+    }
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        if (ranks.rank() == 0) print(app.help());
+        return 0;
+    } catch (const CLI::ParseError& error) {
+        throw InputError(fmt::format("{} (see controlspace-mpi --help)", error.what()));
+    }
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        if (app.got_subcommand(commands[i].name)) return commands[i].run(ranks, jobs[i]);
+    }
+    return 0;
+}
+
+int run_ranks(int argc, const char* const* argv) {
+    Ranks ranks(MPI_COMM_WORLD);
+    try {
+        return run(ranks, argc, argv);
+    } catch (const InputError& error) {  // thrown by all ranks
+        if (ranks.rank() == 0) {
+            print_error(fmt::format("controlspace-mpi: error: {}\n", error.what()));
+        }
+        return 2;
+    } catch (const std::exception& error) {  // by this one, perhaps
+        print_error(
+            fmt::format("controlspace-mpi: error: rank {}: {}\n", ranks.rank(), error.what()));
+        MPI_Abort(MPI_COMM_WORLD, 1);
+        return 1;
+    }
+}
+
+}  // namespace
+}  // namespace controlspace
+
+int main(int argc, char** argv) {
+    MPI_Init(&argc, &argv);
+    const int status = controlspace::run_ranks(argc, argv);
+    MPI_Finalize();
+    return status;
+}

@@ -1,0 +1,268 @@
+// To be run by mpirun with some ranks: all of them run all tests. Nothing may end a test early on
+// one rank alone (REQUIRE), or the others would wait for it.
+#define OMPI_SKIP_MPICXX 1
+#define MPICH_SKIP_MPICXX 1
+#include "controlspace/mpi/distributed_space.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "controlspace/error.h"
+#include "controlspace/measure/access_time.h"
+#include "controlspace/metric/metric.h"
+#include "controlspace/space/make_control_space.h"
+#include "geometry/random_fractions.h"
+
+using namespace controlspace;
+
+namespace {
+
+constexpr std::size_t places = 20000;
+constexpr std::uint64_t seed = 7;
+
+struct World {
+    World() {
+        int started = 0;
+        MPI_Initialized(&started);
+        if (!started) {
+            MPI_Init(nullptr, nullptr);
+            std::atexit([] { MPI_Finalize(); });
+        }
+        MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+        MPI_Comm_size(MPI_COMM_WORLD, &size);
+    }
+    int rank = 0, size = 1;
+};
+
+struct Scene {
+    std::string name;
+    Box domain;
+    std::vector<PointSource> sources;
+    double h_max = largest_magnitude;
+};
+
+PointSource at(const Point& x, double h, double growth = 0) {
+    return {x, Metric::isotropic(h), growth};
+}
+
+// Places, lengths and growths in any order: dense, sparse, coarse among fine, outside of the
+// middle.
+std::vector<Scene> scenes() {
+    RandomFractions fraction(3);
+    const auto in = [&](const Box& box) {
+        Point x;
+        for (Axis a = 0; a < 3; ++a) x[a] = box.low[a] + fraction() * (box.high[a] - box.low[a]);
+        return x;
+    };
+    const Box cube{Point::Constant(-1), Point::Constant(1)};
+    std::vector<Scene> all;
+    Scene sphere{"sphere", cube, {}};
+    for (int i = 0; i < 4000; ++i) {
+        const Vector v = in(cube);
+        const Point x = 0.8 * v.normalized();
+        sphere.sources.push_back(at(x, 0.03 + 0.02 * x.z()));
+    }
+    all.push_back(sphere);
+    Scene mixed{"lengths from 0.001 to 0.5", {Point(1, 2, 3), Point(3, 4, 5)}, {}};
+    for (int i = 0; i < 3000; ++i) {
+        mixed.sources.push_back(at(in(mixed.domain), 0.001 * std::pow(500.0, fraction())));
+    }
+    all.push_back(mixed);
+    Scene steep = sphere;
+    steep.name = "growths of their own";
+    for (std::size_t i = 0; i < steep.sources.size(); i += 3) {
+        steep.sources[i].growth = 1 + 2 * fraction();
+    }
+    all.push_back(steep);
+    Scene oblong{"oblong", {Point(-4, 0, 10), Point(4, 2, 11)}, {}};
+    for (int i = 0; i < 3000; ++i) {
+        Point x = in(oblong.domain);
+        x.y() = 1 + 0.3 * std::sin(x.x());
+        oblong.sources.push_back(at(x, 0.05));
+    }
+    all.push_back(oblong);
+    Scene flat{"flat", {Point(0, 0, 0), Point(2, 1, 0)}, {}};
+    for (int i = 0; i < 2000; ++i) {
+        flat.sources.push_back(at(Point(fraction() * 2, 0.5, 0), 0.004 + 0.01 * fraction()));
+    }
+    all.push_back(flat);
+    Scene bounded = sphere;
+    bounded.name = "h_max";
+    bounded.h_max = 0.1;
+    all.push_back(bounded);
+    all.push_back({"one source", cube, {at(Point(0.3, 0.2, 0.1), 0.01)}});
+    // On the planes between octants, many at one place, and some dominated.
+    Scene lattice{"lattice", cube, {}};
+    for (int i = 0; i < 3000; ++i) {
+        const auto step = [&] { return -1 + std::floor(fraction() * 33) / 16; };
+        lattice.sources.push_back(at(Point(step(), step(), step()), i % 5 == 0 ? 0.01 : 0.125));
+    }
+    all.push_back(lattice);
+    return all;
+}
+
+std::vector<PointSource> share(const std::vector<PointSource>& all, int begin, int end, int of) {
+    const auto border = [&](int r) {
+        return all.begin() + static_cast<std::ptrdiff_t>(all.size()) * r / of;
+    };
+    return {border(begin), border(end)};
+}
+
+DistributedOptions options_for(const Scene& scene) {
+    DistributedOptions options;
+    options.space.domain = scene.domain;
+    options.space.h_max = scene.h_max;
+    return options;
+}
+
+std::unique_ptr<ControlSpace> serial(const Scene& scene, const DistributedOptions& options) {
+    return make_control_space(options.structure, scene.sources, options.space, options.target);
+}
+
+std::uint64_t checksum_of(const ControlSpace& space) {
+    const std::vector<Point> x = random_points(space.domain(), places, seed);
+    std::vector<Metric> answers(x.size());
+    space.sample(x, answers);
+    return checksum(answers);
+}
+
+void check_equal(const Scene& scene, const DistributedOptions& options) {
+    const World world;
+    CAPTURE(scene.name, options.structure, options.target.value_or(0), world.rank);
+    const std::uint64_t expected = checksum_of(*serial(scene, options));
+    const DistributedSpace even(
+        MPI_COMM_WORLD, share(scene.sources, world.rank, world.rank + 1, world.size), options);
+    CHECK(even.checksum(places, seed) == expected);
+    // All sources on the last rank.
+    const bool has_all = world.rank == world.size - 1;
+    const DistributedSpace uneven(MPI_COMM_WORLD,
+                                  has_all ? scene.sources : std::vector<PointSource>(), options);
+    CHECK(uneven.checksum(places, seed) == expected);
+}
+
+}  // namespace
+
+TEST_CASE("ranks answer as one does: inserted and graded") {
+    for (const Scene& scene : scenes()) check_equal(scene, options_for(scene));
+    Scene mixed = scenes()[1];
+    DistributedOptions coarse = options_for(mixed);
+    coarse.space.l_min = 4;  // leaves inherit metrics that the field does not replace
+    coarse.space.ratio = 2;
+    check_equal(mixed, coarse);
+    DistributedOptions shallow = options_for(mixed);
+    shallow.space.octree_depth = 4;
+    check_equal(mixed, shallow);
+}
+
+TEST_CASE("ranks answer as one does: adapted") {
+    for (const Scene& scene : scenes()) {
+        DistributedOptions options = options_for(scene);
+        options.target = 0.2;
+        check_equal(scene, options);
+        options.structure = "K_oV";
+        check_equal(scene, options);
+    }
+}
+
+TEST_CASE("the number of octants does not change an answer") {
+    const Scene scene = scenes()[1];
+    for (const std::uint64_t octants : {1, 8, 1000}) {
+        DistributedOptions options = options_for(scene);
+        options.octants_per_rank = octants;
+        check_equal(scene, options);
+        options.target = 0.3;
+        check_equal(scene, options);
+    }
+}
+
+TEST_CASE("ranks share octants and sources out") {
+    const World world;
+    const Scene scene = scenes()[0];
+    const DistributedSpace space(MPI_COMM_WORLD,
+                                 share(scene.sources, world.rank, world.rank + 1, world.size),
+                                 options_for(scene));
+    const RankReport report = space.report();
+    CHECK(report.octants_of_all > 64);
+    CHECK(report.octants == space.octants().size());
+    const double own = static_cast<double>(report.owned);
+    const double mean = static_cast<double>(scene.sources.size()) / world.size;
+    CHECK(own > 0.7 * mean);
+    CHECK(own < 1.3 * mean);
+    // A rank gets a part of the others' sources alone.
+    if (world.size > 1) CHECK(report.received < scene.sources.size() / 2);
+    if (world.size == 1) CHECK(report.bytes_sent == 0);
+    for (const Box& box : space.octants()) CHECK(space.owner_of(box.centre()) == world.rank);
+}
+
+TEST_CASE("a rank gets the field of a box of its own") {
+    const World world;
+    for (const bool is_adapted : {false, true}) {
+        const Scene scene = scenes()[1];
+        DistributedOptions options = options_for(scene);
+        if (is_adapted) options.target = 0.2;
+        const auto whole = serial(scene, options);
+        const DistributedSpace space(
+            MPI_COMM_WORLD, share(scene.sources, world.rank, world.rank + 1, world.size), options);
+        const Point low(1.2 + 0.2 * world.rank, 2.3, 3.4);
+        const Box box{low, low + Vector(0.5, 0.6, 0.7)};
+        const auto field = space.field_for(box);
+        const std::vector<Point> x = random_points(box, places, seed);
+        std::vector<Metric> found(x.size()), expected(x.size());
+        field->sample(x, found);
+        whole->sample(x, expected);
+        CHECK(found == expected);
+    }
+}
+
+TEST_CASE("places anywhere are answered by their owners") {
+    const World world;
+    const Scene scene = scenes()[3];
+    const DistributedOptions options = options_for(scene);
+    const auto whole = serial(scene, options);
+    const DistributedSpace space(
+        MPI_COMM_WORLD, share(scene.sources, world.rank, world.rank + 1, world.size), options);
+    // Some outside; another number on each rank, none on the first.
+    const Box around{scene.domain.low - Vector::Ones(), scene.domain.high + Vector::Ones()};
+    const auto n = static_cast<std::size_t>(1000 * world.rank);
+    const std::vector<Point> x = random_points(around, n, seed);
+    std::vector<Metric> found(n), expected(n);
+    space.sample(x, found);
+    whole->sample(x, expected);
+    CHECK(found == expected);
+}
+
+TEST_CASE("what fails on one rank is thrown on all") {
+    const World world;
+    const Scene scene = scenes()[0];
+    const auto own = share(scene.sources, world.rank, world.rank + 1, world.size);
+    const auto message = [&](const std::vector<PointSource>& sources,
+                             const DistributedOptions& options) -> std::string {
+        try {
+            const DistributedSpace space(MPI_COMM_WORLD, sources, options);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    auto bad = own;
+    if (world.rank == world.size - 1) bad.back().position.x() = 5;
+    const std::string last = std::to_string(scene.sources.size() - 1);
+    using Catch::Contains;
+    CHECK_THAT(message(bad, options_for(scene)), Contains("source " + last));
+    bad = own;
+    if (world.rank == world.size - 1) bad.back().metric = {1, 2, 3, 0, 0, 0};
+    CHECK_THAT(message(bad, options_for(scene)), Contains(last) && Contains("tensor"));
+    for (const char* structure : {"K_oLB", "K_oV", "K_L", "K_oLA"}) {
+        DistributedOptions options = options_for(scene);
+        options.structure = structure;
+        CHECK_THAT(message(own, options), Contains(structure) && Contains("give K_oL"));
+    }
+    DistributedOptions small = options_for(scene);
+    small.space.max_bytes = 1000;
+    CHECK_THAT(message(own, small), Contains("memory"));
+    // The ranks go on together.
+    check_equal(scene, options_for(scene));
+}
