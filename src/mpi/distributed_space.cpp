@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <ctime>
 #include <limits>
@@ -59,6 +60,12 @@ struct Bound {
     }
 };
 
+/// A box in which the field is nowhere longer than `most`.
+struct Test {
+    Box box;
+    double most;
+};
+
 double process_seconds() {
     timespec time{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
@@ -76,11 +83,12 @@ struct Summary {
 
     explicit Summary(std::size_t leaves)
         : count(leaves, 0),
+          sum_of_lengths(leaves, 0),
           least_length(leaves, infinity),
           least_slope(leaves, infinity),
           opener(leaves, nothing) {}
     std::vector<std::uint64_t> count;
-    std::vector<double> least_length, least_slope;
+    std::vector<double> sum_of_lengths, least_length, least_slope;
     /// Of the first source that calls for a change: twice its index, and 1 if the leaf is short
     /// enough for it.
     std::vector<std::uint64_t> opener;
@@ -109,6 +117,14 @@ struct DistributedSpace::Impl {
         report.octants = of_ranks[static_cast<std::size_t>(ranks.rank())].size();
         report.octants_of_all = tree.leaves();
         own = build(of_ranks, report);
+        const int first_short = ranks.least(report.met ? ranks.size() : ranks.rank());
+        report.met = first_short == ranks.size();
+        if (!report.met) {
+            const std::string& text = report.remark;
+            const auto remark =
+                ranks.broadcast(std::vector<char>(text.begin(), text.end()), first_short);
+            report.remark.assign(remark.begin(), remark.end());
+        }
         report.cpu_s = process_seconds() - start;
     }
 
@@ -183,6 +199,7 @@ struct DistributedSpace::Impl {
     void cut_octants() {
         const std::uint64_t wanted =
             options.octants_per_rank * static_cast<std::uint64_t>(ranks.size());
+        const int coarsest = (static_cast<int>(std::bit_width(wanted)) - 1) / 3;
         const SourceCuts<OctreeNode> cuts(options.space);
         std::vector<LeafIndex> leaf_of(records.size(), 0);
         places = {tree.locate(options.space.domain.centre())};
@@ -193,7 +210,11 @@ struct DistributedSpace::Impl {
             for (std::size_t i = 0; i < before; ++i) {
                 const bool may_cut =
                     places[i].level < cuts.max_depth() && cut_of(places[i]).is_proper();
-                if (may_cut && summary.count[i] > all_sources / wanted) large.push_back(i);
+                // Few sources in a large octant would need many that are far away.
+                const bool is_large = places[i].level < coarsest && summary.count[i] > 0;
+                if (may_cut && (is_large || summary.count[i] > all_sources / wanted)) {
+                    large.push_back(i);
+                }
             }
             const std::vector<int> cut_large = are_cut(large);
             std::vector<char> is_cut(before, 0);
@@ -227,6 +248,7 @@ struct DistributedSpace::Impl {
             const Record& r = records[k];
             const LeafIndex leaf = leaf_of[k];
             ++s.count[leaf];
+            s.sum_of_lengths[leaf] += r.length;
             s.least_length[leaf] = std::min(s.least_length[leaf], r.length);
             s.least_slope[leaf] = std::min(s.least_slope[leaf], slope_of(r));
             if (options.target || r.index >= s.opener[leaf] / 2) continue;
@@ -235,6 +257,7 @@ struct DistributedSpace::Impl {
             s.opener[leaf] = 2 * r.index + (cuts.is_too_long(m, places[leaf].box) ? 0 : 1);
         }
         ranks.reduce(s.count, MPI_SUM);
+        ranks.reduce(s.sum_of_lengths, MPI_SUM);  // rounding may depend on ranks; answers do not
         ranks.reduce(s.least_length, MPI_MIN);
         ranks.reduce(s.least_slope, MPI_MIN);
         ranks.reduce(s.opener, MPI_MIN);
@@ -316,7 +339,14 @@ struct DistributedSpace::Impl {
 
     void send_to_owners() {
         std::vector<std::uint64_t> weights(tree.leaves());
-        for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = 1 + summary.count[i];
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            // Leaves: of a surface as many as have room, but a few for each source at most.
+            const auto count = static_cast<double>(summary.count[i]);
+            const double across = places[i].box.edges().maxCoeff() * count /
+                                  (options.space.l_min * summary.sum_of_lengths[i]);
+            const double leaves = count > 0 ? std::min(across * across, 8 * count) : 0;
+            weights[i] = 1 + static_cast<std::uint64_t>(count + leaves);
+        }
         shared = share_out(ranks.comm(), tree, weights);
         std::vector<std::vector<Record>> to(static_cast<std::size_t>(ranks.size()));
         for (const Record& r : records) {
@@ -327,27 +357,48 @@ struct DistributedSpace::Impl {
         report.owned = records.size();
     }
 
-    // Finds the own sources that are not dominated, and of each octant a length that the field does
-    // not exceed in it.
+    // Finds the own sources that are not dominated, and lengths that the field does not exceed in
+    // boxes which make up the octants.
     void find_bounds() {
         sources_in.assign(tree.leaves(), {});
+        std::optional<IsotropicCones> own_cones;
         ranks.together([&] {
-            const IsotropicCones cones_of_own(sources_of(records), ratio(), cap());
+            own_cones.emplace(sources_of(records), ratio(), cap());
             for (std::uint32_t k = 0; k < records.size(); ++k) {
                 sources_in[tree.find(records[k].position)].all.push_back(k);
             }
-            for (const std::uint32_t k : cones_of_own.kept()) {
+            for (const std::uint32_t k : own_cones->kept()) {
                 sources_in[tree.find(records[k].position)].kept.push_back(k);
             }
-            report.kept = cones_of_own.kept().size();
+            report.kept = own_cones->kept().size();
         });
+        const auto known = bounds_of_octants();
+        tests.clear();
+        first_test.assign(1, 0);
+        for (const LeafPlace& place : places) {
+            add_tests(place, known[place.leaf]);
+            first_test.push_back(tests.size());
+        }
+        std::vector<double> most(tests.size());
+        IsotropicCones::Hint hint = 0;
+        for (std::size_t i = 0; i < tests.size(); ++i) {
+            most[i] = tests[i].most;
+            const auto k = own_cones->source_below(tests[i].box.centre(), most[i], hint);
+            if (k) most[i] = std::min(most[i], bound_of(records[*k]).most_in(tests[i].box));
+        }
+        ranks.reduce(most, MPI_MIN);
+        for (std::size_t i = 0; i < tests.size(); ++i) tests[i].most = most[i];
+    }
+    Bound bound_of(const Record& r) const { return {r.position, r.length, slope_of(r)}; }
+
+    // In each octant, from one source of each.
+    std::vector<double> bounds_of_octants() {
         std::vector<Bound> of_octants;
         for (const LeafIndex leaf : own_octants()) {
             Bound least;
             double least_most = std::numeric_limits<double>::infinity();
             for (const std::uint32_t k : sources_in[leaf].kept) {
-                const Record& r = records[k];
-                const Bound bound{r.position, r.length, slope_of(r)};
+                const Bound bound = bound_of(records[k]);
                 if (const double most = bound.most_in(places[leaf].box); most < least_most) {
                     least_most = most;
                     least = bound;
@@ -364,39 +415,69 @@ struct DistributedSpace::Impl {
             }
         }
         const std::vector<double> all = ranks.gather(most).values;
-        most_in.resize(tree.leaves());
-        for (std::size_t i = 0; i < all.size(); ++i) most_in[shared.order[i]] = all[i];
+        std::vector<double> by_octant(tree.leaves());
+        for (std::size_t i = 0; i < all.size(); ++i) by_octant[shared.order[i]] = all[i];
+        return by_octant;
+    }
+
+    // The smaller the boxes, the fewer sources seem to matter in them. Inserted into, an octant
+    // without sources is one leaf, of which the centre alone takes the field.
+    void add_tests(const LeafPlace& octant, double most) {
+        if (!options.target && summary.count[octant.leaf] == 0) {
+            const Point centre = octant.box.centre();
+            tests.push_back({{centre, centre}, most});
+            return;
+        }
+        constexpr int levels = 2;
+        std::vector<Box> boxes{octant.box};
+        for (int k = 0; k < levels; ++k) {
+            std::vector<Box> parts;
+            for (const Box& box : boxes) {
+                const Subdivision cut =
+                    OctreeNode::even_subdivision(tree.domain(), octant.level + k, box);
+                for (int c = 0; c < cut.children(); ++c) parts.push_back(cut.child(c));
+            }
+            boxes = std::move(parts);
+        }
+        for (const Box& box : boxes) tests.push_back({box, most});
     }
 
     /// Calls visit(number) for the own sources that matter in any of some octants, or lie there.
     template <class Visit>
     void for_each_that_matters(std::span<const LeafIndex> in, const Visit& visit) const {
         constexpr double safely = 1 + 1e-9;
-        std::vector<LeafIndex> near;
+        std::vector<char> is_in(tree.leaves(), 0);
+        for (const LeafIndex leaf : in) is_in[leaf] = 1;
+        std::vector<const Test*> near;
         for (const LeafIndex leaf : own_octants()) {
             const OwnSources& of = sources_in[leaf];
-            if (std::ranges::count(in, leaf) > 0) {
+            if (is_in[leaf] != 0) {
                 for (const std::uint32_t k : of.all) visit(k);
                 continue;
             }
             if (of.all.empty()) continue;
             near.clear();
             for (const LeafIndex other : in) {
-                const double distance = distance_between(places[leaf].box, places[other].box);
-                const double least =
-                    summary.least_length[leaf] + summary.least_slope[leaf] * distance;
-                if (least <= safely * most_in[other]) near.push_back(other);
+                for (const Test& test : tests_of(other)) {
+                    const double distance = distance_between(places[leaf].box, test.box);
+                    const double least =
+                        summary.least_length[leaf] + summary.least_slope[leaf] * distance;
+                    if (least <= safely * test.most) near.push_back(&test);
+                }
             }
             for (const std::uint32_t k : of.kept) {
                 const Record& r = records[k];
-                const auto matters = [&](LeafIndex other) {
-                    const Point nearest = nearest_in(places[other].box, r.position);
-                    const double least = r.length + slope_of(r) * (nearest - r.position).norm();
-                    return least <= safely * most_in[other];
+                const auto matters = [&](const Test* test) {
+                    const Vector away = nearest_in(test->box, r.position) - r.position;
+                    return r.length + slope_of(r) * away.norm() <= safely * test->most;
                 };
                 if (std::ranges::any_of(near, matters)) visit(k);
             }
         }
+    }
+    std::span<const Test> tests_of(LeafIndex octant) const {
+        const std::size_t first = first_test[octant];
+        return std::span(tests).subspan(first, first_test[octant + std::size_t{1}] - first);
     }
 
     /// The field in the octants that each rank wants, from the sources of all.
@@ -421,50 +502,55 @@ struct DistributedSpace::Impl {
             // In the order that the sources have in all.
             std::ranges::sort(near, {}, &Record::index);
             std::vector<PointSource> sources = sources_of(near);
-            std::vector<char> is_inside(near.size());
-            for (std::size_t k = 0; k < near.size(); ++k) {
-                is_inside[k] = is_wanted[tree.find(near[k].position)];
-            }
             near = std::vector<Record>();
-            made = options.structure == "K_oL"
-                       ? make<LeafMetrics>(sources, is_inside, octants, about)
-                       : make<VertexValues>(sources, is_inside, octants, about);
+            if (!options.target) {
+                made = inserted(sources, is_wanted, octants, about);
+            } else if (options.structure == "K_oL") {
+                made = adapted<LeafMetrics>(sources, is_wanted, octants, about);
+            } else {
+                made = adapted<VertexValues>(sources, is_wanted, octants, about);
+            }
         });
         return made;
     }
 
     template <class Storage>
-    std::unique_ptr<ControlSpace> make(std::vector<PointSource>& sources,
-                                       std::span<const char> is_inside,
-                                       std::span<const Box> octants, RankReport& about) {
+    std::unique_ptr<ControlSpace> adapted(std::vector<PointSource>& sources,
+                                          std::span<const char> is_wanted,
+                                          std::span<const Box> octants, RankReport& about) const {
         const SpaceOptions& space = options.space;
-        auto made = std::make_shared<RankTree<Storage>>(space, octants);
-        if (options.target) {
-            for (const Record& r : steepest) sources.push_back(r.source());
-            const AdaptationReport adapted = made->adapt({.sources = sources,
-                                                          .continuous = nullptr,
-                                                          .ratio = space.ratio,
-                                                          .target = *options.target,
-                                                          .intersection = space.intersection,
-                                                          .h_max = space.h_max});
-            about.reached = adapted.reached;
-            about.met = adapted.met;
-            about.remark = adapted.shortfall;
-        } else {
-            GivenSources given;
-            given.add(sources);
-            std::size_t inside = 0;
-            for (std::size_t k = 0; k < sources.size(); ++k) {
-                if (is_inside[k] != 0) sources[inside++] = sources[k];
-            }
-            sources.resize(inside);
-            made->insert(sources);
-            made->grade(NodeGradation({.ratio = space.ratio}, &given, space));
-            made->finish();
-        }
+        const auto made = std::make_shared<AdaptedPart<Storage>>(space, octants);
+        for (const Record& r : steepest) sources.push_back(r.source());
+        const AdaptationReport outcome =
+            made->adapt({.sources = sources,
+                         .continuous = nullptr,
+                         .ratio = space.ratio,
+                         .target = *options.target,
+                         .intersection = space.intersection,
+                         .h_max = space.h_max},
+                        [&](const Point& x) { return is_wanted[tree.find(x)] != 0; });
+        about.met = outcome.met;
+        about.remark = outcome.shortfall;
         about.leaves = made->footprint().cells;
-        using Tree = MetricTree<OctreeNode, Storage>;
-        return std::make_unique<SharedSpace<Tree>>(std::shared_ptr<const Tree>(made));
+        return std::make_unique<SharedSpace<AdaptedPart<Storage>>>(made);
+    }
+
+    std::unique_ptr<ControlSpace> inserted(std::vector<PointSource>& sources,
+                                           std::span<const char> is_wanted,
+                                           std::span<const Box> octants, RankReport& about) const {
+        const auto made = std::make_shared<InsertedPart<LeafMetrics>>(options.space, octants);
+        GivenSources given;
+        given.add(sources);
+        std::erase_if(sources, [&](const PointSource& source) {
+            return is_wanted[tree.find(source.position)] == 0;
+        });
+        made->insert(sources);
+        sources = std::vector<PointSource>();
+        made->grade(NodeGradation({.ratio = ratio()}, &given, options.space));
+        made->finish();
+        about.leaves = made->footprint().cells;
+        using Tree = MetricTree<OctreeNode, LeafMetrics>;
+        return std::make_unique<SharedSpace<Tree>>(made);
     }
 
     struct OwnSources {
@@ -477,7 +563,8 @@ struct DistributedSpace::Impl {
     std::vector<LeafPlace> places;  // of the octants
     Summary summary{0};
     SharedOctants shared;
-    std::vector<double> most_in;  // of octants: the field is nowhere longer
+    std::vector<Test> tests;              // of octants, one after the other
+    std::vector<std::size_t> first_test;  // of each octant, and the end
     std::uint64_t all_sources = 0;
     std::vector<Record> steepest;         // one source, if any is steeper than the ratio
     std::optional<IsotropicCones> cones;  // of the sources given, until octants are cut

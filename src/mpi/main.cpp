@@ -105,6 +105,7 @@ Made make(Ranks& ranks, const ParallelJob& job) {
     });
     // Ranks share the processors.
     const auto threads = limit_threads(made.study.threads == 0 ? 1 : made.study.threads);
+    restart_peak_memory();
     Workload workload = read_share(ranks, made.study, c);
     DistributedOptions options;
     ranks.together([&] {

@@ -1,46 +1,95 @@
 #pragma once
 
-#include <memory>
+#include <algorithm>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "controlspace/space/adaptation.h"
+#include "controlspace/space/detail/goal_field.h"
 #include "controlspace/space/detail/shared_builder.h"
+#include "controlspace/trees/detail/adapt_tree.h"
 #include "controlspace/trees/detail/metric_tree.h"
+
+// Octrees that are exact in some octants, which they are cut into beforehand: what is cut in an
+// octant depends on nothing outside of it but the field.
 
 namespace controlspace {
 
-/// An octree that is exact in some of the octants which it is cut into beforehand: what is cut in
-/// an octant depends on nothing outside of it but the field.
+/// Calls split(leaf) until the octants, leaves of an octree over the same domain, are leaves.
+template <class Tree, class Split>
+void cut_to(std::span<const Box> octants, const Tree& tree, const Split& split) {
+    for (const Box& octant : octants) {
+        for (Box cell; (cell = tree.cell_at(octant.centre())) != octant;) split(cell);
+    }
+}
+
+/// For insertion and gradation.
 template <class Storage>
-class RankTree : public MetricTree<OctreeNode, Storage> {
+class InsertedPart : public MetricTree<OctreeNode, Storage> {
+public:
+    InsertedPart(const SpaceOptions& options, std::span<const Box> octants)
+        : MetricTree<OctreeNode, Storage>(options) {
+        std::vector<LeafIndex> cut;
+        cut_to(octants, *this, [&](const Box& cell) { this->split_across(cell, {}, cut); });
+    }
+};
+
+/// Adapted to a field in its octants alone.
+template <class Storage>
+class AdaptedPart : public GrowingTree<OctreeNode, Storage> {
     using Growing = GrowingTree<OctreeNode, Storage>;
+    using Growing::options_, Growing::storage_, Growing::topology_;
 
 public:
-    /// `octants` are some leaves of an octree over the same domain.
-    RankTree(const SpaceOptions& options, std::span<const Box> octants)
-        : MetricTree<OctreeNode, Storage>(options), octants_(octants.begin(), octants.end()) {
-        cut_to_octants();
+    AdaptedPart(const SpaceOptions& options, std::span<const Box> octants)
+        : Growing(options, false) {
+        std::vector<LeafIndex> cut;
+        cut_to(octants, *this, [&](const Box& cell) { this->split_across(cell, {}, cut); });
     }
 
-    /// As MetricTree's, from the octants on.
-    AdaptationReport adapt(const AdaptationGoal& goal) {
-        const AdaptationReport report = Growing::adapt(goal, [&] { cut_to_octants(); });
-        this->finish();
+    /// As GrowingTree's, where is_inside(centre of a box); `reached` is that of all leaves, which
+    /// says nothing, `met` that of those inside.
+    AdaptationReport adapt(const AdaptationGoal& goal,
+                           const std::function<bool(const Point&)>& is_inside) {
+        const GoalField field(goal, this->domain());
+        AdaptationReport report;
+        TreeAdaptation adaptation(topology_, storage_, field, goal);
+        adaptation.run(true, [&](const Box& box, const auto& along, auto& cut) {
+            if (!is_inside(box.centre())) return false;
+            if (is_negligible(box, field.largest_ratio())) {
+                report.shortfall =
+                    "the field is steep: leaves far shorter than an element are not cut: raise "
+                    "target_delta";
+                return false;
+            }
+            if (this->split_across(box, along, cut)) return true;
+            report.shortfall = depth_shortfall(this->cuts().max_depth());
+            return false;
+        });
+        report.met = report.shortfall.empty();
+        this->settle();
         return report;
     }
 
-private:
-    void cut_to_octants() {
-        std::vector<LeafIndex> cut;
-        for (const Box& octant : octants_) {
-            for (Box cell; (cell = this->cell_at(octant.centre())) != octant;) {
-                Growing::split_across(cell, {}, cut);
-            }
-        }
+    ControlNodes control_nodes(Neighbourhood neighbourhood) const {
+        return nodes_of_tree(topology_, storage_, neighbourhood);
+    }
+    bool has_lengths() const { return false; }
+    void save(StateWriter& state) const {
+        controlspace::save(topology_, state);
+        save_storage(storage_, storage_.metrics(), state);
     }
 
-    std::vector<Box> octants_;
+private:
+    // The rule of GrowingTree: the serial tree is cut by it.
+    bool is_negligible(const Box& box, double ratio) const {
+        constexpr double usual_slope = 0.25;
+        const double share_of_element = 1.0 / 16 * (usual_slope / std::max(usual_slope, ratio - 1));
+        const Metric m = value_at(topology_, field_of(storage_), box.centre());
+        const auto lengths = metric_edge_lengths(m, box.edges());
+        return std::max({lengths[0], lengths[1], lengths[2]}) < share_of_element;
+    }
 };
 
 }  // namespace controlspace

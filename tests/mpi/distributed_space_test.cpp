@@ -132,7 +132,8 @@ std::uint64_t checksum_of(const ControlSpace& space) {
 void check_equal(const Scene& scene, const DistributedOptions& options) {
     const World world;
     CAPTURE(scene.name, options.structure, options.target.value_or(0), world.rank);
-    const std::uint64_t expected = checksum_of(*serial(scene, options));
+    std::uint64_t expected = world.rank == 0 ? checksum_of(*serial(scene, options)) : 0;
+    MPI_Bcast(&expected, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
     const DistributedSpace even(
         MPI_COMM_WORLD, share(scene.sources, world.rank, world.rank + 1, world.size), options);
     CHECK(even.checksum(places, seed) == expected);

@@ -35,9 +35,8 @@ struct RankReport {
     std::uint64_t leaves = 0;  ///< of its tree, with the few outside of its octants
     std::uint64_t bytes_sent = 0, messages_sent = 0;
     double cpu_s = 0;    ///< of building
-    double reached = 0;  ///< of an adapted tree: as AdaptationReport, the largest of all ranks
-    bool met = true;     ///< likewise, on all ranks
-    std::string remark;  ///< why it was not, on the first rank where it was not
+    bool met = true;     ///< whether an adapted tree keeps the target, on all ranks
+    std::string remark;  ///< why not, on the first rank where it does not
 };
 
 /// An octree that is built by all ranks of a communicator, each a part of it, of isotropic sources.
