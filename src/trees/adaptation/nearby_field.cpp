@@ -164,8 +164,6 @@ void NearbyField::enter(const Box& box, bool at_many_points) {
     search_->is_close_enough = true;
 }
 
-bool NearbyField::takes_long() const { return search_->takes_long(); }
-
 void NearbyField::evaluate(std::span<const Point> x, std::span<Metric> out) {
     search_->gather();
     if (search_->are_few) {

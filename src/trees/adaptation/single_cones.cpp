@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"

@@ -26,8 +26,6 @@ public:
     /// not depend on the boxes before.
     void enter(const Box& box, bool at_many_points);
 
-    /// Whether the field consists of cones of tensors.
-    bool takes_long() const;
     void evaluate(std::span<const Point> x, std::span<Metric> out);
     /// The same, or longer by a factor less than the one returned, where that is quicker. Places
     /// that are `shared` by leaves are evaluated once, where that takes long. An infinite factor:

@@ -25,7 +25,7 @@ public:
     std::size_t size() const { return sources_.size(); }
     const Point& position(std::size_t source) const { return sources_[source].position; }
 
-    /// How far the metric is beyond the cone where that is smallest in the box: a lower bound of
+    /// How far the metric is beyond the cone where that is smallest in the box: an estimate of
     /// the departure from the field; nothing if it is far below the target.
     Departure at_nearest_place(std::size_t source, const Box& box, const MetricAt& metric_at) const;
 
