@@ -139,8 +139,15 @@ bool IsotropicCones::is_dominated(const IsotropicCone& cone) const {
         if (slope <= cone.slope) return true;
         return at_cone + slope * (cap_ - cone.length) / cone.slope <= cap_ - margin;
     };
-    return !tree_.search([&] { return below; },
-                         [&](const Node& node) { return lower_bounds(node, cone.position); },
+    // Steeper sources that all rise above the cap, or too near to it, are passed over together.
+    const double reach = (cap_ - cone.length) / cone.slope;
+    const auto bounds = [&](const Node& node) -> Lanes {
+        const Lanes least = lower_bounds(node, cone.position);
+        const auto rise_above =
+            node.slope > cone.slope && least + node.slope * reach > cap_ - margin;
+        return rise_above.select(Lanes::Constant(infinity), least);
+    };
+    return !tree_.search([&] { return below; }, bounds,
                          [&](std::uint32_t number) {
                              const Leaf& leaf = tree_.leaf(number);
                              const LanesOf<leaf_size> roughly = leaf.lengths_at(cone.position);
