@@ -67,8 +67,8 @@ def model(rows):
     received = four["received"] * (own / four_own) ** 0.5
     seconds_per_leaf = four["cpu_s"] / (four["leaves"] / 4)
     build = seconds_per_leaf * leaves / cores
-    octants = 128 * cores
-    # A search of a millionth of a second for each of 64 bounds of each octant, none of it shared.
+    octants = four["octants"] / 4 * cores
+    # Each rank searches its sources for each of 64 bounds of every octant.
     bounds = 1e-7 * 64 * octants
     octant_pairs = 1e-8 * octants * octants / cores
     reduced = octants * 64 * 8 * 2 / bandwidth
@@ -76,7 +76,7 @@ def model(rows):
     total = build + bounds + octant_pairs + reduced + sent
     return {"sources": sources, "leaves": leaves, "cores": cores, "build_s": build, "bounds_s": bounds,
             "octant_pairs_s": octant_pairs, "reduce_s": reduced, "exchange_s": sent, "total_s": total,
-            "received_per_rank": received, "seconds_per_leaf": seconds_per_leaf}
+            "octants_per_rank": octants / cores, "received_per_rank": received, "seconds_per_leaf": seconds_per_leaf}
 
 
 def main():
@@ -94,6 +94,10 @@ def main():
                         continue
                     rows.append(row(kind, law, ranks, n, run(ranks, path, options)))
                     print(rows[-1], flush=True)
+    write_results(rows)
+
+
+def write_results(rows):
     predicted = model(rows)
     with open(os.path.join(folder, "scaling.json"), "w", encoding="utf-8") as file:
         json.dump({"rows": rows, "model": predicted}, file, indent=1)
@@ -124,7 +128,7 @@ Weak scaling:
 | part | s | assumption |
 |---|---:|---|
 | build | {p['build_s']:.1f} | {p['seconds_per_leaf'] * 1e6:.2f} µs a leaf as on 4 ranks here, exchange included |
-| bounds | {p['bounds_s']:.1f} | 128 octants a rank, 64 bounds each, 0.1 µs: most searches end at the root |
+| bounds | {p['bounds_s']:.1f} | {p['octants_per_rank']:.0f} octants a rank as here, 64 bounds each, 0.1 µs: most searches end at the root |
 | pairs of octants | {p['octant_pairs_s']:.1f} | 10 ns a pair, shared by the ranks |
 | sums over all ranks | {p['reduce_s']:.1f} | 8 bytes a bound, twice, at 1 GB/s |
 | exchange | {p['exchange_s']:.2f} | {p['received_per_rank']:.0f} sources received, as the border of a surface grows; 1 GB/s, 10 µs a message |
@@ -134,4 +138,5 @@ slower when all ranks send at once. None of it was run on such a machine.
 """)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -213,7 +213,9 @@ int run(Ranks& ranks, int argc, const char* const* argv) {
         if (commands[i].run != print_checksum) {
             options.add({"-o,--output", "FILE", "File to write"}, job.output);
         }
-        options.add({"--octants", "N", "Octants per rank in which sources are shared out"},
+        options.add({"--octants", "N",
+                     "Octants with more sources than the mean of N a rank are cut further, to "
+                     "share them out"},
                     job.octants);
         add_making_options(options, job);
     }

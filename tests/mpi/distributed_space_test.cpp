@@ -20,7 +20,7 @@ using namespace controlspace;
 
 namespace {
 
-constexpr std::size_t places = 20000;
+constexpr std::size_t places = 5000;
 constexpr std::uint64_t seed = 7;
 
 struct World {
@@ -60,14 +60,14 @@ std::vector<Scene> scenes() {
     const Box cube{Point::Constant(-1), Point::Constant(1)};
     std::vector<Scene> all;
     Scene sphere{"sphere", cube, {}};
-    for (int i = 0; i < 4000; ++i) {
+    for (int i = 0; i < 1200; ++i) {
         const Vector v = in(cube);
         const Point x = 0.8 * v.normalized();
         sphere.sources.push_back(at(x, 0.03 + 0.02 * x.z()));
     }
     all.push_back(sphere);
     Scene mixed{"lengths from 0.001 to 0.5", {Point(1, 2, 3), Point(3, 4, 5)}, {}};
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 800; ++i) {
         mixed.sources.push_back(at(in(mixed.domain), 0.001 * std::pow(500.0, fraction())));
     }
     all.push_back(mixed);
@@ -78,14 +78,14 @@ std::vector<Scene> scenes() {
     }
     all.push_back(steep);
     Scene oblong{"oblong", {Point(-4, 0, 10), Point(4, 2, 11)}, {}};
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 800; ++i) {
         Point x = in(oblong.domain);
         x.y() = 1 + 0.3 * std::sin(x.x());
         oblong.sources.push_back(at(x, 0.05));
     }
     all.push_back(oblong);
     Scene flat{"flat", {Point(0, 0, 0), Point(2, 1, 0)}, {}};
-    for (int i = 0; i < 2000; ++i) {
+    for (int i = 0; i < 600; ++i) {
         flat.sources.push_back(at(Point(fraction() * 2, 0.5, 0), 0.004 + 0.01 * fraction()));
     }
     all.push_back(flat);
@@ -96,7 +96,7 @@ std::vector<Scene> scenes() {
     all.push_back({"one source", cube, {at(Point(0.3, 0.2, 0.1), 0.01)}});
     // On the planes between octants, many at one place, and some dominated.
     Scene lattice{"lattice", cube, {}};
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 800; ++i) {
         const auto step = [&] { return -1 + std::floor(fraction() * 33) / 16; };
         lattice.sources.push_back(at(Point(step(), step(), step()), i % 5 == 0 ? 0.01 : 0.125));
     }
@@ -161,7 +161,7 @@ TEST_CASE("ranks answer as one does: inserted and graded") {
 TEST_CASE("ranks answer as one does: adapted") {
     for (const Scene& scene : scenes()) {
         DistributedOptions options = options_for(scene);
-        options.target = 0.2;
+        options.target = 0.4;
         check_equal(scene, options);
         options.structure = "K_oV";
         check_equal(scene, options);
@@ -174,7 +174,7 @@ TEST_CASE("the number of octants does not change an answer") {
         DistributedOptions options = options_for(scene);
         options.octants_per_rank = octants;
         check_equal(scene, options);
-        options.target = 0.3;
+        options.target = 0.5;
         check_equal(scene, options);
     }
 }
@@ -190,10 +190,11 @@ TEST_CASE("ranks share octants and sources out") {
     CHECK(report.octants == space.octants().size());
     const double own = static_cast<double>(report.owned);
     const double mean = static_cast<double>(scene.sources.size()) / world.size;
-    CHECK(own > 0.7 * mean);
-    CHECK(own < 1.3 * mean);
+    CHECK(own > 0.5 * mean);
+    CHECK(own < 1.6 * mean);
     // A rank gets a part of the others' sources alone.
     if (world.size > 1) CHECK(report.received < scene.sources.size() / 2);
+    CHECK(report.octants_of_all < 2000 * static_cast<std::uint64_t>(world.size));
     if (world.size == 1) CHECK(report.bytes_sent == 0);
     for (const Box& box : space.octants()) CHECK(space.owner_of(box.centre()) == world.rank);
 }
@@ -203,7 +204,7 @@ TEST_CASE("a rank gets the field of a box of its own") {
     for (const bool is_adapted : {false, true}) {
         const Scene scene = scenes()[1];
         DistributedOptions options = options_for(scene);
-        if (is_adapted) options.target = 0.2;
+        if (is_adapted) options.target = 0.4;
         const auto whole = serial(scene, options);
         const DistributedSpace space(
             MPI_COMM_WORLD, share(scene.sources, world.rank, world.rank + 1, world.size), options);

@@ -19,10 +19,11 @@
 namespace controlspace {
 
 struct DistributedOptions {
-    std::string structure = "K_oL";        ///< K_oL, or, adapted, K_oV
-    SpaceOptions space = {};               ///< the domain, and how the tree is made
-    std::optional<double> target = {};     ///< δ that it is adapted to; none: inserted and graded
-    std::uint64_t octants_per_rank = 128;  ///< in which sources are shared out, about
+    std::string structure = "K_oL";     ///< K_oL, or, adapted, K_oV
+    SpaceOptions space = {};            ///< the domain, and how the tree is made
+    std::optional<double> target = {};  ///< δ that it is adapted to; none: inserted and graded
+    /// Octants with more sources than the mean of so many a rank are cut further, if the tree is.
+    std::uint64_t octants_per_rank = 128;
 };
 
 /// What one rank held and sent.
