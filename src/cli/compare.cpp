@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -13,6 +14,7 @@
 
 #include "cli/command.h"
 #include "cli/filled_space.h"
+#include "cli/folder_lock.h"
 #include "cli/formats.h"
 #include "cli/input_study.h"
 #include "cli/options.h"
@@ -110,13 +112,19 @@ int run(const Compare& job, const std::string& command_line) {
     const bool resumes = !job.resume.empty();
     Provenance provenance = current_provenance();
     provenance.command_line = command_line;
+    const std::filesystem::path path = resumes ? job.resume : results_path(study, provenance);
+    std::optional<FolderLock> lock;
     std::vector<Row> earlier;
-    if (resumes) std::tie(provenance, earlier) = go_on_from(job.resume, study, rows, provenance);
+    if (resumes) {
+        lock.emplace(path, /*make=*/false);
+        std::tie(provenance, earlier) = go_on_from(path, study, rows, provenance);
+    }
     PreparedStudy prepared(study, rows, file_readers(), earlier.size());
 
-    ResultsFolder folder =
-        resumes ? ResultsFolder(job.resume, provenance, study, rows, std::move(earlier))
-                : ResultsFolder(results_path(study, provenance), provenance, study, rows);
+    if (!resumes) lock.emplace(path, /*make=*/true);
+    ResultsFolder folder = resumes
+                               ? ResultsFolder(path, provenance, study, rows, std::move(earlier))
+                               : ResultsFolder(path, provenance, study, rows);
     const std::size_t all = folder.rows().size() + prepared.cases().size();
     Progress progress(prepared.cases(), prepared.source_counts(),
                       job.quiet ? ProgressStyle::none : progress_style_of_stderr());

@@ -31,6 +31,7 @@ MeshFolder::MeshFolder(const Study& study, MeshSettings settings, const std::str
 }
 
 void MeshFolder::begin() {
+    lock_.emplace(path_, /*make=*/true);
     make_results_folder(path_, results_file);
     record(false);
 }

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/folder_lock.h"
 #include "cli/signals.h"
 #include "controlspace/geometry/box.h"
 #include "controlspace/space/control_space.h"
@@ -47,6 +49,7 @@ private:
     Interruption& interruption_;
     Provenance provenance_;
     std::filesystem::path path_;
+    std::optional<FolderLock> lock_;
     std::vector<MeshRow> rows_;
 };
 

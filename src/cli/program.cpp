@@ -7,11 +7,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <deque>
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/command.h"
@@ -153,6 +156,13 @@ int run_program(int argc, const char* const* argv) {
     } catch (const std::bad_alloc&) {
         return fail(1, "out of memory: give fewer sources, or lower --max-memory");
     } catch (const std::exception& error) {
+        // TBB has no error of its own for it.
+        if (std::string_view(error.what()).ends_with(std::strerror(EAGAIN))) {
+            return fail(
+                1,
+                "too little memory to start a thread: raise the limit of memory (ulimit -v) "
+                "or of processes (ulimit -u)");
+        }
         return fail(1, fmt::format("unexpected: {}", error.what()));
     }
 }

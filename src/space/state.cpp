@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "controlspace/error.h"
+#include "controlspace/sources/point_source.h"
 #include "geometry/threads.h"
 
 namespace controlspace {
@@ -187,7 +188,7 @@ void StateReader::decompress(std::string_view name, const Array& array,
 
 void require_metrics(const StateReader& state, std::string_view name,
                      const std::vector<Metric>& metrics) {
-    state.require(all_are(metrics, is_positive_definite), name, "holds what is no metric");
+    state.require(all_are(metrics, is_source_metric), name, "holds what is no metric");
 }
 
 }  // namespace controlspace

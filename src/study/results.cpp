@@ -60,14 +60,15 @@ std::string json_tail(bool complete, std::span<const Outcome> outcomes = {}) {
     for (const Outcome& outcome : outcomes) {
         lines.append(lines.empty() ? "\n  " : ",\n  ").append(dump(to_json(outcome)));
     }
-    return fmt::format("\n ],\n \"outcomes\": [{}],\n \"complete\": {}\n}}\n", lines, complete);
+    return fmt::format("{},\n \"outcomes\": [{}],\n \"complete\": {}\n}}\n", rows_end, lines,
+                       complete);
 }
 
 std::string json_text(const Provenance& provenance, const Study& study, const StudyRows& rows,
                       std::span<const Row> written) {
     std::string text = dump(head_json(provenance, study, rows), 1);
     text.erase(text.rfind("\n}"));
-    text += ",\n \"rows\": [";
+    text.append(",").append(rows_begin);
     for (const Row& row : written) text += json_line(row, rows, &row == &written.front());
     return text;
 }

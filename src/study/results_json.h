@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "controlspace/study/measure.h"
 #include "controlspace/study/provenance.h"
@@ -11,6 +12,10 @@
 namespace controlspace {
 
 using Json = nlohmann::ordered_json;
+
+// Of results.json, in which each row is a line.
+inline constexpr std::string_view rows_begin = "\n \"rows\": [", row_begin = "\n  {",
+                                  rows_end = "\n ]";
 
 /// Null where there is no value.
 Json to_json(const MeasuredValue& value);

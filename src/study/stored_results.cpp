@@ -31,6 +31,28 @@ StoredResults results_from(const Json& json, const StudyRows& rows) {
     return results;
 }
 
+/// The text up to the end of the last row that is whole, closed as that of an interrupted run: the
+/// program may have been killed while it wrote. As it is where no row has begun.
+std::string without_torn_end(std::string text) {
+    const std::size_t rows = text.find(rows_begin);
+    if (rows == std::string::npos) return text;
+    const std::size_t first = rows + rows_begin.size();
+    std::size_t end = text.find(rows_end, first);
+    if (end == std::string::npos) end = text.rfind(row_begin);
+    if (end == std::string::npos || end < first) return text;
+    text.resize(end);
+    if (text.back() == ',') text.pop_back();
+    return text.append(rows_end).append(",\n \"complete\": false\n}\n");
+}
+
+Json parsed(const std::string& text) {
+    try {
+        return Json::parse(text);
+    } catch (const Json::parse_error&) {
+        return Json::parse(without_torn_end(text));
+    }
+}
+
 /// Whether `row` is the outcome of `c`, whose voxels may have been chosen by the study itself.
 bool is_outcome_of(const Row& row, Case c) {
     if (c.equal_delta || c.equal_memory) {
@@ -68,7 +90,7 @@ StoredResults read_results(const std::filesystem::path& folder, const StudyRows&
     const auto file = folder / "results.json";
     const std::string text = read_text_file(file);
     try {
-        return results_from(Json::parse(text), rows);
+        return results_from(parsed(text), rows);
     } catch (const std::exception& error) {
         throw InputError(fmt::format("{}: {}", file.string(), error.what()));
     }

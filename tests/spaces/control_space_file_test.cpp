@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/fields/formula_field.h"
@@ -170,6 +172,27 @@ TEST_CASE("an array that is said to be huge is refused before memory is requeste
     put(forged, count, std::uint64_t{1} << 40);
     sign(forged);
     CHECK_THAT(loading_error(scratch, forged), Contains("nodes.field has a chunk"));
+}
+
+TEST_CASE("numbers of a forged file from which no metrics could follow are refused") {
+    const ScratchDirectory scratch("ctrl");
+    const std::string bytes = saved(scratch, "K_LA");
+    const auto refuse = [&](const std::string& array, double before, double forged_number) {
+        // Kind and sizes of the array, size of the chunk, and the head of Blosc's buffer.
+        const std::size_t at = bytes.find(array) + array.size() + 4 + 4 + 8 + 4 + 16;
+        double number = 0;
+        std::memcpy(&number, bytes.data() + at, sizeof number);
+        REQUIRE(number == before);
+        std::string forged = bytes;
+        put(forged, at, forged_number);
+        sign(forged);
+        CAPTURE(array, forged_number);
+        CHECK_THAT(loading_error(scratch, forged), Contains("changed.ctrl: its " + array));
+    };
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double ratio : {-3.0, 0.5, nan, HUGE_VAL}) refuse("anchors.ratio", 1.25, ratio);
+    for (const double x : {nan, -HUGE_VAL, 1e300}) refuse("sources.positions", 0.3, x);
+    for (const double h : {nan, -1.0, 0.0, 1e300}) refuse("anchors.largest", std::sqrt(3), h);
 }
 
 TEST_CASE("intersections without an order are answered by a loaded tree as by the saved one") {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -78,6 +79,40 @@ TEST_CASE("what was written is read back") {
     }
     write(folder.path(), read.provenance, read.study, read.rows, false);
     CHECK(file_text(folder.path() / "results.json") == text);
+}
+
+TEST_CASE("of results that were torn the whole rows are read") {
+    const ScratchDirectory folder;
+    const Study study;
+    auto rows = some_rows();
+    for (Row& row : rows) row.setting.sources = study.sources;
+    write(folder.path(), current_provenance(), study, rows, true);
+    const std::string text = file_text(folder.path() / "results.json");
+    const std::size_t begin = text.find("\n \"rows\": [");
+    // Where each row is whole.
+    std::vector<std::size_t> ends;
+    for (std::size_t end = begin; ends.size() < rows.size();) {
+        const std::size_t next = text.find("\n  {", end);
+        end = text.find('\n', next + 1);
+        ends.push_back(end - (text[end - 1] == ',' ? 1 : 0));
+    }
+    for (std::size_t size = text.find("\n  {", begin) + 4; size + 2 < text.size(); size += 41) {
+        folder.file("results.json", text.substr(0, size));
+        const StoredResults read = read_results(folder.path(), rows_of_trees);
+        CAPTURE(size, text.size());
+        CHECK_FALSE(read.complete);
+        // The last row counts as soon as the next begins.
+        const auto whole = std::ranges::count_if(ends, [&](std::size_t e) { return e <= size; });
+        CHECK(static_cast<std::ptrdiff_t>(read.rows.size()) <= whole);
+        CHECK(static_cast<std::ptrdiff_t>(read.rows.size()) >= whole - 1);
+        for (std::size_t i = 0; i < read.rows.size(); ++i) {
+            CHECK(to_json(read.rows[i], rows_of_trees) == to_json(rows[i], rows_of_trees));
+        }
+    }
+    // Of a row that was written over the end before it.
+    folder.file("results.json",
+                text.substr(0, ends[0]) + ",\n  {\"structure\": \"K_" + "omplete\": false\n}\n");
+    CHECK(read_results(folder.path(), rows_of_trees).rows.size() == 1);
 }
 
 TEST_CASE("what is no file of results is refused by name") {

@@ -1,5 +1,7 @@
 #include "trees/values/source_table.h"
 
+#include <algorithm>
+
 namespace controlspace {
 
 SourceIndex SourceTable::add(const PointSource& source) {
@@ -46,6 +48,8 @@ void SourceTable::load(const StateReader& state) {
     state("sources.positions", positions);
     state("sources.metric_of", metric_of);
     state("sources.metrics", metrics);
+    const auto is_place = [](const Point& x) { return std::ranges::all_of(x, is_coordinate); };
+    state.require(all_are(positions, is_place), "sources.positions", "holds what is no place");
     state.require(metric_of.size() == positions.size(), "sources.metric_of", "has another length");
     require_below(state, "sources.metric_of", metric_of, metrics.size());
     require_metrics(state, "sources.metrics", metrics);

@@ -24,7 +24,8 @@ struct StoredResults {
     bool complete = false;
 };
 
-/// Reads FOLDER/results.json. Throws InputError, naming the file and the row (from 1), for a file
+/// Reads FOLDER/results.json; of a file that was torn while the last row was written, the others.
+/// Throws InputError, naming the file and the row (from 1), for a file
 /// that is missing, damaged or of another schema, and for other parameters or measures than those
 /// of `rows`.
 StoredResults read_results(const std::filesystem::path& folder, const StudyRows& rows);
