@@ -1,8 +1,8 @@
 // Access time of a batch, on one thread: every structure on the paper's sphere, in several orders
-// of places, beside the limit: a gather of the same metrics by numbers known beforehand, or of
-// eight that are blended.
+// of places, beside that of lengths place by place, and the limit of a batch: a gather of the same
+// metrics by numbers known beforehand, or of eight that are blended.
 //
-// Names: access/STRUCTURE/WORK/ORDER and limit/STRUCTURE/WORK/ORDER. STRUCTURE is a row of the
+// Names: access/STRUCTURE/WORK/ORDER, and so with length and limit. STRUCTURE is a row of the
 // catalogue, -s_G with that split, -frozen and -floats in the forms that are only read, -fine a
 // grid whose voxels are as small as the octree's smallest leaf. Counters: bytes for a leaf (for a
 // cell of a grid). One WORK at a time (--benchmark_filter) keeps memory low.
@@ -185,6 +185,13 @@ void access(benchmark::State& state, const ControlSpace& space, const std::vecto
     state.counters["auxiliary"] = static_cast<double>(f.bytes_auxiliary) / each;
 }
 
+void length(benchmark::State& state, const ControlSpace& space, const std::vector<Point>& x) {
+    for (auto _ : state) {
+        for (const Point& p : x) benchmark::DoNotOptimize(space.length_at(p));
+    }
+    count_queries(state, x.size());
+}
+
 void limit(benchmark::State& state, const std::vector<Metric>& metrics, const Governing& found) {
     if (!found.one.empty()) {
         time_batch(state, found.one.size(), [&](std::vector<Metric>& out) {
@@ -211,6 +218,10 @@ void add(const Work& work) {
             benchmark::RegisterBenchmark(("access/" + name).c_str(), [=](benchmark::State& state) {
                 prepared->make();
                 access(state, prepared->space(id), prepared->places_in(order));
+            });
+            benchmark::RegisterBenchmark(("length/" + name).c_str(), [=](benchmark::State& state) {
+                prepared->make();
+                length(state, prepared->space(id), prepared->places_in(order));
             });
             if (!row.has_limit) continue;
             benchmark::RegisterBenchmark(("limit/" + name).c_str(), [=](benchmark::State& state) {

@@ -68,8 +68,7 @@ double size_at(const cspace* handle, const Point& p) noexcept {
     if (handle == nullptr || !handle->space) return none;
     if (std::isnan(p.x()) || std::isnan(p.y()) || std::isnan(p.z())) return none;
     try {
-        const Metric m = sample_at(*handle->space, p);
-        return is_isotropic(m) ? m.xx : eigen_frame(m).lengths[0];
+        return handle->space->length_at(p);
     } catch (...) {
         return none;
     }

@@ -21,7 +21,7 @@ int main() {
     // Gmsh makes edges longer than its size field: 0.77 times the length compensates. From 4.9 on a
     // sixth argument holds the other sizes; there are none here. Several threads may call this.
     gmsh::model::mesh::setSizeCallback([&](int, int, double x, double y, double z, auto...) {
-        return 0.77 * sample_at(*space, {x, y, z}).xx;
+        return 0.77 * space->length_at({x, y, z});
     });
     gmsh::model::mesh::generate(3);
     gmsh::write("mesh.msh");

@@ -16,10 +16,6 @@ double smallest_length(const Metric& m) {
 }  // namespace
 
 void ControlSpace::sample_lengths(std::span<const Point> x, std::span<double> out) const {
-    if (x.size() == 1) {  // as meshers ask: no array to clear
-        out[0] = smallest_length(sample_at(*this, x[0]));
-        return;
-    }
     std::array<Metric, 128> metrics;
     for (std::size_t first = 0; first < x.size(); first += metrics.size()) {
         const std::size_t n = std::min(metrics.size(), x.size() - first);
@@ -28,13 +24,15 @@ void ControlSpace::sample_lengths(std::span<const Point> x, std::span<double> ou
     }
 }
 
-std::optional<Box> ControlSpace::cell_at(const Point&) const { return std::nullopt; }
-
-Metric sample_at(const ControlSpace& space, const Point& x) {
+Metric ControlSpace::metric_at(const Point& x) const {
     Metric m;
-    space.sample({&x, 1}, {&m, 1});
+    sample({&x, 1}, {&m, 1});
     return m;
 }
+
+double ControlSpace::length_at(const Point& x) const { return smallest_length(metric_at(x)); }
+
+std::optional<Box> ControlSpace::cell_at(const Point&) const { return std::nullopt; }
 
 std::optional<ControlNodes> control_nodes(const ControlSpace& space, Neighbourhood neighbourhood) {
     const auto* nodes = dynamic_cast<const HasControlNodes*>(&space);

@@ -87,7 +87,10 @@ CASE_OF_EACH(tree, trees(),
                 std::vector<double> lengths(x.size());
                 form->sample_lengths(x, lengths);
                 const std::vector<Metric> metrics = answers(*form, x);
-                for (std::size_t i = 0; i < x.size(); ++i) REQUIRE(lengths[i] == metrics[i].xx);
+                for (std::size_t i = 0; i < x.size(); ++i) {
+                    REQUIRE(lengths[i] == metrics[i].xx);
+                    REQUIRE(lengths[i] == form->length_at(x[i]));
+                }
             }
         }
         double most = 0;
@@ -99,6 +102,9 @@ CASE_OF_EACH(tree, trees(),
             const Metric& b = expected[i];
             most = std::max({most, apart(a.xx, b.xx), apart(a.yy, b.yy), apart(a.zz, b.zz),
                              apart(a.xy, b.xy), apart(a.xz, b.xz), apart(a.yz, b.yz)});
+            REQUIRE(space->built().metric_at(x[i]) == expected[i]);
+            REQUIRE(doubles->metric_at(x[i]) == expected[i]);
+            REQUIRE(floats->metric_at(x[i]) == rounded[i]);
             REQUIRE(doubles->cell_at(x[i]).value() == space->cell_at(x[i]).value());
             REQUIRE(floats->cell_at(x[i]).value() == space->cell_at(x[i]).value());
         }
@@ -153,6 +159,19 @@ CASE_OF_EACH(tree, trees(),
               footprint.control_nodes * static_cast<std::size_t>(numbers) *
                   (precision == Precision::floats ? sizeof(float) : sizeof(double)));
         CHECK(footprint.bytes_auxiliary <= full.bytes_auxiliary);
+    }
+}
+
+TEST_CASE("lengths in floats take few bytes a leaf, beside the lookup grid") {
+    const std::vector<PointSource> sources = sphere(1);
+    const std::pair<const char*, double> most[] = {
+        {"K_L", 21}, {"K_oL", 14}, {"K_V", 68}, {"K_oV", 61}};
+    for (const auto& [id, bytes] : most) {
+        CAPTURE(id);
+        const TreeUnderTest tree{find_entry(tree_catalogue(), id), SplitRule::middle};
+        const Footprint f = tree.graded(sources)->compact(Precision::floats)->footprint();
+        CHECK(static_cast<double>(f.bytes_payload + f.bytes_topology) <=
+              bytes * static_cast<double>(f.cells));
     }
 }
 

@@ -31,7 +31,9 @@ public:
         : planes_(std::move(planes)), metrics_(std::move(metrics)) {}
 
     void prefetch(LeafIndex leaf) const { __builtin_prefetch(&leaves_[leaf]); }
-    Box box(LeafIndex leaf) const { return leaves_[leaf].faces.box(planes_); }
+    [[gnu::always_inline]] Box box(LeafIndex leaf) const {
+        return leaves_[leaf].faces.box(planes_);
+    }
     void describe(Footprint& footprint) const {
         footprint.control_nodes = metrics_.size();
         footprint.bytes_payload = metrics_.capacity() * sizeof(M);

@@ -41,23 +41,6 @@ CellSteps::CellSteps(const std::array<Axis, 3>& axes)
 CONTROLSPACE_VECTOR_CLONES
 void CellSteps::find(std::span<const Point> x, std::span<int> cells) const {
     static_assert(sizeof(Point) == 3 * sizeof(double));
-    const unsigned fraction = (1u << fraction_bits_) - 1;
-    const auto cell_at = [&](unsigned sx, unsigned sy, unsigned sz) {
-        const unsigned near =
-            std::min(std::min((sx + 1) & fraction, (sy + 1) & fraction), (sz + 1) & fraction);
-        const unsigned cell =
-            sx >> fraction_bits_ | sy >> fraction_bits_ << across_ | sz >> fraction_bits_ << up_;
-        return near > 1 ? static_cast<int>(cell) : -1;
-    };
-    if (x.size() == 1) {  // no lanes to fill
-        const auto step = [&](std::size_t a) {
-            double s = (x[0].data()[a] - low_[a]) * per_length_[a];
-            s = s > 0 ? s : 0;
-            return static_cast<unsigned>(s < most_[a] ? s : most_[a]);
-        };
-        cells[0] = cell_at(step(0), step(1), step(2));
-        return;
-    }
     constexpr std::size_t places = 128;
     constexpr std::size_t lanes = 12;  // four places, which fill vectors of any length
     std::array<double, lanes> low, per_length, most;

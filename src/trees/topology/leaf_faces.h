@@ -61,7 +61,7 @@ struct Faces {
     std::array<Number, 3> low{};
     std::array<Number, 3> high{};
 
-    Box box(const CutPlanes& planes) const {
+    [[gnu::always_inline]] Box box(const CutPlanes& planes) const {
         return {{planes.at(0, low[0]), planes.at(1, low[1]), planes.at(2, low[2])},
                 {planes.at(0, high[0]), planes.at(1, high[1]), planes.at(2, high[2])}};
     }

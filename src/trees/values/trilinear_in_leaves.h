@@ -13,6 +13,15 @@
 
 namespace controlspace {
 
+/// Where `x`, or the nearest place between, is from `low` to `high`: 0 to 1, and 0 in a flat box.
+[[gnu::always_inline]] inline double fraction_between(double low, double high, double x) {
+    constexpr double least = std::numeric_limits<double>::min();
+    x = x > low ? x : low;
+    x = x < high ? x : high;
+    const double edge = high - low;
+    return (x - low) / (edge > least ? edge : least);
+}
+
 /// The weights of the corners of some boxes, for a place in each: `corner_weights` side by side, in
 /// vectors.
 template <std::size_t most>
@@ -29,17 +38,9 @@ public:
     }
     /// Of the first `count` boxes.
     void weigh(std::size_t count) {
-        constexpr double least = std::numeric_limits<double>::min();
         for (std::size_t a = 0; a < 3; ++a) {
             for (std::size_t i = 0; i < count; ++i) {
-                const double low = low_[a][i];
-                const double high = high_[a][i];
-                double x = place_[a][i];
-                x = x > low ? x : low;
-                x = x < high ? x : high;
-                // Of a flat box 0, by the smallest divisor.
-                const double edge = high - low;
-                place_[a][i] = (x - low) / (edge > least ? edge : least);
+                place_[a][i] = fraction_between(low_[a][i], high_[a][i], place_[a][i]);
             }
         }
         for (std::size_t i = 0; i < count; ++i) {
@@ -63,6 +64,24 @@ private:
     std::array<Numbers, 3> low_, high_, place_;
     std::array<Numbers, 8> weights_;
 };
+
+/// The metric at `x`, or the length where all are known to be isotropic, trilinear between the
+/// corners of the leaf that holds it; `values` as below.
+template <class Value, class Values>
+Value trilinear_in_leaf(const Values& values, LeafIndex leaf, const Point& x) {
+    const Corners& corners = values.corners(leaf);
+    const auto metrics = values.metrics();
+    const Box box = values.box(leaf);
+    std::array<std::array<double, 2>, 3> sides;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const auto axis = static_cast<Axis>(a);
+        const double high = fraction_between(box.low[axis], box.high[axis], x[axis]);
+        sides[a] = {1 - high, high};
+    }
+    return blend<Value>(
+        8, [&](std::size_t c) { return sides[0][c & 1] * sides[1][c >> 1 & 1] * sides[2][c >> 2]; },
+        [&](std::size_t c) -> auto& { return metrics[corners[c]]; });
+}
 
 /// Metrics at `x`, or lengths where all are known to be isotropic, trilinear between the corners of
 /// the leaves that hold them, for some places at a time, so that metrics are prefetched while
@@ -94,11 +113,13 @@ void trilinear_in_leaves(const Values& values, std::span<const LeafIndex> leaves
 }
 
 template <class Values, class Value>
-void trilinear_in_leaves(const Values& values, std::span<const LeafIndex> leaves,
-                         std::span<const Point> x, std::span<Value> out) {
+[[gnu::always_inline]] inline void trilinear_in_leaves(const Values& values,
+                                                       std::span<const LeafIndex> leaves,
+                                                       std::span<const Point> x,
+                                                       std::span<Value> out) {
     constexpr std::size_t most = 32;  // what they read fits into the nearest cache
     if (x.size() == 1) {
-        trilinear_in_leaves<1>(values, leaves, x, out);
+        out[0] = trilinear_in_leaf<Value>(values, leaves[0], x[0]);
     } else {
         trilinear_in_leaves<most>(values, leaves, x, out);
     }

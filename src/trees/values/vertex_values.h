@@ -47,7 +47,7 @@ public:
         __builtin_prefetch(&positions_[corners_[leaf].front()]);
         __builtin_prefetch(&positions_[corners_[leaf].back()]);
     }
-    Box box(LeafIndex leaf) const {
+    [[gnu::always_inline]] Box box(LeafIndex leaf) const {
         return {positions_[corners_[leaf].front()], positions_[corners_[leaf].back()]};
     }
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new);

@@ -20,8 +20,8 @@ std::uint64_t checksum(std::span<const Metric> metrics);
 /// Throws InputError where there is no sample.
 double quartile(std::vector<double> samples, int number);
 
-/// How places are passed to a structure: all in one call of `sample`, or one in each, as meshers
-/// do.
+/// How places are passed to a structure: all in one call of `sample`, or one in each of
+/// `metric_at`, as meshers do.
 enum class Calls { one, each };
 
 /// Raw samples of the access time t_a (paper §5.1), nanoseconds per query on one thread.
@@ -32,12 +32,12 @@ struct AccessTime {
     double median_ns() const { return quartile(samples_ns, 2); }
 };
 
-/// Times `sample` of several structures at the same points in turns, so that other load
-/// of the machine affects all of them alike. In each of the `repeats` rounds each structure answers
-/// all in one call untimed, which warms the caches, and then until `shortest_s` have passed, which
-/// gives one sample. The clock is read twice a run (about 50 ns), so the batch should have at least
-/// a thousand points. Throws std::logic_error if answers differ from the first ones, InputError for
-/// no points or no repeats.
+/// Times `sample`, or `metric_at` place by place, of several structures at the same points in
+/// turns, so that other load of the machine affects all of them alike. In each of the `repeats`
+/// rounds each structure answers all in one call untimed, which warms the caches, and then until
+/// `shortest_s` have passed, which gives one sample. The clock is read twice a run (about 50 ns),
+/// so the batch should have at least a thousand points. Throws std::logic_error if answers differ
+/// from the first ones, InputError for no points or no repeats.
 std::vector<AccessTime> access_times(std::span<const ControlSpace* const> spaces,
                                      std::span<const Point> points, int repeats,
                                      Calls calls = Calls::one, double shortest_s = 0.005);

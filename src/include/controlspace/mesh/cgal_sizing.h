@@ -1,7 +1,5 @@
 #pragma once
 
-#include <span>
-
 #include "controlspace/space/control_space.h"
 
 namespace controlspace {
@@ -27,10 +25,7 @@ public:
 
     template <class Point3, class Index>
     double operator()(const Point3& p, int /*dimension*/, const Index&) const {
-        const Point x(p.x(), p.y(), p.z());
-        double length = 0;
-        field_->sample_lengths(std::span(&x, 1), std::span(&length, 1));
-        return factor_ * length;
+        return factor_ * field_->length_at({p.x(), p.y(), p.z()});
     }
 
 private:

@@ -139,10 +139,6 @@ public:
         std::array<int, most_found> cells;
         std::array<std::uint8_t, most_found> going;
         jumps_.find(x, cells);
-        if (x.size() == 1) {  // as meshers ask
-            leaves[0] = leaf_in(jumps_.at(cells[0], x[0]), x[0]).index();
-            return;
-        }
         for (std::size_t i = 0; i < x.size(); ++i) leaves[i] = jumps_.at(cells[i], x[i]).bits();
         std::size_t left = 0;
         const auto go_on = [&](std::size_t i) {

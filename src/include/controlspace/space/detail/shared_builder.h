@@ -33,6 +33,19 @@ public:
         }
         ControlSpace::sample_lengths(x, out);
     }
+    Metric metric_at(const Point& x) const override {
+        if constexpr (requires { data_->length_at(x); }) {
+            if (has_lengths()) return Metric::isotropic(data_->length_at(x));
+        }
+        if constexpr (requires { data_->metric_at(x); }) return data_->metric_at(x);
+        return ControlSpace::metric_at(x);
+    }
+    double length_at(const Point& x) const override {
+        if constexpr (requires { data_->length_at(x); }) {
+            if (has_lengths()) return data_->length_at(x);
+        }
+        return ControlSpace::length_at(x);
+    }
     Box domain() const override { return data_->domain(); }
     Footprint footprint() const override {
         Footprint footprint = data_->footprint();
@@ -69,7 +82,8 @@ concept HoldsMetrics = requires(Data& data, std::span<const Metric> metrics) {
 };
 
 /// A builder around `Data`, which can be copied, read and changed: sample, domain, footprint,
-/// cell_at, control_nodes, save, and, with has_lengths(), sample_lengths; insert(sources),
+/// cell_at, control_nodes, save, for single places metric_at, and, with has_lengths(),
+/// sample_lengths and length_at; insert(sources),
 /// grade(options), adapt, load; for a NodeBuilder assign, options and grade(NodeGradation), and it
 /// may leave out adapt. With pack(precision) it has compact forms; finish() is called before it is
 /// built. With finished(shared data) it is built in another form than SharedSpace.

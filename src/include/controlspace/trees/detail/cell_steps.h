@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -28,8 +29,26 @@ public:
     /// Numbers of the cells that hold places; negative where a place is so close to a plane that it
     /// has to be compared with it. A place outside is taken for the nearest one inside.
     void find(std::span<const Point> x, std::span<int> cells) const;
+    /// The same for one place, which is not worth a call.
+    int find(const Point& x) const {
+        const auto steps = [&](std::size_t a) {
+            double s = (x.data()[a] - low_[a]) * per_length_[a];
+            s = s > 0 ? s : 0;
+            return static_cast<unsigned>(static_cast<int>(s < most_[a] ? s : most_[a]));
+        };
+        return cell_at(steps(0), steps(1), steps(2));
+    }
 
 private:
+    int cell_at(unsigned sx, unsigned sy, unsigned sz) const {
+        const unsigned fraction = (1u << fraction_bits_) - 1;
+        const unsigned near =
+            std::min(std::min((sx + 1) & fraction, (sy + 1) & fraction), (sz + 1) & fraction);
+        const unsigned cell =
+            sx >> fraction_bits_ | sy >> fraction_bits_ << across_ | sz >> fraction_bits_ << up_;
+        return near > 1 ? static_cast<int>(cell) : -1;
+    }
+
     std::array<double, 3> low_{}, per_length_{}, most_{};  // in steps
     int fraction_bits_ = 0;
     int across_ = 0;  // bits that number cells along x

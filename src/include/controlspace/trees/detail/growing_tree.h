@@ -33,6 +33,7 @@ public:
     void sample(std::span<const Point> x, std::span<Metric> out) const {
         sample_leaves(topology_, field_of(storage_), x, out);
     }
+    Metric metric_at(const Point& x) const { return value_at(topology_, field_of(storage_), x); }
     const Box& domain() const { return topology_.domain(); }
     const SpaceOptions& options() const { return options_; }
     Box cell_at(const Point& x) const { return topology_.locate(x).box; }

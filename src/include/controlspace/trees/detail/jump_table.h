@@ -67,14 +67,12 @@ public:
     }
 
     /// Where a descent to `x` may start.
-    const Ref& at(const Point& x) const {
-        return refs_[cell(axes_[0].find(x.x()), axes_[1].find(x.y()), axes_[2].find(x.z()))];
-    }
+    Ref at(const Point& x) const { return at(steps_.find(x), x); }
 
     /// Numbers of the cells that hold places, for `at`; see CellSteps::find.
     void find(std::span<const Point> x, std::span<int> cells) const { steps_.find(x, cells); }
     Ref at(int cell, const Point& x) const {
-        return cell >= 0 ? refs_[static_cast<std::size_t>(cell)] : at(x);
+        return refs_[cell >= 0 ? static_cast<std::size_t>(cell) : cell_by_planes(x)];
     }
 
     /// Enters `ref`, which stands for `box`, for all cells inside; or what is deeper down.
@@ -187,6 +185,9 @@ private:
         Range cells;
     };
 
+    std::size_t cell_by_planes(const Point& x) const {
+        return cell(axes_[0].find(x.x()), axes_[1].find(x.y()), axes_[2].find(x.z()));
+    }
     std::size_t cell(int i, int j, int k) const {
         const auto row = static_cast<std::size_t>(k) * static_cast<std::size_t>(axes_[1].count()) +
                          static_cast<std::size_t>(j);

@@ -72,6 +72,9 @@ public:
                         std::span<double> out) const requires AnswersLengths<Storage, Node> {
         sample_leaves(topology_, field_of(storage_), x, out);
     }
+    double length_at(const Point& x) const requires AnswersLengths<Storage, Node> {
+        return value_at<double>(topology_, field_of(storage_), x);
+    }
 
     std::unique_ptr<ControlSpace> pack(Precision precision) const {
         return pack_tree(topology_, storage_, precision);

@@ -105,6 +105,14 @@ public:
             ControlSpace::sample_lengths(x, out);
         }
     }
+    Metric metric_at(const Point& x) const override { return value_at(topology_, values_, x); }
+    double length_at(const Point& x) const override {
+        if constexpr (Values::are_lengths) {
+            return value_at<double>(topology_, values_, x);
+        } else {
+            return ControlSpace::length_at(x);
+        }
+    }
     ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
         return values_.control_nodes(topology_, neighbourhood);
     }

@@ -52,8 +52,20 @@ NodeField<Storage, Metric> requested_of(const Storage& storage) {
     return {storage, storage.metrics().requested_values()};
 }
 
-/// Metrics at `x`, or lengths where all are known to be isotropic: leaves are found for many points
-/// side by side, then read.
+/// The metric at one point, or the length where all are known to be isotropic, of a leaf if that is
+/// known.
+template <class Value = Metric, class Node, class Field>
+Value value_in(const Topology<Node>& tree, const Field& field, LeafIndex leaf, const Point& x) {
+    Value value;
+    field.values_in(tree, {&leaf, 1}, {&x, 1}, std::span(&value, 1));
+    return value;
+}
+template <class Value = Metric, class Node, class Field>
+Value value_at(const Topology<Node>& tree, const Field& field, const Point& x) {
+    return value_in<Value>(tree, field, tree.find(x), x);
+}
+
+/// The same at many points: leaves are found side by side, then read.
 template <class Node, class Field, class Value>
 void sample_leaves(const Topology<Node>& tree, const Field& field, std::span<const Point> x,
                    std::span<Value> out) {
@@ -67,18 +79,6 @@ void sample_leaves(const Topology<Node>& tree, const Field& field, std::span<con
         field.values_in(tree, std::span(leaves).first(part.size()), part,
                         out.subspan(first, part.size()));
     }
-}
-
-/// The metric at one point, of a leaf if that is known.
-template <class Node, class Field>
-Metric value_in(const Topology<Node>& tree, const Field& field, LeafIndex leaf, const Point& x) {
-    Metric m;
-    field.values_in(tree, {&leaf, 1}, {&x, 1}, std::span(&m, 1));
-    return m;
-}
-template <class Node, class Field>
-Metric value_at(const Topology<Node>& tree, const Field& field, const Point& x) {
-    return value_in(tree, field, tree.find(x), x);
 }
 
 }  // namespace controlspace
