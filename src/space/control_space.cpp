@@ -16,6 +16,10 @@ double smallest_length(const Metric& m) {
 }  // namespace
 
 void ControlSpace::sample_lengths(std::span<const Point> x, std::span<double> out) const {
+    if (x.size() == 1) {  // no array to clear
+        out[0] = smallest_length(metric_at(x[0]));
+        return;
+    }
     std::array<Metric, 128> metrics;
     for (std::size_t first = 0; first < x.size(); first += metrics.size()) {
         const std::size_t n = std::min(metrics.size(), x.size() - first);
