@@ -97,11 +97,13 @@ Action add_export(Options& options) {
     for (const auto add : {add_text_formats, add_size_formats, add_vdb_formats, add_vtk_formats}) {
         for (FieldFormat& format : add(options)) job->formats.push_back(std::move(format));
     }
-    options.add({"--samples", "COUNT",
-                 fmt::format("Samples along the longest edge (default: {} of a .vti, .npy or .nc, {} of others)",
-                             Slice{}.samples, grid_samples),
-                 samples_group},
-                job->samples);
+    options.add(
+        {"--samples", "COUNT",
+         fmt::format(
+             "Samples along the longest edge (default: {} of a .vti, .npy or .nc, {} of others)",
+             Slice{}.samples, grid_samples),
+         samples_group},
+        job->samples);
     add_filled_input(options, job->input);
     options.add(
         {"-o,--output", "FILE",

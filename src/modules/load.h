@@ -17,8 +17,8 @@ namespace controlspace {
 //
 // To add a function: a member of the table, its value in the module, and its call.
 
-/// Loads the module `name` ("openvdb", "vtk", "netcdf", "cgal", "gmsh") unless it is loaded already. Throws
-/// InputError where it is missing, of another version, or misses a library itself.
+/// Loads the module `name` ("openvdb", "vtk", "netcdf", "cgal", "gmsh") unless it is loaded
+/// already. Throws InputError where it is missing, of another version, or misses a library itself.
 void load_module(const std::string& name);
 
 /// Loads the module that structures of this name need, if any. Throws as load_module.
