@@ -7,6 +7,7 @@
 #include "controlspace/error.h"
 #include "controlspace/geometry/extent.h"
 #include "controlspace/gradation/grade.h"
+#include "controlspace/sources/point_source.h"
 #include "gradation/require_known.h"
 #include "space/depth_limits.h"
 
@@ -43,7 +44,10 @@ void require_valid(const SpaceOptions& options) {
     require_positive("l_min (tau)", options.l_min);
     require_positive("the insertion tolerance (epsilon)", options.tolerance);
     require_not_negative("voxel", options.voxel);
-    require_positive("h_max", options.h_max);
+    if (!is_length(options.h_max)) {
+        throw InputError(fmt::format("h_max is {}: give a value from {} to {}", options.h_max,
+                                     1 / largest_magnitude, largest_magnitude));
+    }
     require_not_negative("prune_delta", options.prune_delta);
     require_depth("the depth of kd-trees", options.kd_depth, deepest_kd_level);
     require_depth("the depth of octrees", options.octree_depth, deepest_octree_level);

@@ -21,7 +21,8 @@ namespace {
 constexpr std::size_t chunk_bytes = std::size_t{1} << 18;
 // LZ4 expands a byte to 255 at most: a chunk that claims more is forged.
 constexpr std::size_t largest_expansion = 256;
-constexpr std::size_t largest_element = 255;  // that Blosc can shuffle
+constexpr std::size_t blosc_type_size_at = 3;  // in the head of a buffer
+constexpr std::size_t largest_element = 255;   // that Blosc can shuffle
 
 template <class T>
 void append_value(std::string& bytes, T value) {
@@ -131,6 +132,8 @@ StateReader::StateReader(std::string_view bytes, std::string file) : file_(std::
             holds = take_value(bytes, stored) && take_bytes(bytes, stored, chunk) &&
                     blosc_cbuffer_validate(chunk.data(), chunk.size(), &size) == 0 &&
                     size == std::min<std::uint64_t>(left, step) * element_size &&
+                    // Blosc divides by it.
+                    static_cast<unsigned char>(chunk[blosc_type_size_at]) == element_size &&
                     size <= largest_expansion * chunk.size();
             require(holds, name, "has a chunk that is no buffer of Blosc's of its size");
             array.chunks.push_back(chunk);

@@ -66,7 +66,8 @@ std::optional<std::vector<Array>> unpacked(std::string_view bytes) {
         if (elements == 0) continue;
         std::size_t size = 0;
         if (!take(stored) || bytes.size() < stored ||
-            blosc_cbuffer_validate(bytes.data(), stored, &size) != 0 || size > 1 << 18) {
+            blosc_cbuffer_validate(bytes.data(), stored, &size) != 0 || size > 1 << 18 ||
+            bytes[3] == 0) {  // Blosc divides by the size of an element
             return std::nullopt;
         }
         array.data.resize(size);

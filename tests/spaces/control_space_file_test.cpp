@@ -193,6 +193,19 @@ TEST_CASE("numbers of a forged file from which no metrics could follow are refus
     for (const double ratio : {-3.0, 0.5, nan, HUGE_VAL}) refuse("anchors.ratio", 1.25, ratio);
     for (const double x : {nan, -HUGE_VAL, 1e300}) refuse("sources.positions", 0.3, x);
     for (const double h : {nan, -1.0, 0.0, 1e300}) refuse("anchors.largest", std::sqrt(3), h);
+    const auto h_max = [](double h) { return SpaceOptions{.domain = domain, .h_max = h}; };
+    for (const double h : {nan, 0.0, 5e-324, HUGE_VAL}) {
+        CHECK_THAT(error_of([&] { require_valid(h_max(h)); }), Contains("h_max is "));
+    }
+}
+
+TEST_CASE("a forged buffer of Blosc's with elements of no size is refused") {
+    const ScratchDirectory scratch("ctrl");
+    std::string forged = saved(scratch, "K_oL");
+    const std::size_t name = forged.find("nodes.field");
+    put(forged, name + 11 + 4 + 4 + 8 + 4 + 3, '\0');
+    sign(forged);
+    CHECK_THAT(loading_error(scratch, forged), Contains("nodes.field has a chunk"));
 }
 
 TEST_CASE("intersections without an order are answered by a loaded tree as by the saved one") {
