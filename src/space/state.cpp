@@ -21,8 +21,7 @@ namespace {
 constexpr std::size_t chunk_bytes = std::size_t{1} << 18;
 // LZ4 expands a byte to 255 at most: a chunk that claims more is forged.
 constexpr std::size_t largest_expansion = 256;
-constexpr std::size_t blosc_type_size_at = 3;  // in the head of a buffer
-constexpr std::size_t largest_element = 255;   // that Blosc can shuffle
+constexpr std::size_t largest_element = 255;  // that Blosc can shuffle
 
 template <class T>
 void append_value(std::string& bytes, T value) {
@@ -43,6 +42,14 @@ bool take_bytes(std::string_view& bytes, std::uint64_t count, std::string_view& 
     taken = bytes.substr(0, count);
     bytes.remove_prefix(count);
     return true;
+}
+
+// Whether Blosc's own sizes of an element and of a block, which it divides by and allocates without
+// a look at them, fit a buffer that decompresses to `size` bytes.
+bool has_sizes_of(std::string_view chunk, std::size_t element_size, std::size_t size) {
+    std::uint32_t block = 0;
+    std::memcpy(&block, chunk.data() + 8, sizeof block);
+    return static_cast<unsigned char>(chunk[3]) == element_size && block > 0 && block <= size;
 }
 
 std::size_t chunk_elements(std::size_t element_size) {
@@ -132,8 +139,7 @@ StateReader::StateReader(std::string_view bytes, std::string file) : file_(std::
             holds = take_value(bytes, stored) && take_bytes(bytes, stored, chunk) &&
                     blosc_cbuffer_validate(chunk.data(), chunk.size(), &size) == 0 &&
                     size == std::min<std::uint64_t>(left, step) * element_size &&
-                    // Blosc divides by it.
-                    static_cast<unsigned char>(chunk[blosc_type_size_at]) == element_size &&
+                    has_sizes_of(chunk, element_size, size) &&
                     size <= largest_expansion * chunk.size();
             require(holds, name, "has a chunk that is no buffer of Blosc's of its size");
             array.chunks.push_back(chunk);

@@ -28,7 +28,7 @@ Access<Study> length_or_none(Place place, double none = 0) {
     };
     access.get = [=](const Study& s) {
         const double x = std::invoke(place, s);
-        return x == none ? Values{} : Values{x};
+        return x == none ? Values{} : Values{Value(x)};
     };
     return access;
 }

@@ -65,10 +65,14 @@ std::optional<std::vector<Array>> unpacked(std::string_view bytes) {
         }
         if (elements == 0) continue;
         std::size_t size = 0;
+        std::uint32_t block = 0;
         if (!take(stored) || bytes.size() < stored ||
-            blosc_cbuffer_validate(bytes.data(), stored, &size) != 0 || size > 1 << 18 ||
-            bytes[3] == 0) {  // Blosc divides by the size of an element
+            blosc_cbuffer_validate(bytes.data(), stored, &size) != 0 || size > 1 << 18) {
             return std::nullopt;
+        }
+        std::memcpy(&block, bytes.data() + 8, sizeof block);
+        if (std::uint8_t(bytes[3]) != array.element_size || block == 0 || block > size) {
+            return std::nullopt;  // as state.cpp
         }
         array.data.resize(size);
         if (blosc_decompress_ctx(bytes.data(), array.data.data(), size, 1) < 0) return std::nullopt;

@@ -199,13 +199,18 @@ TEST_CASE("numbers of a forged file from which no metrics could follow are refus
     }
 }
 
-TEST_CASE("a forged buffer of Blosc's with elements of no size is refused") {
+TEST_CASE("forged buffers of Blosc's with elements or blocks of another size are refused") {
     const ScratchDirectory scratch("ctrl");
-    std::string forged = saved(scratch, "K_oL");
-    const std::size_t name = forged.find("nodes.field");
-    put(forged, name + 11 + 4 + 4 + 8 + 4 + 3, '\0');
-    sign(forged);
-    CHECK_THAT(loading_error(scratch, forged), Contains("nodes.field has a chunk"));
+    const std::string bytes = saved(scratch, "K_oL");
+    const std::size_t head = bytes.find("nodes.field") + 11 + 4 + 4 + 8 + 4;
+    const auto refuse = [&](std::size_t at, auto value) {
+        std::string forged = bytes;
+        put(forged, head + at, value);
+        sign(forged);
+        CHECK_THAT(loading_error(scratch, forged), Contains("nodes.field has a chunk"));
+    };
+    for (const char size : {'\0', '\1', '\xff'}) refuse(3, size);
+    for (const std::uint32_t size : {0u, ~0u, 0x7ffffff0u}) refuse(8, size);
 }
 
 TEST_CASE("intersections without an order are answered by a loaded tree as by the saved one") {

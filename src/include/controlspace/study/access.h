@@ -89,10 +89,10 @@ Access<Target> number(Place place, const Check& check = any_number, Zero zero = 
     access.get = [=](const Target& target) -> Values {
         const Stored& stored = std::invoke(place, target);
         if constexpr (detail::is_optional<Stored>) {
-            return stored ? Values{static_cast<double>(*stored)} : Values{};
+            return stored ? Values{Value(static_cast<double>(*stored))} : Values{};
         } else {
             const auto x = static_cast<double>(stored);
-            return zero == Zero::is_none && x == 0 ? Values{} : Values{x};
+            return zero == Zero::is_none && x == 0 ? Values{} : Values{Value(x)};
         }
     };
     return access;

@@ -9,7 +9,6 @@ namespace controlspace {
 /// A number or a text, as in an option or a study file.
 struct Value : std::variant<double, std::string> {
     using std::variant<double, std::string>::variant;
-    Value(double number) : variant(number) {}
     Value(int number) : variant(static_cast<double>(number)) {}
     Value(const char* text) : variant(std::string(text)) {}
 
