@@ -17,8 +17,8 @@
 #include "controlspace/gradation/law.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/measure/reference.h"
-#include "controlspace/mpi/distributed_space.h"
 #include "controlspace/space/catalogue.h"
+#include "mpi/distributed_space.h"
 #include "mpi/exchange.h"
 
 using namespace controlspace;

@@ -1,6 +1,6 @@
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
-#include "controlspace/mpi/distributed_space.h"
+#include "mpi/distributed_space.h"
 
 #include <fmt/format.h>
 

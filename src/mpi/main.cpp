@@ -25,8 +25,8 @@
 #include "cli/threads.h"
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
-#include "controlspace/mpi/distributed_space.h"
 #include "io/text/csv.h"
+#include "mpi/distributed_space.h"
 #include "mpi/exchange.h"
 #include "mpi/read_part.h"
 

@@ -2,7 +2,7 @@
 // one rank alone (REQUIRE), or the others would wait for it.
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
-#include "controlspace/mpi/distributed_space.h"
+#include "mpi/distributed_space.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
