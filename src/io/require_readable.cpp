@@ -24,7 +24,8 @@
 namespace controlspace {
 namespace {
 
-constexpr int readable = 0, refused = 1, failed = 2;
+/// How the child ends: other numbers than those of libraries and sanitizers.
+constexpr int readable = 0, refused = 90, failed = 91;
 
 /// Sanitizers reserve terabytes of addresses.
 constexpr bool limits_memory =
