@@ -113,13 +113,7 @@ bool IsotropicCones::cover(const Box& box, double tolerance, ConeCover& cover, H
         const Eigen::Index lane = lane_of(centre, smallest, hint);
         cover.choose(source_in(hint, lane), leaf[lane]);
     }
-    const auto bounds = [&](const Node& node) -> Lanes {
-        const Lanes reach = (node.half_thickness.square() + node.radius.square()).sqrt();
-        const auto covered = cover.covered(
-            node.distances(centre), node.length, node.slope,
-            [&](const Point& q) -> Lanes { return node.centre.distances(q) + reach; });
-        return covered.select(Lanes::Constant(never), Lanes::Zero());
-    };
+    const auto bounds = [&](const Node& node) { return node.uncovered(cover, centre); };
     const auto give_uncovered = [&](std::uint32_t number) {
         const Leaf& leaf = tree_.leaf(number);
         const auto covered = cover.covered(leaf);

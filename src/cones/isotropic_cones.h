@@ -88,6 +88,15 @@ private:
 
         /// From p to the cylinders, and so to all sources in them: lower bounds.
         Lanes distances(const Point& p) const;
+        /// Infinite where a cover around this place covers all sources of a child; else 0.
+        Lanes uncovered(const ConeCover& cover, const Point& around) const {
+            const Lanes reach = (half_thickness.square() + radius.square()).sqrt();
+            const auto covered =
+                cover.covered(distances(around), length, slope,
+                              [&](const Point& q) -> Lanes { return centre.distances(q) + reach; });
+            return covered.select(Lanes::Constant(std::numeric_limits<double>::infinity()),
+                                  Lanes::Zero());
+        }
     };
     using Leaf = ConeLanes<leaf_size>;
     using Tree = ConeTree<Node, Leaf>;

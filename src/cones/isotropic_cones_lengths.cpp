@@ -81,13 +81,7 @@ bool IsotropicCones::visit_uncovered(const Box& box, Hint& hint, const Add& add)
         cover.choose(0, cone);
         add(cone);
     }
-    const auto bounds = [&](const Node& node) -> Lanes {
-        const Lanes reach = (node.half_thickness.square() + node.radius.square()).sqrt();
-        const auto covered = cover.covered(
-            node.distances(centre), node.length, node.slope,
-            [&](const Point& q) -> Lanes { return node.centre.distances(q) + reach; });
-        return covered.select(Lanes::Constant(never), Lanes::Zero());
-    };
+    const auto bounds = [&](const Node& node) { return node.uncovered(cover, centre); };
     return tree_.search([] { return never; }, bounds,
                         [&](std::uint32_t number) {
                             const Leaf& leaf = tree_.leaf(number);

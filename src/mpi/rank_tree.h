@@ -39,7 +39,7 @@ public:
 template <class Storage>
 class AdaptedPart : public GrowingTree<OctreeNode, Storage> {
     using Growing = GrowingTree<OctreeNode, Storage>;
-    using Growing::options_, Growing::storage_, Growing::topology_;
+    using Growing::is_negligible, Growing::options_, Growing::storage_, Growing::topology_;
 
 public:
     AdaptedPart(const SpaceOptions& options, std::span<const Box> octants)
@@ -79,16 +79,6 @@ public:
     void save(StateWriter& state) const {
         controlspace::save(topology_, state);
         save_storage(storage_, storage_.metrics(), state);
-    }
-
-private:
-    // The rule of GrowingTree: the serial tree is cut by it.
-    bool is_negligible(const Box& box, double ratio) const {
-        constexpr double usual_slope = 0.25;
-        const double share_of_element = 1.0 / 16 * (usual_slope / std::max(usual_slope, ratio - 1));
-        const Metric m = value_at(topology_, field_of(storage_), box.centre());
-        const auto lengths = metric_edge_lengths(m, box.edges());
-        return std::max({lengths[0], lengths[1], lengths[2]}) < share_of_element;
     }
 };
 

@@ -157,13 +157,6 @@ protected:
         is_finished_ = true;
     }
 
-    SpaceOptions options_;
-    bool balanced_;
-    Topology<Node> topology_;
-    Storage storage_;
-    bool is_finished_ = false;  // nothing has grown since `settle`
-
-private:
     // Whether the box is far shorter than an element, and the field of this ratio varies little in
     // it. Fields may be steep: the intersection of tensors in turn depends on which is the
     // smallest.
@@ -175,6 +168,13 @@ private:
         return std::max({lengths[0], lengths[1], lengths[2]}) < share_of_element;
     }
 
+    SpaceOptions options_;
+    bool balanced_;
+    Topology<Node> topology_;
+    Storage storage_;
+    bool is_finished_ = false;  // nothing has grown since `settle`
+
+private:
     // Brings all face neighbours to the leaf's own level at least, so that it may be split.
     void refine_coarser_neighbours(const LeafPlace& place, std::vector<LeafIndex>* cut,
                                    auto&&... watched) {
