@@ -47,9 +47,17 @@ Tensor transposed(const Tensor& a) {
     return {a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]};
 }
 
+struct Eigenframe {
+    std::array<Real, 3> values;
+    Tensor vectors;  // in columns
+};
+
 // Of a symmetric matrix, by Jacobi's rotations.
-Real largest_eigenvalue(Tensor a) {
+Eigenframe eigenframe(Tensor a) {
+    Tensor vectors{1, 0, 0, 0, 1, 0, 0, 0, 1};
     for (int sweep = 0; sweep < 40; ++sweep) {
+        const Real rest = std::abs(a[1]) + std::abs(a[2]) + std::abs(a[5]);
+        if (rest <= 1e-21L * (std::abs(a[0]) + std::abs(a[4]) + std::abs(a[8]))) break;
         for (std::size_t p = 0; p < 2; ++p) {
             for (std::size_t q = p + 1; q < 3; ++q) {
                 if (a[3 * p + q] == 0) continue;
@@ -59,10 +67,22 @@ Real largest_eigenvalue(Tensor a) {
                 r[3 * p + q] = std::sin(angle);
                 r[3 * q + p] = -std::sin(angle);
                 a = product(transposed(r), product(a, r));
+                vectors = product(vectors, r);
             }
         }
     }
-    return std::max({a[0], a[4], a[8]});
+    return {{a[0], a[4], a[8]}, vectors};
+}
+
+// As of both: A^2 -> L Q min(D, 1) Q^T L^T, where B^2 = L L^T and L^-1 A^2 L^-T = Q D Q^T.
+Tensor cut_square(const Tensor& square, const Tensor& by) {
+    const Tensor l = cholesky(product(by, by));
+    const Tensor to_unit = inverse(l);
+    const auto [values, q] = eigenframe(product(to_unit, product(square, transposed(to_unit))));
+    Tensor shortened{};
+    for (std::size_t i = 0; i < 3; ++i) shortened[4 * i] = std::min(values[i], Real{1});
+    const Tensor lq = product(l, q);
+    return product(lq, product(shortened, transposed(lq)));
 }
 
 }  // namespace
@@ -90,7 +110,25 @@ Real oracle_factor(const PointSource& source, double g, const Point& p) {
 
 Real oracle_excess(const Metric& m, const Metric& limit) {
     const Tensor to_unit = inverse(cholesky(tensor(limit)));
-    return largest_eigenvalue(product(to_unit, product(tensor(m), transposed(to_unit))));
+    return std::ranges::max(
+        eigenframe(product(to_unit, product(tensor(m), transposed(to_unit)))).values);
+}
+
+Real oracle_log_volume(const Metric& m) { return std::log(determinant(tensor(m))); }
+
+Real oracle_log_volume_in_turn(std::span<const PointSource> sources, double g,
+                               const Metric& largest, const Point& p) {
+    const auto in_turn = [&](auto first, auto last) {
+        Tensor square = product(tensor(largest), tensor(largest));
+        for (; first != last; ++first) {
+            Tensor cone = tensor(first->metric);
+            for (Real& entry : cone) entry *= oracle_factor(*first, g, p);
+            square = cut_square(square, cone);
+        }
+        return std::log(determinant(square)) / 2;
+    };
+    return std::max(in_turn(sources.begin(), sources.end()),
+                    in_turn(sources.rbegin(), sources.rend()));
 }
 
 Real oracle_length(std::span<const PointSource> sources, double g, double largest, const Point& p) {

@@ -23,6 +23,12 @@ Real oracle_factor(const PointSource& source, double g, const Point& p);
 /// The least k with `m` <= k `limit`, both positive definite: k `limit` - `m` is positive
 /// semidefinite then. Metrics blended linearly, each of them at most k `limit`, are at most that.
 Real oracle_excess(const Metric& m, const Metric& limit);
+/// log det M: what the order-free intersection makes as large as cones allow.
+Real oracle_log_volume(const Metric& m);
+/// The larger one of `largest` and all cones at `p`, intersected one after the other, forwards or
+/// backwards: each is within all of them.
+Real oracle_log_volume_in_turn(std::span<const PointSource> sources, double g,
+                               const Metric& largest, const Point& p);
 /// The exact field of isotropic sources, at most `largest`.
 Real oracle_length(std::span<const PointSource> sources, double g, double largest, const Point& p);
 

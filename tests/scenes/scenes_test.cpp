@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <limits>
 
 #include "contract/structure_case.h"
 #include "controlspace/error.h"
@@ -108,6 +109,14 @@ bool is_proved(const Structure& structure) {
            structure.entry->order < 2;
 }
 
+// Trees, which are cut where they depart from the field.
+bool is_tree(const Structure& structure) { return structure.entry->id.starts_with("K_"); }
+bool is_quadratic(const Structure& structure) { return structure.entry->order == 2; }
+bool has_node_builder(const Structure& structure) {
+    return keeps_values(*structure.entry) && !is_direct(*structure.entry);
+}
+bool is_exact(const Structure& structure) { return is_direct(*structure.entry); }
+
 }  // namespace
 
 STRUCTURE_CASE(every_structure, "inserted scenes: positive definite, within M_max, sources met") {
@@ -210,5 +219,134 @@ STRUCTURE_CASE(keeps_node_values, "scenes whose sources come in two parts end as
         in_parts->insert(all.subspan(all.size() / 2));
         in_parts->grade(scene.gradation());
         CHECK(answers(*in_parts, x) == answers(*at_once, x));
+    });
+}
+
+STRUCTURE_CASE(every_structure, "cells of scenes contain the places that they answer for") {
+    for_each_scene(structure, [&](const Scene& scene, const auto& x, std::uint64_t) {
+        const auto space = inserted(structure, scene);
+        for (const Point& p : x) {
+            const std::optional<Box> cell = space->cell_at(p);
+            REQUIRE(cell);
+            CAPTURE(p.transpose(), cell->low.transpose(), cell->high.transpose());
+            REQUIRE(cell->contains(p));
+        }
+    });
+}
+
+STRUCTURE_CASE(every_structure, "scenes refuse ratios below 1 and not-a-number, and stay") {
+    for_each_scene(structure, [&](const Scene& scene, const auto& x, std::uint64_t) {
+        const auto space = inserted(structure, scene);
+        const std::vector<Metric> before = answers(*space, x);
+        for (const double bad : {0.5, -2.0, std::numeric_limits<double>::quiet_NaN()}) {
+            CAPTURE(bad);
+            PointSource source = scene.sources.front();
+            source.growth = bad;
+            CHECK_THROWS_AS(space->insert(source), InputError);
+            CHECK_THROWS_AS(space->grade({.ratio = bad}), InputError);
+        }
+        CHECK(answers(*space, x) == before);
+    });
+}
+
+STRUCTURE_CASE(has_node_builder, "scenes refuse a metric too many or too few for their nodes") {
+    for_each_scene(structure, [&](const Scene& scene, const auto& x, std::uint64_t) {
+        const auto space = inserted(structure, scene);
+        const std::vector<Metric> before = answers(*space, x);
+        std::vector<Metric> metrics = space->control_nodes(Neighbourhood::faces).metrics;
+        metrics.push_back(metrics.front());
+        CHECK_THROWS_AS(space->assign(metrics), InputError);
+        metrics.resize(metrics.size() - 2);
+        CHECK_THROWS_AS(space->assign(metrics), InputError);
+        CHECK(answers(*space, x) == before);
+    });
+}
+
+STRUCTURE_CASE(is_quadratic, "graded scenes are within the cones of leaves' own metrics") {
+    for_each_scene(structure, [&](const Scene& scene, const auto& x, std::uint64_t) {
+        if (!scene.is_isotropic()) return;
+        const auto space = inserted(structure, scene);
+        GradationOptions gradation = scene.gradation();
+        gradation.ratio = 1 + (gradation.ratio - 1) / 4;
+        space->grade(gradation);
+        double steepest = gradation.ratio;
+        for (const PointSource& source : scene.sources) {
+            steepest = std::max(steepest, source.growth);
+        }
+        for (const Point& p : x) {
+            const Point centre = space->cell_at(p)->centre();
+            const PointSource own{centre, sample_at(*space, centre)};
+            const double allowed =
+                static_cast<double>(oracle_factor(own, steepest, p)) * own.metric.xx;
+            CAPTURE(p.transpose(), centre.transpose());
+            REQUIRE(sample_at(*space, p).xx <= allowed * (1 + rounding(structure)));
+        }
+    });
+}
+
+STRUCTURE_CASE(keeps_sources_in_leaves, "scenes of isotropic sources get no longer by gradation") {
+    for_each_scene(structure, [&](const Scene& scene, const auto& x, std::uint64_t) {
+        if (!scene.is_isotropic()) return;
+        const auto space = inserted(structure, scene);
+        const std::vector<Metric> before = answers(*space, x);
+        space->grade(scene.gradation());
+        const std::vector<Metric> after = answers(*space, x);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            CAPTURE(x[i].transpose());
+            REQUIRE(after[i].xx <= before[i].xx * (1 + rounding(structure)));
+        }
+    });
+}
+
+STRUCTURE_CASE(is_tree, "adapted scenes that met their target are near the field") {
+    constexpr double target = 0.1;
+    // `met` is sampled where nothing is proved: a peak between samples may be a little higher.
+    constexpr double most = 2 * target;
+    for_each_scene(structure, [&](Scene scene, const auto& x, std::uint64_t) {
+        const bool is_isotropic = scene.is_isotropic();
+        if (scene.sources.size() > 8 && (!is_isotropic || scene.sources.size() > 30)) return;
+        scene.options.octree_depth = 8;
+        scene.options.kd_depth = 24;
+        const auto space = editable(structure.entry->make(scene.options));
+        const AdaptationReport report = space->adapt({.sources = scene.sources,
+                                                      .continuous = nullptr,
+                                                      .ratio = scene.options.ratio,
+                                                      .target = target,
+                                                      .max_leaves = 2000});
+        if (!report.met) return;
+        const double largest = largest_metric(scene.options).xx;
+        const std::vector<Metric> m = answers(*space, x);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            CAPTURE(x[i].transpose(), to_string(m[i]), report.reached);
+            if (is_isotropic) {
+                const Real exact = oracle_length(scene.sources, scene.options.ratio, largest, x[i]);
+                REQUIRE(isotropic_delta(m[i].xx, exact) <= most);
+                continue;
+            }
+            for (const PointSource& source : scene.sources) {
+                const Real factor = oracle_factor(source, scene.options.ratio, x[i]);
+                const Real k = std::max(
+                    Real{1}, oracle_excess(m[i], static_cast<double>(factor) * source.metric));
+                REQUIRE(static_cast<double>(k + 1 / k - 2) <= most);
+            }
+        }
+    });
+}
+
+STRUCTURE_CASE(is_exact, "order-free scenes are as large as their cones in turn") {
+    constexpr double gap = 0.01;  // three times what the tolerance of 1e-3 allows
+    for_each_scene(structure, [&](Scene scene, const auto& x, std::uint64_t) {
+        if (scene.is_isotropic()) return;
+        scene.options.intersection = IntersectionRule::order_free;
+        const auto space = inserted(structure, scene);
+        const Metric largest = largest_metric(scene.options);
+        for (std::size_t i = 0; i < x.size(); i += 5) {
+            const Metric m = sample_at(*space, x[i]);
+            const Real in_turn =
+                oracle_log_volume_in_turn(scene.sources, scene.options.ratio, largest, x[i]);
+            CAPTURE(x[i].transpose(), to_string(m));
+            REQUIRE(static_cast<double>(oracle_log_volume(m)) >=
+                    static_cast<double>(in_turn) - gap);
+        }
     });
 }
