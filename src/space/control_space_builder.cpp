@@ -53,6 +53,10 @@ void require_valid(const PointSource& source, std::size_t index, const std::stri
     require(is_positive_definite(source.metric),
             fmt::format(" has the metric {} (xx yy zz xy xz yz), which is not positive definite",
                         to_string(source.metric)));
+    require(is_length(mean_length(source.metric)),
+            fmt::format(" has the metric {} (xx yy zz xy xz yz), with lengths beyond {} to {}: use "
+                        "another unit of length",
+                        to_string(source.metric), 1 / largest_magnitude, largest_magnitude));
     require(is_source_growth(source.growth),
             fmt::format(" has the gradation ratio {}: give one from 1 to 1e6, or 0 for that of the "
                         "field",
@@ -61,7 +65,7 @@ void require_valid(const PointSource& source, std::size_t index, const std::stri
 
 bool is_valid(const PointSource& source, const Box& domain) {
     const Metric& m = source.metric;
-    const bool is_metric = (is_isotropic(m) && is_length(m.xx)) || is_positive_definite(m);
+    const bool is_metric = (is_isotropic(m) && is_length(m.xx)) || is_source_metric(m);
     return is_metric && is_source_growth(source.growth) && domain.contains(source.position);
 }
 
