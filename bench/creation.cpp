@@ -7,7 +7,6 @@
 // too: ns_random, at random places, and ns_elements, where elements are.
 
 #include <benchmark/benchmark.h>
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 
 #include <cmath>
@@ -15,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/threads.h"
 #include "controlspace/measure/access_time.h"
 #include "measure/stopwatch.h"
 #include "works.h"
@@ -25,8 +25,7 @@ namespace {
 
 std::unique_ptr<ControlSpace> create(benchmark::State& state, const CatalogueEntry& entry,
                                      const Work& work, int threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(threads));
+    const auto limit = limit_threads(threads);
     const std::vector<PointSource> sources = sample_sphere(work.sampling);
     SpaceOptions options = options_of(work, sources);
     options.max_bytes = std::size_t{12} << 30;

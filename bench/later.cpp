@@ -11,7 +11,6 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <ctime>
 #include <string>
 #include <vector>
 
@@ -20,6 +19,7 @@
 #include "controlspace/measure/access_time.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/sources/sampled_surfaces.h"
+#include "measure/stopwatch.h"
 
 using namespace controlspace;
 
@@ -63,8 +63,6 @@ Work inside(double rho) {
     return work;
 }
 
-double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-
 std::unique_ptr<ControlSpaceBuilder> make(const CatalogueEntry& entry, const Work& work) {
     return entry.make({.domain = domain,
                        .finest_length = finest_length(work.early),
@@ -79,20 +77,20 @@ void later(benchmark::State& state, const CatalogueEntry& entry, const Work& wor
     double late = 0;
     GradationReport report;
     for (auto _ : state) {
-        double start = cpu_seconds();
+        Stopwatch time;
         auto space = make(entry, work);
         space->insert(work.early);
         space->insert(work.late);
         space->grade(gradation);
-        all_at_once += cpu_seconds() - start;
+        all_at_once += time.processor_seconds();
 
         space = make(entry, work);
         space->insert(work.early);
         space->grade(gradation);
-        start = cpu_seconds();
+        time = {};
         space->insert(work.late);
         report = space->grade(gradation);
-        const double seconds = cpu_seconds() - start;
+        const double seconds = time.processor_seconds();
         late += seconds;
         state.SetIterationTime(seconds);
         state.counters["nodes"] = static_cast<double>(space->build()->footprint().control_nodes);

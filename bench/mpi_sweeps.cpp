@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <variant>
 #include <vector>
 
@@ -18,14 +17,13 @@
 #include "controlspace/io/read_sources.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/space/catalogue.h"
+#include "measure/stopwatch.h"
 #include "mpi/distributed_space.h"
 #include "mpi/exchange.h"
 
 using namespace controlspace;
 
 namespace {
-
-double seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// A value of a leaf that another rank has a copy of.
 struct Ghost {
@@ -62,7 +60,7 @@ int main(int argc, char** argv) {
         length[i] = nodes.metrics[i].xx;
     }
 
-    const double start = seconds();
+    const Stopwatch time;
     std::vector<std::size_t> own;
     for (std::size_t i = 0; i < owner.size(); ++i) {
         if (owner[i] == ranks.rank()) own.push_back(i);
@@ -107,7 +105,7 @@ int main(int argc, char** argv) {
         }
         changes = ranks.reduced(has_changed, MPI_MAX) != 0;
     }
-    const double cpu = ranks.reduced(seconds() - start, MPI_MAX);
+    const double cpu = ranks.reduced(time.processor_seconds(), MPI_MAX);
     const double bytes = static_cast<double>(ranks.reduced(ranks.bytes() - bytes_before, MPI_MAX));
 
     const auto exact = exact_reference(sources, ratio, largest_metric(options.space));

@@ -3,7 +3,6 @@
 //   parallel/STRUCTURE/points/T-threads     T threads that each ask for place after place
 // By the wall clock; T is 1 and all processors.
 #include <benchmark/benchmark.h>
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 
 #include <map>
@@ -12,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "cli/threads.h"
 #include "controlspace/measure/access_time.h"
 #include "controlspace/space/sample_parallel.h"
 #include "works.h"
@@ -29,8 +29,7 @@ const ControlSpace& space_of(const CatalogueEntry& entry) {
 }
 
 void batch(benchmark::State& state, const CatalogueEntry& entry, std::size_t n, int threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(threads));
+    const auto limit = limit_threads(threads);
     const ControlSpace& space = space_of(entry);
     const std::vector<Point> x = random_points(space.domain(), n, 1);
     std::vector<Metric> out(n);

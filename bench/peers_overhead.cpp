@@ -31,7 +31,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -48,6 +47,7 @@
 #include "baselines/peers/peer_rows.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
+#include "measure/stopwatch.h"
 
 namespace {
 
@@ -280,9 +280,9 @@ Loop bare_p4est(const ControlSpace& octree) {
 }
 
 double seconds(const auto& work) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch time;
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return time.seconds();
 }
 
 /// Returns whether both answer alike, which a ratio needs to mean anything.

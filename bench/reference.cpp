@@ -13,14 +13,14 @@
 
 #include "cones/cone_field.h"
 #include "controlspace/measure/access_time.h"
-#include "controlspace/sources/sampled_surfaces.h"
+#include "works.h"
 
 using namespace controlspace;
 
 namespace {
 
 constexpr double g = 1.25;
-const Box domain{Point::Constant(-1), Point::Constant(1)};
+const Box& domain = bench_domain();
 const Metric largest = Metric::isotropic(domain.half_diagonal());
 
 enum class Places { random, walk, leaves };
@@ -124,9 +124,7 @@ void query(benchmark::State& state, const Setting& setting, double tolerance, Pl
         }
         benchmark::DoNotOptimize(answers.data());
     }
-    state.counters["per_query"] = benchmark::Counter(
-        static_cast<double>(places.size()),
-        benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    count_queries(state, places.size());
 }
 
 void register_queries(const Setting& setting, double tolerance, Places kind) {
