@@ -21,39 +21,40 @@ struct ExportJob : Job {
     std::vector<FieldFormat> formats;
 };
 
-bool has_ending(const FieldFormat& format, const std::filesystem::path& file) {
-    const auto& endings = format.endings;
-    return std::find(endings.begin(), endings.end(), lower_case_extension(file)) != endings.end();
-}
-
-std::string all_endings(const std::vector<FieldFormat>& formats) {
-    std::vector<std::string> endings;
-    for (const FieldFormat& format : formats) {
-        endings.insert(endings.end(), format.endings.begin(), format.endings.end());
-    }
-    std::sort(endings.begin(), endings.end());
-    return fmt::format("{}", fmt::join(endings, ", "));
-}
-
 bool has_group(const FieldFormat& format, const std::string& group) {
     return std::ranges::count(format.groups, group) > 0;
 }
 
+/// Of the formats that have the group; of all formats where it is empty.
+std::vector<std::string> endings_of(const std::vector<FieldFormat>& formats,
+                                    const std::string& group = "") {
+    std::vector<std::string> endings;
+    for (const FieldFormat& format : formats) {
+        if (!group.empty() && !has_group(format, group)) continue;
+        endings.insert(endings.end(), format.endings.begin(), format.endings.end());
+    }
+    return endings;
+}
+
+std::string all_endings(const std::vector<FieldFormat>& formats) {
+    std::vector<std::string> endings = endings_of(formats);
+    std::ranges::sort(endings);
+    return fmt::format("{}", fmt::join(endings, ", "));
+}
+
 /// The format of the output; refuses options of others.
 const FieldFormat& chosen_format(const ExportJob& job, const Options& options) {
-    const auto chosen = std::ranges::find_if(
-        job.formats, [&](const FieldFormat& format) { return has_ending(format, job.output); });
+    const std::string ending = lower_case_extension(job.output);
+    const auto chosen = std::ranges::find_if(job.formats, [&](const FieldFormat& format) {
+        return std::ranges::count(format.endings, ending) > 0;
+    });
     for (const FieldFormat& format : job.formats) {
         for (const std::string& group : format.groups) {
             const auto given = options.given_of(group);
             if (given.empty() || (chosen != job.formats.end() && has_group(*chosen, group))) {
                 continue;
             }
-            std::vector<std::string> endings;
-            for (const FieldFormat& other : job.formats) {
-                if (!has_group(other, group)) continue;
-                endings.insert(endings.end(), other.endings.begin(), other.endings.end());
-            }
+            std::vector<std::string> endings = endings_of(job.formats, group);
             const std::string last = endings.back();
             endings.pop_back();
             throw InputError(fmt::format("{} is for {}{}{}: leave it out", given.front(),

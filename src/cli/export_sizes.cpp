@@ -32,19 +32,18 @@ std::string report(const Export& e, const SizeFile& file, const std::string& wha
     return written(e, text);
 }
 
-constexpr const char* finer_grid = "lengths are off by more than 1.25x: give more --samples";
-
-std::string write_structured(const Export& e) {
-    const int samples = e.samples.value_or(grid_samples);
-    return report(e, write_gmsh_structured(e.output, *e.filled.space, samples),
-                  "nodes of a field Structured of Gmsh (TextFormat = 0, SetOutsideValue = 0)",
-                  finer_grid);
-}
-
-std::string write_jigsaw(const Export& e) {
-    const int samples = e.samples.value_or(grid_samples);
-    return report(e, write_jigsaw_grid(e.output, *e.filled.space, samples),
-                  "nodes of a grid for JIGSAW (hfun_file, hfun_scal = absolute)", finer_grid);
+/// A format of lengths at the nodes of a grid, which are `what`.
+FieldFormat grid_format(const char* ending, const char* what, auto write) {
+    return {{ending},
+            [what, write](const Export& e) {
+                const int samples = e.samples.value_or(grid_samples);
+                return report(e, write(e.output, *e.filled.space, samples), what,
+                              "lengths are off by more than 1.25x: give more --samples");
+            },
+            {samples_group},
+            [](const auto&, std::optional<int> samples) {
+                if (samples) require_grid_samples(*samples);
+            }};
 }
 
 std::string write_netgen(const Export& e) {
@@ -63,10 +62,6 @@ std::filesystem::path background_base(const std::filesystem::path& output) {
         output.string(), base.string(), output.extension().string()));
 }
 
-void check_samples(const std::filesystem::path&, std::optional<int> samples) {
-    if (samples) require_grid_samples(*samples);
-}
-
 std::string write_tetgen(const Export& e) {
     const std::filesystem::path base = background_base(e.output);
     for (const char* ending : {".node", ".ele", ".mtr"}) {
@@ -82,8 +77,11 @@ std::string write_tetgen(const Export& e) {
 }  // namespace
 
 std::vector<FieldFormat> add_size_formats(Options&) {
-    return {{{".structured"}, write_structured, {samples_group}, check_samples},
-            {{".msh"}, write_jigsaw, {samples_group}, check_samples},
+    return {grid_format(".structured",
+                        "nodes of a field Structured of Gmsh (TextFormat = 0, SetOutsideValue = 0)",
+                        write_gmsh_structured),
+            grid_format(".msh", "nodes of a grid for JIGSAW (hfun_file, hfun_scal = absolute)",
+                        write_jigsaw_grid),
             {{".msz"}, write_netgen},
             {{".node", ".ele", ".mtr"},
              write_tetgen,

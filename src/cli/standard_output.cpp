@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "controlspace/error.h"
-#include "files/output_file.h"
+#include "controlspace/study/results.h"
 
 namespace controlspace {
 
@@ -26,9 +26,7 @@ void print(std::string_view text) {
 
 void print_to(const std::filesystem::path& output, std::string_view text) {
     if (output == "/dev/stdout") return print(text);
-    OutputFile file(output);
-    file.write(text);
-    file.commit();
+    replace_file(output, text);
 }
 
 void print_error(std::string_view text) {

@@ -6,6 +6,8 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <set>
+#include <span>
 #include <utility>
 
 #include "controlspace/error.h"
@@ -42,16 +44,12 @@ const ShapeSyntax& syntax_of(Shape shape) {
 /// Reads one primitive; what is wrong is said with its text.
 class Parser {
 public:
-    explicit Parser(std::string_view text) : text_(text) {}
+    explicit Parser(std::string_view text) : text_(text), syntax_(syntax_of(text)) {}
 
     Primitive primitive() {
-        const ShapeSyntax* syntax = syntax_of(text_);
-        if (syntax == nullptr) {
-            fail("begin with box:, ball:, cylinder:, segment: or surface:");
-        }
-        syntax_ = syntax;
-        made_.shape = syntax->shape;
-        std::string_view rest = text_.substr(syntax->name.size() + 1);
+        if (syntax_ == nullptr) fail("begin with box:, ball:, cylinder:, segment: or surface:");
+        made_.shape = syntax_->shape;
+        std::string_view rest = text_.substr(syntax_->name.size() + 1);
         while (true) {
             const std::size_t end = std::min(rest.find(','), rest.size());
             add(rest.substr(0, end));
@@ -93,7 +91,7 @@ private:
             fail(fmt::format("unknown setting '{}': known are {}h and g", key,
                              syntax_->has_radius ? "r, " : ""));
         }
-        if (std::exchange(is_given(key), true)) fail(fmt::format("{} is given twice", key));
+        if (!given_.insert(key).second) fail(fmt::format("{} is given twice", key));
         if (key == "g") {
             if (!(value >= 1 && value <= steepest_primitive)) {
                 fail(fmt::format("g is {}: give a gradation ratio from 1 to 5", value));
@@ -105,10 +103,6 @@ private:
         (key == "r" ? made_.radius : made_.h) = value;
     }
 
-    bool& is_given(std::string_view key) {
-        return key == "r" ? has_radius_ : key == "h" ? has_length_ : has_ratio_;
-    }
-
     void finish() {
         if (numbers_.size() != syntax_->numbers) {
             fail_with_form(made_.shape == Shape::surface
@@ -117,8 +111,8 @@ private:
                                              syntax_->numbers));
         }
         if (made_.shape == Shape::surface && made_.file.empty()) fail_with_form("no file is named");
-        if (syntax_->has_radius && !has_radius_) fail_with_form("the radius r is missing");
-        if (!has_length_) fail_with_form("the length h is missing");
+        if (syntax_->has_radius && !given_.contains("r")) fail_with_form("the radius r is missing");
+        if (!given_.contains("h")) fail_with_form("the length h is missing");
         for (const double x : numbers_) {
             if (!is_coordinate(x)) fail(fmt::format("{} is no coordinate: give finite ones", x));
         }
@@ -140,13 +134,12 @@ private:
     }
 
     std::string_view text_;
-    const ShapeSyntax* syntax_ = nullptr;
+    const ShapeSyntax* syntax_;
     Primitive made_;
     std::vector<double> numbers_;
-    bool has_file_ = false, has_radius_ = false, has_length_ = false, has_ratio_ = false;
+    std::set<std::string_view> given_;  ///< keys
+    bool has_file_ = false;
 };
-
-double distance_from_box(const Box& box, const Point& p) { return (p - nearest_in(box, p)).norm(); }
 
 /// A line from a to b: places by how far along it they are, and how far beside.
 struct Axis3 {
@@ -173,17 +166,13 @@ Box box_around(const Point& a, const Point& b, double radius) {
 
 /// Points n[0] x n[1] x n[2] in the box, ends included, about h apart, but not too many.
 std::vector<Point> places_in(const Box& box, double h, double most) {
-    std::array<int, 3> n{};
-    for (int axis = 0; axis < 3; ++axis) {
-        n[static_cast<std::size_t>(axis)] =
-            1 + static_cast<int>(std::clamp(std::ceil(box.edges()[axis] / h), 2.0, most));
-    }
+    const Eigen::Array3i n =
+        1 + (box.edges() / h).array().ceil().cwiseMax(2).cwiseMin(most).cast<int>();
     std::vector<Point> places;
     for (int i = 0; i < n[0]; ++i) {
         for (int j = 0; j < n[1]; ++j) {
             for (int k = 0; k < n[2]; ++k) {
-                const Vector part(double(i) / (n[0] - 1), double(j) / (n[1] - 1),
-                                  double(k) / (n[2] - 1));
+                const Vector part = Eigen::Array3d(i, j, k) / (n - 1).cast<double>();
                 places.push_back(box.low + part.cwiseProduct(box.edges()));
             }
         }
@@ -227,25 +216,12 @@ bool is_primitive(std::string_view text) { return syntax_of(text) != nullptr; }
 Primitive parse_primitive(std::string_view text) { return Parser(text).primitive(); }
 
 std::string to_string(const Primitive& p) {
-    std::string text(syntax_of(p.shape).name);
-    text += ':';
-    switch (p.shape) {
-        case Shape::box:
-            text += fmt::format("{},{},{},{},{},{}", p.a.x(), p.b.x(), p.a.y(), p.b.y(), p.a.z(),
-                                p.b.z());
-            break;
-        case Shape::ball:
-            text += fmt::format("{},{},{}", p.a.x(), p.a.y(), p.a.z());
-            break;
-        case Shape::cylinder:
-        case Shape::segment:
-            text += fmt::format("{},{},{},{},{},{}", p.a.x(), p.a.y(), p.a.z(), p.b.x(), p.b.y(),
-                                p.b.z());
-            break;
-        case Shape::surface:
-            text += p.file.string();
-    }
-    if (syntax_of(p.shape).has_radius) text += fmt::format(",r={}", p.radius);
+    const ShapeSyntax& syntax = syntax_of(p.shape);
+    std::array x{p.a.x(), p.a.y(), p.a.z(), p.b.x(), p.b.y(), p.b.z()};
+    if (p.shape == Shape::box) x = {p.a.x(), p.b.x(), p.a.y(), p.b.y(), p.a.z(), p.b.z()};
+    std::string text = fmt::format("{}:{}{}", syntax.name, p.file.string(),
+                                   fmt::join(std::span(x).first(syntax.numbers), ","));
+    if (syntax.has_radius) text += fmt::format(",r={}", p.radius);
     text += fmt::format(",h={}", p.h);
     if (p.ratio) text += fmt::format(",g={}", *p.ratio);
     return text;
@@ -255,7 +231,7 @@ DistanceField distance_from(const Primitive& p) {
     switch (p.shape) {
         case Shape::box: {
             const Box box{p.a, p.b};
-            return {[box](const Point& x) { return distance_from_box(box, x); }, box,
+            return {[box](const Point& x) { return (x - nearest_in(box, x)).norm(); }, box,
                     places_in(box, p.h, 10)};
         }
         case Shape::ball: {

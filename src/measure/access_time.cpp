@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
 #include "controlspace/error.h"
 #include "geometry/random_fractions.h"
+#include "measure/stopwatch.h"
 
 namespace controlspace {
 
@@ -17,14 +17,13 @@ namespace {
 
 double duration_s(const ControlSpace& space, std::span<const Point> points,
                   std::span<Metric> answers, Calls calls) {
-    using Clock = std::chrono::steady_clock;
-    const Clock::time_point start = Clock::now();
+    const Stopwatch time;
     if (calls == Calls::one) {
         space.sample(points, answers);
     } else {
         for (std::size_t i = 0; i < points.size(); ++i) answers[i] = space.metric_at(points[i]);
     }
-    return std::chrono::duration<double>(Clock::now() - start).count();
+    return time.seconds();
 }
 
 }  // namespace

@@ -69,18 +69,15 @@ void add_largest_ratio(GradationReport& gradation, const ControlSpace& space, Gr
     }
 }
 
-void remark_on_gradation(Creation& creation, double g_r) {
+/// On what gradation left and on settings without effect.
+void remark_on_all(Creation& creation, const Study& study, const Case& c, const StudyRows& rows) {
     constexpr double rounding = 1e-6;
     const double left = creation.gradation.largest_ratio_left;
-    if (left > g_r * (1 + rounding)) {
+    if (left > c.g_r * (1 + rounding)) {
         add_remark(creation, fmt::format("G left {:.4g}: lengths grow faster between nodes than "
                                          "g_r {:.4g}",
-                                         left, g_r));
+                                         left, c.g_r));
     }
-}
-
-void remark_on_settings(Creation& creation, const Study& study, const Case& c,
-                        const StudyRows& rows) {
     const std::vector<std::string> names = settings_without_effect(study, c, rows);
     if (!names.empty()) {
         add_remark(creation, fmt::format("without effect: {}", fmt::join(names, ", ")));
@@ -116,8 +113,7 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
         creation.insert_s = {time.seconds()};
         creation.gradation_s = {0};
         add_largest_ratio(creation.gradation, *space, GradationLaw::cone, Neighbourhood::faces);
-        remark_on_gradation(creation, c.g_r);
-        remark_on_settings(creation, study, c, rows);
+        remark_on_all(creation, study, c, rows);
         return filled;
     }
     const std::span<const PointSource> sources = workload.sources;
@@ -139,8 +135,7 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
                                          "the deepest allowed",
                                          *c.max_depth));
     }
-    remark_on_gradation(creation, c.g_r);
-    remark_on_settings(creation, study, c, rows);
+    remark_on_all(creation, study, c, rows);
     return filled;
 }
 

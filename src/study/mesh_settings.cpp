@@ -8,11 +8,6 @@
 namespace controlspace {
 namespace {
 
-template <class Place>
-Access<MeshSettings> number_of(Place place, const Check& check = positive) {
-    return number<MeshSettings>(place, check);
-}
-
 Access<MeshSettings> kinds_of_files() {
     Access<MeshSettings> access;
     access.type = ValueType::text;
@@ -48,7 +43,7 @@ std::span<const Parameter<MeshSettings>> mesh_parameters() {
          text<MeshSettings>(&MeshSettings::part)},
         {"part_crease", "degree",
          "Angle between triangles of a part from which on their edge is kept",
-         number_of(&MeshSettings::part_crease, within(1, 180))},
+         number<MeshSettings>(&MeshSettings::part_crease, within(1, 180))},
         {"mesher", "",
          "delaunay or hxt (Gmsh), mmg (MMG3D), or auto: delaunay where the field is isotropic, "
          "else mmg",
@@ -56,16 +51,16 @@ std::span<const Parameter<MeshSettings>> mesh_parameters() {
         {"factor", "",
          "Factor of lengths, as meshers make longer edges than requested; left out: 0.77 for "
          "delaunay, 0.7 for hxt, 0.96 for mmg",
-         number_of(of(gmsh, &GmshOptions::factor),
-                   [](double x) { return within(0, 100)(positive(x)); })},
+         number<MeshSettings>(of(gmsh, &GmshOptions::factor),
+                              [](double x) { return within(0, 100)(positive(x)); })},
         {"optimize", "",
          "Gmsh: quality below which tetrahedra are improved, 0 to 0.95; left out: 0.75 for "
          "delaunay, 0.6 for hxt",
-         number_of(of(gmsh, &GmshOptions::optimize), within(0, 0.95))},
+         number<MeshSettings>(of(gmsh, &GmshOptions::optimize), within(0, 0.95))},
         {"mesh_threads", "", "Gmsh: threads; with more than one, meshes differ in detail",
-         number_of(of(gmsh, &GmshOptions::threads), within(1, 1024))},
+         number<MeshSettings>(of(gmsh, &GmshOptions::threads), within(1, 1024))},
         {"max_tets", "", "Most tetrahedra that a field may request, by estimate",
-         number_of(of(gmsh, &GmshOptions::max_tets))},
+         number<MeshSettings>(of(gmsh, &GmshOptions::max_tets), positive)},
         {"mmg", "", "MMG's program mmg3d_O3; left out: as found in PATH",
          text<MeshSettings>(of(mmg, &MmgOptions::program))},
         {"start", "",
@@ -74,9 +69,9 @@ std::span<const Parameter<MeshSettings>> mesh_parameters() {
          word<MeshSettings>(&MeshSettings::start)},
         {"rounds", "",
          "MMG: number of times that the mesh is made anew, each time by the field at its vertices",
-         number_of(of(mmg, &MmgOptions::rounds), within(1, 100))},
+         number<MeshSettings>(of(mmg, &MmgOptions::rounds), within(1, 100))},
         {"time_limit", "s", "MMG: time limit of each round",
-         number_of(of(mmg, &MmgOptions::time_limit_s))},
+         number<MeshSettings>(of(mmg, &MmgOptions::time_limit_s), positive)},
         {"exact", "", "Mesh the exact field too, to compare with",
          word<MeshSettings>(&MeshSettings::exact)},
         {"files", "",

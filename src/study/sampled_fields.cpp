@@ -4,12 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <bit>
 #include <string>
 
 #include "controlspace/geometry/extent.h"
 #include "controlspace/space/sample_parallel.h"
-#include "files/output_file.h"
+#include "controlspace/study/results.h"
+#include "io/text/npy.h"
 
 namespace controlspace {
 namespace {
@@ -53,20 +53,9 @@ Numbers sampled(const ControlSpace& space, std::span<const Point> places) {
 
 void write_npy(const std::filesystem::path& path, std::span<const std::size_t> shape,
                std::span<const double> numbers) {
-    static_assert(std::endian::native == std::endian::little);
-    std::string header = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}",
-                                     fmt::join(shape, ", "));
-    constexpr std::size_t fixed = 10;  // magic, version, length of the header
-    header.resize((header.size() + fixed + 1 + 63) / 64 * 64 - fixed - 1, ' ');
-    header += '\n';
-    std::string text("\x93NUMPY\x01\x00", 8);
-    text += static_cast<char>(header.size() & 0xff);
-    text += static_cast<char>(header.size() >> 8);
-    text += header;
+    std::string text = npy_header(fmt::format("{},", fmt::join(shape, ", ")));
     text.append(reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes());
-    OutputFile file(path);
-    file.write(text);
-    file.commit();
+    replace_file(path, text);
 }
 
 std::array<Axis, 2> slice_axes(const Box& domain) {

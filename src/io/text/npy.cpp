@@ -114,10 +114,10 @@ PointSource source_of(std::span<const double> row, std::size_t index,
 
 }  // namespace
 
-std::string npy_header(std::size_t rows, std::size_t columns) {
+std::string npy_header(std::string_view shape) {
     constexpr std::size_t alignment = 64;  // of the numbers
-    std::string header = fmt::format(
-        "{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", rows, columns);
+    std::string header =
+        fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}), }}", shape);
     const std::size_t unpadded = magic.size() + 2 + header.size() + 1;
     header.append((alignment - unpadded % alignment) % alignment, ' ').append("\n");
     std::string bytes(magic);

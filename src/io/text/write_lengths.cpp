@@ -101,9 +101,10 @@ void for_each_band(const ControlSpace& space, const Raster& raster,
 void write_lengths(const std::filesystem::path& path, const ControlSpace& space,
                    const Raster& raster, const RasterProgress& progress) {
     require_room(path, raster.size() * sizeof(double));
-    const auto [before, after] = lower_case_extension(path) == ".npy"
-                                     ? Frame{npy_header(raster.rows(), raster.columns()), ""}
-                                     : vti_frame(raster);
+    const auto [before, after] =
+        lower_case_extension(path) == ".npy"
+            ? Frame{npy_header(fmt::format("{}, {}", raster.rows(), raster.columns())), ""}
+            : vti_frame(raster);
     OutputFile file(path);
     file.write(before);
     std::size_t done = 0;
