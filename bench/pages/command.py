@@ -17,6 +17,8 @@ def run_command(main):
     except InputError as error:
         print(f"{name}: {error}", file=sys.stderr)
         return CANNOT_BE_USED
+    except ProgramFailed as failure:
+        return failure.status
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:

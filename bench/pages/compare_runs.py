@@ -2,7 +2,8 @@
 import math
 from collections import namedtuple
 
-from .figures import Spec, grouped, height_of, legend_below, lines_axis, log_axis
+from .figures import Spec, height_of, legend_below, lines_axis, log_axis
+from .results import grouped
 from .table import table_of
 
 # What is compared: the name, what less and more of it are called, the measure, and how it is drawn.

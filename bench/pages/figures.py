@@ -14,7 +14,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator, StrMethodFormatter
 
-from .results import plain
+from .results import grouped, plain
 from .table import TEXTS
 
 matplotlib.rcParams.update({
@@ -170,17 +170,6 @@ def structure_of(row):
     return row.setting["structure"]
 
 
-def group_of(row):
-    return row.group
-
-
-def grouped(rows, key):
-    groups = {}
-    for row in rows:
-        groups.setdefault(key(row), []).append(row)
-    return groups
-
-
 # ---- Fronts
 
 COSTS = [("memory", "memory [MB]", "memory_MB"),
@@ -275,7 +264,7 @@ ACCESS = [("at random places", "t_access_ns_random_samples", "#0072B2"),
 
 def access_figures(rows):
     """For each group and each order of places one, on the same axis; older results lack the last."""
-    for group, members in grouped(rows, group_of).items():
+    for group, members in grouped(rows, lambda r: r.group).items():
         orders = [order for order in ACCESS if all(order[1] in row.measures for row in members)]
         all_samples = [x for row in members for _, key, _ in orders for x in row[key]]
         limits = 0.8 * min(all_samples), 1.25 * max(all_samples)

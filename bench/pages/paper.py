@@ -1,6 +1,5 @@
 # The paper's Tables 1-5 beside rows that were run in the same way: which cells are equal, which
 # differ for a reason that an experiment shows, and which conclusions hold.
-import csv
 import math
 import tomllib
 from collections import namedtuple
@@ -8,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .results import InputError, plain
+from .results import InputError, grouped, plain
 
 HERE = Path(__file__).resolve().parent
 DATA = next(p for p in (HERE.parent / "data", HERE.parents[1] / "data") if (p / "paper").is_dir())
@@ -36,22 +35,19 @@ TABLES = (SIZE, CREATION, ACCESS, DELTA_R)
 def parse_paper_tables(text):
     """Rows of data/paper/sphere_tables.csv; throws InputError that names the line."""
     rows = []
-    header = None
-    for number, line in enumerate(text.splitlines(), 1):
-        if not line or line.startswith("#"):
-            continue
-        values = next(csv.reader([line]))
+    lines = [(number, line.split(",")) for number, line in enumerate(text.splitlines(), 1)
+             if line and not line.startswith("#")]
+    for number, values in lines:
         try:
-            if header is None:
-                header = values
-                if header != FIELDS:
+            if number == lines[0][0]:
+                if values != FIELDS:
                     raise ValueError(f"the header should be {','.join(FIELDS)}")
                 continue
             if len(values) != len(FIELDS):
                 raise ValueError("give nine fields")
             if values[1] not in SPLITS:
                 raise ValueError(f"unknown split '{values[1]}'")
-            rows.append(PaperRow(*values[:2], *(float(v) for v in values[2:])))
+            rows.append(PaperRow(*values[:2], *map(float, values[2:])))
         except ValueError as error:
             raise InputError(f"the paper's tables, line {number}: {error}") from error
     return rows
@@ -356,10 +352,7 @@ def setting_name(paper):
 
 
 def cells_by_setting(evidence):
-    groups = {}
-    for cell in evidence.measured_cells:
-        groups.setdefault(setting_name(cell.paper), []).append(cell)
-    return groups
+    return grouped(evidence.measured_cells, lambda cell: setting_name(cell.paper))
 
 
 def entry_of(evidence, row):

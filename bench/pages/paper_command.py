@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 
 from . import paper_page
-from .command import CASES_FAILED, OK, Program, ProgramFailed
+from .command import CASES_FAILED, OK, Program
 from .paper import DATA, Evidence
 from .results import InputError, read_results, write_file
 
@@ -96,13 +96,6 @@ def parsed(arguments):
 
 def main(arguments):
     options = parsed(arguments)
-    try:
-        return write_page(options)
-    except ProgramFailed as failure:
-        return failure.status
-
-
-def write_page(options):
     quiet = ["--quiet"] if options.quiet else []
     folders = options.folders
     if not folders:

@@ -10,7 +10,7 @@ from .command import OK
 from .glossary import Glossary
 from .paper import Evidence
 from .paper_command import evidence_in
-from .results import own_measures, read_results, write_file
+from .results import grouped, own_measures, read_results, write_file
 from .table import fixed, table_of
 
 # parts: (kind, item) as report.html.j2 shows them; a part "fold" holds parts that may be opened.
@@ -134,7 +134,7 @@ def measure_tables(rows):
 
     return {group: table_of("measures", [[row.label, *measure_cells(row), *own(row), remark_on(row)]
                                          for row in members], [*more, "<remark"])
-            for group, members in figures.grouped(rows, figures.group_of).items()}
+            for group, members in grouped(rows, lambda r: r.group).items()}
 
 
 def front_parts(rows, styles, prefix):

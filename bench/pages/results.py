@@ -31,6 +31,13 @@ def plain(x):
     return str(int(x)) if float(x).is_integer() and abs(x) < 1e15 else repr(x)
 
 
+def grouped(rows, key):
+    groups = {}
+    for row in rows:
+        groups.setdefault(key(row), []).append(row)
+    return groups
+
+
 @dataclass
 class Outcome:
     """Which rows to take within an error, as the program judged: `sentences` say it."""

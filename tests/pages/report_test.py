@@ -16,7 +16,7 @@ from samples import (ROOT, failed_row, json_row, outcome, paper_json_rows, resul
 
 from pages import compare_runs, fields, figures
 from pages import report_command as report
-from pages.results import InputError, read_results
+from pages.results import InputError, grouped, read_results
 from pages.table import Table
 
 HOSTILE = "</td><script>alert(1)</script> & \"quoted\" ]]> \x01"
@@ -117,7 +117,7 @@ class Figures(unittest.TestCase):
         for row in older:
             del row.measures["t_access_ns_single_samples"]
         self.assertEqual(len(list(figures.access_figures(older))), 2)
-        self.assertEqual(figures.grouped([1, 2, 3], lambda x: x % 2), {1: [1, 3], 0: [2]})
+        self.assertEqual(grouped([1, 2, 3], lambda x: x % 2), {1: [1, 3], 0: [2]})
 
     def test_creation_times_are_drawn_where_the_number_of_sources_varies(self):
         rows = results_of(three_rows()).rows
