@@ -1,0 +1,188 @@
+// Which sources matter in which octants, and their exchange.
+#define OMPI_SKIP_MPICXX 1
+#define MPICH_SKIP_MPICXX 1
+#include "mpi/shared_sources.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "cones/isotropic_cones.h"
+
+namespace controlspace {
+
+/// A cone that bounds the field.
+struct SharedSources::Bound {
+    Point position = Point::Zero();
+    double length = std::numeric_limits<double>::infinity(), slope = 0;
+
+    double most_in(const Box& box) const {
+        const Vector away = (box.centre() - position).cwiseAbs() + 0.5 * box.edges();
+        return length + slope * away.norm();
+    }
+};
+
+SharedSources::SharedSources(Ranks& ranks, const Octants& octants,
+                             const DistributedOptions& options, std::vector<Record>&& records)
+    : ranks_(ranks),
+      octants_(octants),
+      ratio_(options.space.ratio),
+      cap_(largest_metric(options.space).xx),
+      adapted_(options.target.has_value()),
+      records_(std::move(records)),
+      own_octants_(octants.of_rank(ranks.rank())) {
+    std::vector<std::vector<Record>> to(static_cast<std::size_t>(ranks_.size()));
+    for (const Record& r : records_) {
+        to[static_cast<std::size_t>(octants_.owner_of(r.position))].push_back(r);
+    }
+    records_ = std::vector<Record>();
+    records_ = ranks_.exchange(to).values;
+    find_bounds();
+}
+
+// Finds the own sources that are not dominated, and lengths that the field does not exceed in
+// boxes which make up the octants.
+void SharedSources::find_bounds() {
+    sources_in_.assign(octants_.tree().leaves(), {});
+    std::optional<IsotropicCones> own_cones;
+    ranks_.together([&] {
+        own_cones.emplace(sources_of(records_), ratio_, cap_);
+        for (std::uint32_t k = 0; k < records_.size(); ++k) {
+            sources_in_[octants_.tree().find(records_[k].position)].all.push_back(k);
+        }
+        for (const std::uint32_t k : own_cones->kept()) {
+            sources_in_[octants_.tree().find(records_[k].position)].kept.push_back(k);
+        }
+        kept_ = own_cones->kept().size();
+    });
+    const auto known = bounds_of_octants();
+    tests_.clear();
+    first_test_.assign(1, 0);
+    for (const LeafPlace& place : octants_.places()) {
+        add_tests(place, known[place.leaf]);
+        first_test_.push_back(tests_.size());
+    }
+    std::vector<double> most(tests_.size());
+    IsotropicCones::Hint hint = 0;
+    for (std::size_t i = 0; i < tests_.size(); ++i) {
+        most[i] = tests_[i].most;
+        const auto k = own_cones->source_below(tests_[i].box.centre(), most[i], hint);
+        if (k) most[i] = std::min(most[i], bound_of(records_[*k]).most_in(tests_[i].box));
+    }
+    ranks_.reduce(most, MPI_MIN);
+    for (std::size_t i = 0; i < tests_.size(); ++i) tests_[i].most = most[i];
+}
+
+SharedSources::Bound SharedSources::bound_of(const Record& r) const {
+    return {r.position, r.length, slope_of(r, ratio_)};
+}
+
+// In each octant, from one source of each.
+std::vector<double> SharedSources::bounds_of_octants() {
+    std::vector<Bound> of_octants;
+    for (const LeafIndex leaf : own_octants_) {
+        Bound least;
+        double least_most = std::numeric_limits<double>::infinity();
+        for (const std::uint32_t k : sources_in_[leaf].kept) {
+            const Bound bound = bound_of(records_[k]);
+            if (const double most = bound.most_in(octants_.box(leaf)); most < least_most) {
+                least_most = most;
+                least = bound;
+            }
+        }
+        of_octants.push_back(least);
+    }
+    const std::vector<Bound> bounds = ranks_.gather(of_octants).values;
+    std::vector<double> most;
+    for (const LeafIndex leaf : own_octants_) {
+        most.push_back(cap_);
+        for (const Bound& b : bounds) {
+            most.back() = std::min(most.back(), b.most_in(octants_.box(leaf)));
+        }
+    }
+    const std::vector<double> all = ranks_.gather(most).values;
+    std::vector<double> by_octant(octants_.tree().leaves());
+    for (std::size_t i = 0; i < all.size(); ++i) by_octant[octants_.order()[i]] = all[i];
+    return by_octant;
+}
+
+// The smaller the boxes, the fewer sources seem to matter in them. Inserted into, an octant
+// without sources is one leaf, of which the centre alone takes the field.
+void SharedSources::add_tests(const LeafPlace& octant, double most) {
+    if (!adapted_ && octants_.is_empty(octant.leaf)) {
+        const Point centre = octant.box.centre();
+        tests_.push_back({{centre, centre}, most});
+        return;
+    }
+    constexpr int levels = 2;
+    std::vector<Box> boxes{octant.box};
+    for (int k = 0; k < levels; ++k) {
+        std::vector<Box> parts;
+        for (const Box& box : boxes) {
+            const Subdivision cut =
+                OctreeNode::even_subdivision(octants_.tree().domain(), octant.level + k, box);
+            for (int c = 0; c < cut.children(); ++c) parts.push_back(cut.child(c));
+        }
+        boxes = std::move(parts);
+    }
+    for (const Box& box : boxes) tests_.push_back({box, most});
+}
+
+/// Calls visit(number) for the own sources that matter in any of some octants, or lie there.
+template <class Visit>
+void SharedSources::for_each_that_matters(std::span<const LeafIndex> in, const Visit& visit) const {
+    constexpr double safely = 1 + 1e-9;
+    std::vector<char> is_in(octants_.tree().leaves(), 0);
+    for (const LeafIndex leaf : in) is_in[leaf] = 1;
+    std::vector<const Test*> near;
+    for (const LeafIndex leaf : own_octants_) {
+        const OwnSources& of = sources_in_[leaf];
+        if (is_in[leaf] != 0) {
+            for (const std::uint32_t k : of.all) visit(k);
+            continue;
+        }
+        if (of.all.empty()) continue;
+        near.clear();
+        for (const LeafIndex other : in) {
+            for (const Test& test : tests_of(other)) {
+                const double distance = distance_between(octants_.box(leaf), test.box);
+                const double least =
+                    octants_.least_length(leaf) + octants_.least_slope(leaf) * distance;
+                if (least <= safely * test.most) near.push_back(&test);
+            }
+        }
+        for (const std::uint32_t k : of.kept) {
+            const Record& r = records_[k];
+            const auto matters = [&](const Test* test) {
+                const Vector away = nearest_in(test->box, r.position) - r.position;
+                return r.length + slope_of(r, ratio_) * away.norm() <= safely * test->most;
+            };
+            if (std::ranges::any_of(near, matters)) visit(k);
+        }
+    }
+}
+
+std::span<const SharedSources::Test> SharedSources::tests_of(LeafIndex octant) const {
+    const std::size_t first = first_test_[octant];
+    return std::span(tests_).subspan(first, first_test_[octant + std::size_t{1}] - first);
+}
+
+std::vector<PointSource> SharedSources::near(const std::vector<std::vector<LeafIndex>>& wanted,
+                                             std::uint64_t& received) const {
+    std::vector<std::vector<Record>> to(wanted.size());
+    for (std::size_t r = 0; r < wanted.size(); ++r) {
+        for_each_that_matters(wanted[r], [&](std::uint32_t k) { to[r].push_back(records_[k]); });
+    }
+    const std::size_t from_self = to[static_cast<std::size_t>(ranks_.rank())].size();
+    std::vector<Record> records = ranks_.exchange(to).values;
+    to.clear();
+    received = records.size() - from_self;
+    std::vector<PointSource> sources;
+    ranks_.together([&] {
+        std::ranges::sort(records, {}, &Record::index);
+        sources = sources_of(records);
+    });
+    return sources;
+}
+
+}  // namespace controlspace

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "mpi/distributed_space.h"
+#include "mpi/exchange.h"
+#include "mpi/octants.h"
+#include "mpi/record.h"
+
+namespace controlspace {
+
+/// The sources of all ranks, each with the owner of its octant, and which of them matter elsewhere.
+///
+/// The field is the minimum of cones, to the bit, whatever other cones are searched. Some cone
+/// stays below U everywhere in an octant B: what is above U everywhere in B is nowhere the smallest
+/// in it, nor is it in bounds of any box inside of B. All others matter in B, up to rounding.
+class SharedSources {
+public:
+    /// Collective: sends this rank's sources to the owners of their octants, and finds bounds of
+    /// the field in each octant. `ranks` and `octants` must outlive it.
+    SharedSources(Ranks& ranks, const Octants& octants, const DistributedOptions& options,
+                  std::vector<Record>&& records);
+
+    std::size_t owned() const { return records_.size(); }
+    /// Of them, those that none of the others there dominates.
+    std::size_t kept() const { return kept_; }
+
+    /// Collective, the one exchange: the sources that matter in the octants that each rank wants,
+    /// or lie there, in the order that they have in all; `received` are those of other ranks.
+    std::vector<PointSource> near(const std::vector<std::vector<LeafIndex>>& wanted,
+                                  std::uint64_t& received) const;
+
+private:
+    struct Bound;
+    /// A box in which the field is nowhere longer than `most`.
+    struct Test {
+        Box box;
+        double most;
+    };
+    struct OwnSources {
+        std::vector<std::uint32_t> all, kept;
+    };
+
+    void find_bounds();
+    Bound bound_of(const Record& r) const;
+    std::vector<double> bounds_of_octants();
+    void add_tests(const LeafPlace& octant, double most);
+    template <class Visit>
+    void for_each_that_matters(std::span<const LeafIndex> in, const Visit& visit) const;
+    std::span<const Test> tests_of(LeafIndex octant) const;
+
+    Ranks& ranks_;
+    const Octants& octants_;
+    double ratio_, cap_;
+    bool adapted_;
+    std::vector<Record> records_;  // owned
+    std::size_t kept_ = 0;
+    std::vector<LeafIndex> own_octants_;
+    std::vector<OwnSources> sources_in_;   // of octants
+    std::vector<Test> tests_;              // of octants, one after the other
+    std::vector<std::size_t> first_test_;  // of each octant, and the end
+};
+
+}  // namespace controlspace
