@@ -1,0 +1,9 @@
+#include "trees/packing/frozen_quadratic.h"
+
+namespace controlspace {
+
+template std::unique_ptr<ControlSpace> freeze_quadratic(const Topology<KdNode>&,
+                                                        std::span<const Metric>,
+                                                        const QuadraticRule&, Precision);
+
+}  // namespace controlspace
