@@ -13,6 +13,7 @@
 #include "controlspace/metric/blend.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/sources/riemannian.h"
+#include "controlspace/trees/detail/adjacency.h"
 
 namespace controlspace {
 
@@ -59,12 +60,7 @@ void BackgroundTets::clear(const Metric& metric) {
     last_.forget();
     graded_ = false;
     std::vector<Point> corners;
-    for (int i = 0; i < 8; ++i) {
-        const auto side = [&](int axis) {
-            return (i >> axis & 1 ? domain().high : domain().low)[axis];
-        };
-        corners.emplace_back(side(0), side(1), side(2));
-    }
+    for (int i = 0; i < 8; ++i) corners.push_back(corner(domain(), i));
     add(corners, std::vector<Metric>(corners.size(), metric));
 }
 
@@ -153,23 +149,17 @@ ControlNodes BackgroundTets::control_nodes(Neighbourhood) const {
     NodeGraph graph;
     std::vector<Metric> metrics(mesh_.number_of_vertices());
     graph.positions.resize(metrics.size());
-    graph.first.assign(metrics.size() + 1, 0);
     for (const auto& vertex : mesh_.finite_vertex_handles()) {
         graph.positions[vertex->info().index] = position(vertex);
         metrics[vertex->info().index] = metric(vertex);
     }
-    const auto for_each_end = [&](auto&& visit) {
+    link(graph, graph.size(), [&](auto&& enter) {
         for (const auto& [cell, i, j] : mesh_.finite_edges()) {
             const NodeIndex a = cell->vertex(i)->info().index, b = cell->vertex(j)->info().index;
-            visit(a, b);
-            visit(b, a);
+            enter(a, b);
+            enter(b, a);
         }
-    };
-    for_each_end([&](NodeIndex from, NodeIndex) { ++graph.first[from + std::size_t{1}]; });
-    for (std::size_t i = 1; i < graph.first.size(); ++i) graph.first[i] += graph.first[i - 1];
-    graph.neighbours.resize(graph.first.back());
-    std::vector<std::size_t> next(graph.first.begin(), graph.first.end() - 1);
-    for_each_end([&](NodeIndex from, NodeIndex to) { graph.neighbours[next[from]++] = to; });
+    });
     return {std::move(graph), std::move(metrics)};
 }
 
