@@ -77,13 +77,12 @@ void ConeField::evaluate(std::span<const Point> x, std::span<Metric> out,
 }
 
 void ConeField::evaluate_lengths(std::span<const Point> x, std::span<double> lengths) const {
-    const auto& cones = std::get<IsotropicCones>(cones_);
     const std::vector<std::uint32_t> order = spatial_order(x);
     std::vector<Point> places(x.size());
     std::vector<double> found(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) places[i] = x[order[i]];
     IsotropicCones::Hint hint = 0;
-    cones.smallest_lengths(places, found, hint);
+    isotropic().smallest_lengths(places, found, hint);
     for (std::size_t i = 0; i < x.size(); ++i) lengths[order[i]] = found[i];
 }
 
@@ -112,12 +111,11 @@ void ConeField::governing(const Point& x, double tolerance, std::vector<std::uin
         m = cones->intersect(x, largest_, tolerance, memory.search, &sources);
         return;
     }
-    const auto* isotropic = std::get_if<IsotropicCones>(&cones_);
-    const double h = isotropic->smallest_length(x, memory.hint);
+    const double h = isotropic().smallest_length(x, memory.hint);
     m = largest_;
     if (h * (1 + tolerance) >= longest_) return;
     m = intersection(largest_, Metric::isotropic(h));
-    sources.push_back(isotropic->source_of(x, h, memory.hint));
+    sources.push_back(isotropic().source_of(x, h, memory.hint));
 }
 
 void ConeField::governing(const Point& x, double tolerance, std::vector<std::uint32_t>& sources,
@@ -126,39 +124,8 @@ void ConeField::governing(const Point& x, double tolerance, std::vector<std::uin
     governing(x, tolerance, sources, m, memory);
 }
 
-void ConeField::evaluate_roughly(std::span<const Point> x, double tolerance, std::span<Metric> out,
-                                 Memory& memory) const {
-    const auto& cones = std::get<IsotropicCones>(cones_);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        out[i] = Metric::isotropic(cones.smallest_length(x[i], tolerance, memory.hint));
-    }
-}
-
 bool ConeField::is_isotropic() const {
     return std::holds_alternative<IsotropicCones>(cones_) && controlspace::is_isotropic(largest_);
-}
-
-IsotropicCones::Range ConeField::range_in(const Box& box, Memory& memory) const {
-    return std::get<IsotropicCones>(cones_).range_in(box, memory.hint);
-}
-
-std::optional<Doubt> ConeField::doubt_of(const TrilinearLengths& lengths, double factor,
-                                         Memory& memory) const {
-    return std::get<IsotropicCones>(cones_).doubt_of(lengths, factor, memory.hint);
-}
-
-bool ConeField::gather(const Box& box, NearbyCones& nearby, Memory& memory) const {
-    const auto* isotropic = std::get_if<IsotropicCones>(&cones_);
-    return isotropic != nullptr && isotropic->gather(box, nearby, memory.hint);
-}
-
-std::optional<std::uint32_t> ConeField::source_below(const Point& x, double length,
-                                                     Memory& memory) const {
-    return std::get<IsotropicCones>(cones_).source_below(x, length, memory.hint);
-}
-
-bool ConeField::cover(const Box& box, double tolerance, ConeCover& cover, Memory& memory) const {
-    return std::get<IsotropicCones>(cones_).cover(box, tolerance, cover, memory.hint);
 }
 
 std::size_t ConeField::dropped() const {

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -69,10 +68,6 @@ public:
                           OrderFreeCones::Start& found) const;
     /// Whether sources are intersected without an order.
     bool has_starts() const { return std::holds_alternative<OrderFreeCones>(cones_); }
-    /// The same of an isotropic field, or lengths up to the fraction `tolerance` more.
-    void evaluate_roughly(std::span<const Point> x, double tolerance, std::span<Metric> out,
-                          Memory& memory) const;
-
     /// The metric `m` at `x`, and the `sources` that make it so, their indices: `m` is `largest`
     /// intersected with their cones. In turn, they come in the order of the definition, and cones
     /// that would shorten no length by more than the fraction `tolerance` are passed over, whatever
@@ -85,27 +80,8 @@ public:
 
     /// Whether all sources, and `largest`, are isotropic.
     bool is_isotropic() const;
-    /// Bounds of an isotropic field in a box, as `IsotropicCones::range_in` has them.
-    IsotropicCones::Range range_in(const Box& box, Memory& memory) const;
-
-    /// Of an isotropic field: what `IsotropicCones::doubt_of` says.
-    std::optional<Doubt> doubt_of(const TrilinearLengths& lengths, double factor,
-                                  Memory& memory) const;
-
-    /// Makes `nearby` all cones that can be the smallest somewhere in `box`; returns false where
-    /// they may be hundreds, or sources are anisotropic.
-    bool gather(const Box& box, NearbyCones& nearby, Memory& memory) const;
-
-    /// Of isotropic sources: the one whose cone is the smallest at `x`, if that is less than
-    /// `length`. The quicker the shorter the length is.
-    std::optional<std::uint32_t> source_below(const Point& x, double length, Memory& memory) const;
-
-    /// Of isotropic sources: chooses some that cover `box`, as `IsotropicCones::cover` does.
-    bool cover(const Box& box, double tolerance, ConeCover& cover, Memory& memory) const;
-
-    /// Of isotropic sources: indices of those that were not left out, each the smallest at its own
-    /// place, as rounding allows.
-    std::span<const std::uint32_t> kept() const { return std::get<IsotropicCones>(cones_).kept(); }
+    /// What finds the cones of sources that are all isotropic.
+    const IsotropicCones& isotropic() const { return std::get<IsotropicCones>(cones_); }
     /// Sources that were left out because others lie below them everywhere.
     std::size_t dropped() const;
 

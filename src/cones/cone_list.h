@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "controlspace/geometry/point.h"
+#include "controlspace/metric/metric.h"
 #include "metric/tensor_lanes.h"
 
 namespace controlspace {
@@ -17,6 +18,10 @@ struct IsotropicCone {
 
     /// Up to rounding.
     double length_at(const Point& p) const { return length + slope * (p - position).norm(); }
+    /// To the bit `cone_factor` times the source's length.
+    double exact_length_at(const Point& p) const {
+        return (1 + slope * metric_length(Metric::isotropic(length), p - position)) * length;
+    }
 };
 
 /// Isotropic cones side by side; infinite lengths fill up the last lanes.
@@ -29,10 +34,6 @@ struct ConeLanes {
     LanesOf<n> distances(const Point& p) const { return position.distances(p); }
     /// Up to rounding.
     LanesOf<n> lengths_at(const Point& p) const { return length + slope * distances(p); }
-    /// Lower bounds of them everywhere at most `radius` away from `p`.
-    LanesOf<n> least_lengths(const Point& p, double radius) const {
-        return length + slope * (distances(p) - radius).max(0);
-    }
     void set(Eigen::Index lane, const IsotropicCone& cone) {
         position.set(lane, cone.position);
         length[lane] = cone.length;
@@ -66,7 +67,6 @@ public:
         eights_.back().set(lane, cone);
     }
 
-    std::size_t size() const { return size_; }
     const std::vector<Eight>& eights() const { return eights_; }
     IsotropicCone operator[](const Place& place) const { return eights_[place.eight][place.lane]; }
 
@@ -82,6 +82,13 @@ public:
             place = {e, lane};
         }
         return place;
+    }
+
+    /// The smallest length at `p`, or `most` where none is below it; up to rounding.
+    double smallest_length(const Point& p, double most) const {
+        Lanes smallest = Lanes::Constant(most);
+        for (const Eight& eight : eights_) smallest = smallest.min(eight.lengths_at(p));
+        return smallest.minCoeff();
     }
 
 private:

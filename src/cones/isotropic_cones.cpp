@@ -1,12 +1,8 @@
 #include "cones/isotropic_cones.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <span>
-
-#include "controlspace/metric/metric.h"
 
 namespace controlspace {
 
@@ -25,11 +21,6 @@ Lanes IsotropicCones::lower_bounds(const Node& node, const Point& p, double radi
     return safely_ * (node.length + node.slope * (node.distances(p) - radius).max(0));
 }
 
-double IsotropicCones::length_at(const Leaf& leaf, Eigen::Index lane, const Point& p) const {
-    const auto [position, h, slope] = leaf[lane];
-    return (1 + slope * metric_length(Metric::isotropic(h), p - position)) * h;
-}
-
 void IsotropicCones::visit_leaf(Hint index, const Point& p, double& smallest, Hint& hint) const {
     // First as bounds have them, all lanes: only those near to the least may have the smallest.
     const Leaf& leaf = tree_.leaves()[index];
@@ -39,20 +30,12 @@ void IsotropicCones::visit_leaf(Hint index, const Point& p, double& smallest, Hi
     const double doubtful = least / (safely_ * safely_);
     for (Eigen::Index i = 0; i < leaf_size; ++i) {
         if (!(lengths[i] <= doubtful)) continue;
-        const double length = length_at(leaf, i, p);
+        const double length = leaf[i].exact_length_at(p);
         if (length < smallest) {
             smallest = length;
             hint = index;
         }
     }
-}
-
-double IsotropicCones::smallest_length(const Point& p, Hint& hint) const {
-    return search(p, cap_, 0, hint);
-}
-
-double IsotropicCones::smallest_length(const Point& p, double tolerance, Hint& hint) const {
-    return search(p, cap_, tolerance, hint);
 }
 
 std::optional<std::uint32_t> IsotropicCones::source_below(const Point& p, double length,
@@ -62,69 +45,10 @@ std::optional<std::uint32_t> IsotropicCones::source_below(const Point& p, double
     return source_of(p, smallest, hint);
 }
 
-std::uint32_t IsotropicCones::source_of(const Point& p, double smallest, Hint hint) const {
-    return source_in(hint, lane_of(p, smallest, hint));
-}
-
 Eigen::Index IsotropicCones::lane_of(const Point& p, double smallest, Hint leaf) const {
     Eigen::Index lane = 0;
-    while (length_at(tree_.leaves()[leaf], lane, p) != smallest) ++lane;
+    while (tree_.leaves()[leaf][lane].exact_length_at(p) != smallest) ++lane;
     return lane;
-}
-
-// With R half the diagonal of a box, the cone that is the smallest at its centre is longer by (g-1)
-// R at most at any place in it: what is above that at all places is nowhere the smallest.
-bool IsotropicCones::gather(const Box& box, NearbyCones& nearby, Hint& hint) const {
-    nearby.reset(cap_);
-    const Point p = box.centre();
-    const double radius = box.half_diagonal();
-    const double smallest = smallest_length(p, hint);
-    const double rise =
-        smallest < cap_ ? tree_.leaves()[hint].slope[lane_of(p, smallest, hint)] * radius : 0;
-    const double reach = (smallest + rise) / (safely_ * safely_);
-    const double beyond = std::nextafter(reach, std::numeric_limits<double>::infinity());
-    std::array<const Leaf*, 32> leaves;
-    std::size_t found = 0;
-    const bool are_few = tree_.search(
-        [&] { return beyond; }, [&](const Node& node) { return lower_bounds(node, p, radius); },
-        [&](std::uint32_t number) {
-            if (found == leaves.size()) return false;
-            leaves[found++] = &tree_.leaf(number);
-            return true;
-        });
-    if (!are_few) return false;
-    for (const Leaf* leaf : std::span(leaves).first(found)) {
-        const LanesOf<leaf_size> lengths = leaf->least_lengths(p, radius);
-        for (Eigen::Index i = 0; i < leaf_size; ++i) {
-            if (lengths[i] <= reach) nearby.add((*leaf)[i]);
-        }
-    }
-    return true;
-}
-
-// Those are given that the source which is the smallest at the centre does not cover.
-bool IsotropicCones::cover(const Box& box, double tolerance, ConeCover& cover, Hint& hint) const {
-    constexpr double never = std::numeric_limits<double>::infinity();
-    cover.reset(box, cap_, tolerance);
-    const Point centre = box.centre();
-    const double smallest = smallest_length(centre, hint);
-    if (smallest < cap_) {
-        const Leaf& leaf = tree_.leaves()[hint];
-        const Eigen::Index lane = lane_of(centre, smallest, hint);
-        cover.choose(source_in(hint, lane), leaf[lane]);
-    }
-    const auto bounds = [&](const Node& node) { return node.uncovered(cover, centre); };
-    const auto give_uncovered = [&](std::uint32_t number) {
-        const Leaf& leaf = tree_.leaf(number);
-        const auto covered = cover.covered(leaf);
-        for (Eigen::Index i = 0; i < leaf_size; ++i) {
-            if (covered[i]) continue;
-            const std::uint32_t source = source_in(tree_.leaf_number(number), i);
-            if (!cover.give(source, leaf[i])) return false;
-        }
-        return true;
-    };
-    return tree_.search([] { return never; }, bounds, give_uncovered) && cover.complete();
 }
 
 double IsotropicCones::search(const Point& p, double cap, double tolerance, Hint& hint) const {

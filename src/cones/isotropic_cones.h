@@ -9,7 +9,6 @@
 #include "cones/cone_cover.h"
 #include "cones/cone_list.h"
 #include "cones/cone_tree.h"
-#include "cones/nearby_cones.h"
 #include "cones/trilinear_lengths.h"
 #include "controlspace/geometry/box.h"
 #include "controlspace/geometry/point.h"
@@ -31,9 +30,10 @@ public:
 
     /// The smallest length of all cones at `p`, or the cap where none is below it: to the bit the
     /// minimum over all sources of `cone_factor` times the source's length, whatever `hint` is.
-    double smallest_length(const Point& p, Hint& hint) const;
-    /// The same, or up to the fraction `tolerance` more.
-    double smallest_length(const Point& p, double tolerance, Hint& hint) const;
+    /// With a `tolerance`, the same, or up to this fraction more.
+    double smallest_length(const Point& p, Hint& hint, double tolerance = 0) const {
+        return search(p, cap_, tolerance, hint);
+    }
     /// The same at each of `x`, to the bit, all at once: by far faster where neighbours in `x` are
     /// near to each other.
     void smallest_lengths(std::span<const Point> x, std::span<double> lengths, Hint& hint) const;
@@ -52,11 +52,13 @@ public:
 
     /// Index of the source that has the `smallest` length at `p`, one of them where several have;
     /// `smallest` and `hint` as `smallest_length` left them, `smallest` below the cap.
-    std::uint32_t source_of(const Point& p, double smallest, Hint hint) const;
+    std::uint32_t source_of(const Point& p, double smallest, Hint hint) const {
+        return source_in(hint, lane_of(p, smallest, hint));
+    }
 
     /// Makes `nearby` all cones that can be the smallest somewhere in `box`, or returns false where
     /// some hundreds come close to that; `hint` as in `smallest_length`.
-    bool gather(const Box& box, NearbyCones& nearby, Hint& hint) const;
+    bool gather(const Box& box, ConeList& nearby, Hint& hint) const;
 
     /// The source that has the smallest length at `p`, if that is less than `length`.
     std::optional<std::uint32_t> source_below(const Point& p, double length, Hint& hint) const;
@@ -105,15 +107,21 @@ private:
     bool is_dominated(const IsotropicCone& cone) const;
     /// Of all cones below, everywhere at most `radius` away from `p`.
     Lanes lower_bounds(const Node& node, const Point& p, double radius = 0) const;
-    double length_at(const Leaf& leaf, Eigen::Index lane, const Point& p) const;
     Eigen::Index lane_of(const Point& p, double smallest, Hint leaf) const;
     std::uint32_t source_in(Hint leaf, Eigen::Index lane) const {
         return tree_.indices()[leaf * std::size_t{leaf_size} + static_cast<std::size_t>(lane)];
     }
-    /// Calls add(cone) for all cones that can be the smallest somewhere in `box`, until it answers
-    /// false; then, returns false.
+    /// Makes the one cone of `cover` that which is the smallest at the centre of `box`, if any is
+    /// below the cap, and returns it.
+    std::optional<IsotropicCone> cover_by_one(const Box& box, double tolerance, ConeCover& cover,
+                                              Hint& hint) const;
+    /// Calls add(source, cone) for what the cover leaves of a leaf, until it answers false; then,
+    /// returns false.
     template <class Add>
-    bool visit_uncovered(const Box& box, Hint& hint, const Add& add) const;
+    bool add_uncovered(std::uint32_t number, const ConeCover& cover, const Add& add) const;
+    /// The same of all leaves; `centre` is that of the cover's box.
+    template <class Add>
+    bool add_all_uncovered(const Point& centre, const ConeCover& cover, const Add& add) const;
     void visit_leaf(Hint leaf, const Point& p, double& smallest, Hint& hint) const;
     std::optional<Doubt> doubt_of_long(const TrilinearLengths& lengths, double factor) const;
     std::optional<Doubt> doubt_of_short(const TrilinearLengths& lengths, double factor,

@@ -9,6 +9,7 @@
 
 #include "cones/isotropic_cones.h"
 #include "controlspace/sources/cone.h"
+#include "geometry/extent_of.h"
 
 namespace controlspace {
 
@@ -78,14 +79,9 @@ struct Cylinder {
     double half_thickness, radius;
 
     explicit Cylinder(std::span<const ConeTreeItem> items) {
-        Point low = items.front().position();
-        Point high = low;
-        for (const ConeTreeItem& item : items) {
-            low = low.cwiseMin(item.position());
-            high = high.cwiseMax(item.position());
-        }
-        centre = 0.5 * (low + high);
-        normal = normal_of(items, centre, (high - low).maxCoeff());
+        const Box extent = extent_of(items, &ConeTreeItem::position);
+        centre = extent.centre();
+        normal = normal_of(items, centre, extent.edges().maxCoeff());
         double least = infinity;
         double most = -infinity;
         for (const ConeTreeItem& item : items) {
@@ -102,7 +98,7 @@ struct Cylinder {
             thickness = std::max(thickness, std::abs(along));
             squared_radius = std::max(squared_radius, (v - along * normal).squaredNorm());
         }
-        const double rounding = 64 * epsilon * (high - low).norm();
+        const double rounding = 64 * epsilon * extent.edges().norm();
         half_thickness = thickness + rounding;
         radius = std::sqrt(squared_radius) + rounding;
     }
@@ -153,7 +149,7 @@ bool IsotropicCones::is_dominated(const IsotropicCone& cone) const {
                              const LanesOf<leaf_size> roughly = leaf.lengths_at(cone.position);
                              for (Eigen::Index i = 0; i < leaf_size; ++i) {
                                  if (!(safely_ * roughly[i] < below)) continue;
-                                 const double length = length_at(leaf, i, cone.position);
+                                 const double length = leaf[i].exact_length_at(cone.position);
                                  if (is_below(length, leaf.slope[i])) return false;
                              }
                              return true;

@@ -1,5 +1,5 @@
-// Lengths at many places near to each other: their cones are found once, and every one of them is
-// evaluated at every place.
+// What a box needs: the cones that are the smallest in it, found once. Lengths at many places near
+// to each other are those of all of these at every place.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "cones/cone_cover.h"
 #include "cones/isotropic_cones.h"
-#include "controlspace/metric/metric.h"
+#include "geometry/extent_of.h"
 #include "vector_clones.h"
 
 namespace controlspace {
@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::size_t group = 64;  // places at once
 constexpr double infinity = std::numeric_limits<double>::infinity();
+// Of lengths, as a fraction: a cone that is longer than another by more is not the smallest.
+constexpr double beyond_rounding = 256 * std::numeric_limits<double>::epsilon();
 using Numbers = std::array<double, group>;
 
 struct Places {
@@ -59,37 +61,71 @@ void find_least(const IsotropicCone* __restrict cones, std::size_t count,
     }
 }
 
-double exact_length(const IsotropicCone& cone, const Point& p) {
-    const Metric m = Metric::isotropic(cone.length);
-    return (1 + cone.slope * metric_length(m, p - cone.position)) * cone.length;
-}
-
 }  // namespace
 
-// All but those that the cone which is the smallest at the centre covers, beyond rounding.
-template <class Add>
-bool IsotropicCones::visit_uncovered(const Box& box, Hint& hint, const Add& add) const {
-    constexpr double never = std::numeric_limits<double>::infinity();
-    constexpr double rounding = 256 * std::numeric_limits<double>::epsilon();
+std::optional<IsotropicCone> IsotropicCones::cover_by_one(const Box& box, double tolerance,
+                                                          ConeCover& cover, Hint& hint) const {
     const Point centre = box.centre();
     const double smallest = smallest_length(centre, hint);
-    ConeCover cover;
-    cover.reset(box, cap_, -rounding);
-    if (smallest < cap_) {
-        const Leaf& leaf = tree_.leaves()[hint];
-        const IsotropicCone cone = leaf[lane_of(centre, smallest, hint)];
-        cover.choose(0, cone);
-        add(cone);
+    cover.reset(box, cap_, tolerance);
+    if (!(smallest < cap_)) return std::nullopt;
+    const Eigen::Index lane = lane_of(centre, smallest, hint);
+    const IsotropicCone cone = tree_.leaves()[hint][lane];
+    cover.choose(source_in(hint, lane), cone);
+    return cone;
+}
+
+template <class Add>
+bool IsotropicCones::add_uncovered(std::uint32_t number, const ConeCover& cover,
+                                   const Add& add) const {
+    const Leaf& leaf = tree_.leaf(number);
+    const auto covered = cover.covered(leaf);
+    for (Eigen::Index i = 0; i < leaf_size; ++i) {
+        if (!covered[i] && !add(source_in(tree_.leaf_number(number), i), leaf[i])) return false;
     }
-    const auto bounds = [&](const Node& node) { return node.uncovered(cover, centre); };
-    return tree_.search([] { return never; }, bounds,
+    return true;
+}
+
+template <class Add>
+bool IsotropicCones::add_all_uncovered(const Point& centre, const ConeCover& cover,
+                                       const Add& add) const {
+    return tree_.search([] { return infinity; },
+                        [&](const Node& node) { return node.uncovered(cover, centre); },
+                        [&](std::uint32_t number) { return add_uncovered(number, cover, add); });
+}
+
+bool IsotropicCones::cover(const Box& box, double tolerance, ConeCover& cover, Hint& hint) const {
+    cover_by_one(box, tolerance, cover, hint);
+    return add_all_uncovered(box.centre(), cover,
+                             [&](std::uint32_t source, const IsotropicCone& cone) {
+                                 return cover.give(source, cone);
+                             }) &&
+           cover.complete();
+}
+
+// With R half the diagonal of a box, the cone that is the smallest at its centre is longer by (g-1)
+// R at most at any place in it: what is above that at all places is nowhere the smallest.
+bool IsotropicCones::gather(const Box& box, ConeList& nearby, Hint& hint) const {
+    constexpr int most_leaves = 32;
+    nearby.clear();
+    const Point p = box.centre();
+    const double radius = box.half_diagonal();
+    ConeCover cover;
+    double reach = cap_;
+    if (const auto cone = cover_by_one(box, -beyond_rounding, cover, hint)) {
+        nearby.add(*cone);
+        reach = cone->exact_length_at(p) + cone->slope * radius;
+    }
+    const double beyond = std::nextafter(reach / (safely_ * safely_), infinity);
+    int leaves = 0;
+    return tree_.search([&] { return beyond; },
+                        [&](const Node& node) { return lower_bounds(node, p, radius); },
                         [&](std::uint32_t number) {
-                            const Leaf& leaf = tree_.leaf(number);
-                            const auto covered = cover.covered(leaf);
-                            for (Eigen::Index i = 0; i < leaf_size; ++i) {
-                                if (!covered[i] && !add(leaf[i])) return false;
-                            }
-                            return true;
+                            const auto add = [&](std::uint32_t, const IsotropicCone& cone) {
+                                nearby.add(cone);
+                                return true;
+                            };
+                            return ++leaves <= most_leaves && add_uncovered(number, cover, add);
                         });
 }
 
@@ -110,20 +146,17 @@ void IsotropicCones::smallest_lengths(std::span<const Point> x, std::span<double
     };
     if (x.size() <= few) return one_by_one();
 
-    Point low = x.front();
-    Point high = low;
-    for (const Point& p : x) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
     std::array<IsotropicCone, most_cones> cones;
     std::size_t count = 0;
-    const auto add = [&](const IsotropicCone& cone) {
+    const Box box = extent_of(x);
+    ConeCover cover;
+    if (const auto cone = cover_by_one(box, -beyond_rounding, cover, hint)) cones[count++] = *cone;
+    const auto add = [&](std::uint32_t, const IsotropicCone& cone) {
         if (count == cones.size()) return false;
         cones[count++] = cone;
         return true;
     };
-    if (!visit_uncovered({low, high}, hint, add)) {
+    if (!add_all_uncovered(box.centre(), cover, add)) {
         const std::size_t half = x.size() / 2;
         smallest_lengths(x.first(half), lengths.first(half), hint);
         return smallest_lengths(x.subspan(half), lengths.subspan(half), hint);
@@ -143,11 +176,11 @@ void IsotropicCones::smallest_lengths(std::span<const Point> x, std::span<double
         const double doubtful = least.first[i] / (safely_ * safely_);
         if (count > 0 && least.second[i] > doubtful) {
             smallest = std::min(
-                smallest, exact_length(cones[static_cast<std::size_t>(least.number[i])], x[i]));
+                smallest, cones[static_cast<std::size_t>(least.number[i])].exact_length_at(x[i]));
         } else {
             for (const IsotropicCone& cone : std::span(cones).first(count)) {
                 if (cone.length_at(x[i]) > doubtful) continue;
-                smallest = std::min(smallest, exact_length(cone, x[i]));
+                smallest = std::min(smallest, cone.exact_length_at(x[i]));
             }
         }
         lengths[i] = smallest;

@@ -11,6 +11,8 @@
 #include "cones/undominated.h"
 #include "controlspace/input_errors.h"
 #include "controlspace/sources/cone.h"
+#include "geometry/extent_of.h"
+#include "geometry/hash_of_words.h"
 #include "metric/decompose.h"
 #include "metric/interior_point.h"
 
@@ -90,24 +92,6 @@ public:
         }
         return answer;
     }
-    /// Nodes of the tree that are not far above its members: what exceeds H most at a place is
-    /// often near to what did so elsewhere.
-    class Nearby {
-    public:
-        Nearby(const Core& core, const QuadricTree& tree, int levels_up) {
-            for (std::size_t k = 0; k < core.size_; ++k) {
-                if (core.members_[k] >= index_of_further) continue;
-                std::uint32_t node = tree.leaf_of(core.members_[k]);
-                for (int level = 0; level < levels_up; ++level) node = tree.parent(node);
-                if (std::ranges::find(nodes(), node) == nodes().end()) nodes_[count_++] = node;
-            }
-        }
-        std::span<const std::uint32_t> nodes() const { return {nodes_.data(), count_}; }
-
-    private:
-        std::array<std::uint32_t, OrderFreeIntersection::most_multipliers> nodes_;
-        std::size_t count_ = 0;
-    };
     /// Leaves the first `fixed`, and those that the certificate of an answer
     /// needs.
     void reduce(const OrderFreeIntersection& answer, std::size_t fixed) {
@@ -148,18 +132,13 @@ OrderFreeCones::OrderFreeCones(std::span<const PointSource> sources, double g,
     UndominatedSources kept = undominated_sources(sources, g, lengths_of_largest[2]);
     dropped_ = kept.dropped;
     if (kept.items.empty()) return;
-    Point low = kept.items.front().position();
-    Point high = low;
-    for (const ConeTreeItem& item : kept.items) {
-        low = low.cwiseMin(item.position());
-        high = high.cwiseMax(item.position());
-    }
+    const Box extent = extent_of(kept.items, &ConeTreeItem::position);
     kept.tree = {};
     rounding_ = std::max(0.1 * kept.uncertainty, 1e-13);
     tree_ = QuadricTree(kept.items, sources, kept.lengths, kept.uncertainty, g);
-    origin_ = low;
-    edge_ = std::max((high - low).maxCoeff(), lengths_of_largest[0]);
-    answer(0.5 * (low + high), nullptr, {}, tolerance_of_start, &start_);
+    origin_ = extent.low;
+    edge_ = std::max(extent.edges().maxCoeff(), lengths_of_largest[0]);
+    answer(extent.centre(), nullptr, {}, tolerance_of_start, &start_);
 }
 
 double OrderFreeCones::gap_of(double tolerance) {
@@ -203,13 +182,23 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
         if (!tree_.empty()) {
             Exceeded exceeded(limit);
             const Exceeding exceeding(p, answer.factor);
-            const Core::Nearby nearby(core, tree_, levels.value_or(2));
-            for (const std::uint32_t node : nearby.nodes()) {
+            // What exceeds H most at a place is often near to what did so elsewhere: nodes that are
+            // not far above the members.
+            std::array<std::uint32_t, OrderFreeIntersection::most_multipliers> all_nearby;
+            std::span<const std::uint32_t> nearby;
+            for (std::size_t k = fixed; k < core.size(); ++k) {
+                std::uint32_t node = tree_.leaf_of(core.member(k));
+                for (int up = levels.value_or(2); up > 0; --up) node = tree_.parent(node);
+                if (std::ranges::find(nearby, node) != nearby.end()) continue;
+                all_nearby[nearby.size()] = node;
+                nearby = {all_nearby.data(), nearby.size() + 1};
+            }
+            for (const std::uint32_t node : nearby) {
                 find_exceeded(tree_, node, {}, exceeding, exceeded);
             }
             const auto is_new = [&](const Exceeded::Cone& cone) { return !core.has(cone.member); };
             if (std::ranges::none_of(exceeded.cones(), is_new) && !levels) {
-                find_exceeded(tree_, 0, nearby.nodes(), exceeding, exceeded);
+                find_exceeded(tree_, 0, nearby, exceeding, exceeded);
             }
             if (std::ranges::any_of(exceeded.cones(), is_new) && round < most_rounds) {
                 if (!core.has_room_for(exceeded.cones().size())) core.reduce(answer, fixed);
@@ -304,12 +293,7 @@ const OrderFreeCones::Start& OrderFreeCones::start_near(const Point& p, Search& 
         return search.last.start;
     }
     const auto slot = [](std::vector<Cell>& cells, const auto& key) -> Cell& {
-        std::uint64_t hash = 0;
-        for (const std::int64_t k : key) {
-            hash = (hash ^ static_cast<std::uint64_t>(k)) * 0x9e3779b97f4a7c15;
-            hash ^= hash >> 32;
-        }
-        return cells[hash & (cells.size() - 1)];
+        return cells[hash_of_words(key) & (cells.size() - 1)];
     };
     search.last = {};
     search.last.start = start_;

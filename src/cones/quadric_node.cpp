@@ -3,8 +3,8 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
-#include <utility>
 
+#include "unrolled.h"
 #include "vector_clones.h"
 
 namespace controlspace {
@@ -66,15 +66,6 @@ struct Symmetric {
     constexpr double most = 1e30;
     constexpr double below = 1 - 5e-7;
     return below * static_cast<double>(std::sqrt(static_cast<float>(less(x, most))));
-}
-
-// Calls visit(0), ..., visit(n - 1) with constants, which vectors need.
-template <std::size_t n, class Visit>
-[[gnu::always_inline]] inline void unrolled(const Visit& visit) {
-    [&]<std::size_t... i>(std::index_sequence<i...>) __attribute__((always_inline)) {
-        (visit(std::integral_constant<std::size_t, i>()), ...);
-    }
-    (std::make_index_sequence<n>());
 }
 
 // Of a patch, a number at each control point.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "geometry/extent_of.h"
+
 namespace controlspace {
 
 namespace {
@@ -19,17 +21,12 @@ std::uint64_t spread(std::uint64_t bits) {
 std::vector<std::uint32_t> spatial_order(std::span<const Point> points) {
     std::vector<std::uint32_t> order(points.size());
     if (points.empty()) return order;
-    Point low = points.front();
-    Point high = low;
-    for (const Point& p : points) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
+    const Box extent = extent_of(points);
     constexpr double cells = 1024;
-    const Vector scale = cells / (high - low).array();
+    const Vector scale = cells / extent.edges().array();
     // What is no number, or not finite, goes to either end.
     const auto cell = [&](const Point& p, Axis a) {
-        const double c = (p[a] - low[a]) * scale[a];
+        const double c = (p[a] - extent.low[a]) * scale[a];
         return c > 0 ? static_cast<std::uint64_t>(std::min(c, cells - 1)) : 0;
     };
     std::vector<std::uint64_t> keys(points.size());

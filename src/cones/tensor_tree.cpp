@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "controlspace/sources/cone.h"
+#include "geometry/extent_of.h"
 #include "metric/running_intersection.h"
 
 namespace controlspace {
@@ -32,16 +33,6 @@ Bounds bounds_of(std::span<const Bounds> parts) {
         growth = std::min(growth, part.growth);
     }
     return {within.metric(), inverse.metric(), length, growth};
-}
-
-Point centre_of(std::span<const ConeTreeItem> items) {
-    Point low = items.front().position();
-    Point high = low;
-    for (const ConeTreeItem& item : items) {
-        low = low.cwiseMin(item.position());
-        high = high.cwiseMax(item.position());
-    }
-    return 0.5 * (low + high);
 }
 
 // Largest distance from `centre` as `measure` has it: |measure (Q - centre)|.
@@ -105,7 +96,7 @@ TensorTree build_tensor_tree(std::span<ConeTreeItem> items, std::span<const Poin
             const auto lane = static_cast<Eigen::Index>(i);
             const Bounds bounds =
                 tree.is_leaf(child) ? bounds_of_leaf(of_child) : bounds_of_node[child];
-            const Point centre = centre_of(of_child);
+            const Point centre = extent_of(of_child, &ConeTreeItem::position).centre();
             node.centre.set(lane, centre);
             node.radius[lane] = radius_of(of_child, centre, bounds.inverse);
             node.inverse.set(lane, bounds.inverse);

@@ -9,16 +9,13 @@
 
 #include "controlspace/error.h"
 #include "controlspace/geometry/extent.h"
+#include "geometry/extent_of.h"
 
 namespace controlspace {
 
 Box bounding_box(std::span<const Point> points, double margin) {
     if (points.empty()) throw InputError("a box around no points: give at least one source");
-    Box box{points.front(), points.front()};
-    for (const Point& p : points) {
-        box.low = box.low.cwiseMin(p);
-        box.high = box.high.cwiseMax(p);
-    }
+    Box box = extent_of(points);
     const double longest = box.edges().maxCoeff();
     const double extent = longest > 0 ? longest : 1;
     for (Axis a = 0; a < 3; ++a) {

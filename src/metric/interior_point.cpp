@@ -4,7 +4,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include "unrolled.h"
 
 namespace controlspace {
 
@@ -49,15 +50,6 @@ const auto& entry(const SymmetricTensor& t) {
     if constexpr (e == 3) return t.xy;
     if constexpr (e == 4) return t.xz;
     if constexpr (e == 5) return t.yz;
-}
-
-// Calls visit(0), ..., visit(n - 1) with constants.
-template <int n, class Visit>
-[[gnu::always_inline]] inline void unrolled(const Visit& visit) {
-    [&]<int... i>(std::integer_sequence<int, i...>) {
-        (visit(std::integral_constant<int, i>()), ...);
-    }
-    (std::make_integer_sequence<int, n>());
 }
 
 // (I - P)^-1 - I. Not by cofactors: with two small slacks they lose the determinant.

@@ -4,14 +4,13 @@
 #include <tbb/concurrent_unordered_map.h>
 
 #include <array>
-#include <bit>
 #include <cstddef>
-#include <cstdint>
 #include <utility>
 
 #include "cones/order_free_cones.h"
 #include "controlspace/geometry/point.h"
 #include "controlspace/metric/metric.h"
+#include "geometry/hash_of_words.h"
 
 namespace controlspace {
 
@@ -60,14 +59,7 @@ private:
     bool is_full() const { return answers_.size() >= most_answers; }
 
     struct Hash {
-        std::size_t operator()(const std::array<double, 3>& x) const {
-            std::uint64_t hash = 0;
-            for (const double a : x) {
-                hash = (hash ^ std::bit_cast<std::uint64_t>(a)) * 0x9e3779b97f4a7c15;
-                hash ^= hash >> 32;
-            }
-            return hash;
-        }
+        std::size_t operator()(const std::array<double, 3>& x) const { return hash_of_words(x); }
     };
     tbb::concurrent_unordered_map<std::array<double, 3>, Answer, Hash> answers_;
     tbb::concurrent_queue<OrderFreeCones::Search> searches_;

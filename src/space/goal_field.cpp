@@ -58,7 +58,7 @@ GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
 GoalField::~GoalField() = default;
 
 bool GoalField::has_ranges() const { return continuous_ == nullptr && cones_->is_isotropic(); }
-std::span<const std::uint32_t> GoalField::kept() const { return cones_->kept(); }
+std::span<const std::uint32_t> GoalField::kept() const { return cones_->isotropic().kept(); }
 double GoalField::negligible() const { return negligible_for(target_); }
 
 void GoalField::sample(std::span<const Point> x, std::span<Metric> out) const {

@@ -58,7 +58,7 @@ TEST_CASE("sources that cover a box make the exact field there, up to the tolera
         const ConeField field(sources, g, wide);
         std::vector<std::uint32_t> all(sources.size());
         std::iota(all.begin(), all.end(), 0u);
-        ConeField::Memory memory;
+        IsotropicCones::Hint hint = 0;
         ConeCover cover;
         int covered = 0, refused = 0;
         double most = 0;
@@ -68,7 +68,7 @@ TEST_CASE("sources that cover a box make the exact field there, up to the tolera
                                 Vector(1, draw.uniform(0.3, 1), draw.uniform(0.3, 1));
             const Box box{centre - half, centre + half};
             const double tolerance = std::pow(10, draw.uniform(-2, -0.3));
-            if (!field.cover(box, tolerance, cover, memory)) {
+            if (!field.isotropic().cover(box, tolerance, cover, hint)) {
                 ++refused;
                 continue;
             }
@@ -89,11 +89,11 @@ TEST_CASE("sources that cover a box make the exact field there, up to the tolera
 
 TEST_CASE("a cover takes no more sources than it needs") {
     const Box box{Point::Constant(-0.1), Point::Constant(0.1)};
-    ConeField::Memory memory;
+    IsotropicCones::Hint hint = 0;
     ConeCover cover;
     const auto count = [&](const std::vector<PointSource>& sources) {
         const ConeField field(sources, g, wide);
-        REQUIRE(field.cover(box, 0.05, cover, memory));
+        REQUIRE(field.isotropic().cover(box, 0.05, cover, hint));
         return cover.sources().size();
     };
     const PointSource here{Point(0.02, 0, 0), Metric::isotropic(0.1)};
@@ -111,10 +111,11 @@ TEST_CASE("a box that more sources govern than there is room for is not covered"
         sources.push_back({Point(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1), Metric::isotropic(0.01)});
     }
     const ConeField field(sources, g, wide);
-    ConeField::Memory memory;
+    IsotropicCones::Hint hint = 0;
     ConeCover cover;
-    CHECK_FALSE(field.cover({Point::Constant(-1), Point::Constant(1)}, 0.1, cover, memory));
+    CHECK_FALSE(
+        field.isotropic().cover({Point::Constant(-1), Point::Constant(1)}, 0.1, cover, hint));
     CHECK(cover.sources().size() <= ConeCover::room);
-    CHECK(field.cover({Point::Constant(0), Point::Constant(1)}, 0.1, cover, memory));
+    CHECK(field.isotropic().cover({Point::Constant(0), Point::Constant(1)}, 0.1, cover, hint));
     CHECK(cover.sources().size() == 8);
 }

@@ -1,5 +1,3 @@
-#include "cones/nearby_cones.h"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -65,31 +63,25 @@ double smallest_of(const std::vector<PointSource>& sources, Distance&& distance)
 
 }  // namespace
 
-TEST_CASE("cones gathered for a box, and narrowed to parts of it, make the exact field there") {
+TEST_CASE("cones gathered for a box make the exact field there") {
     Draw draw(1);
     for (const auto& sources :
          {scattered(draw, 0.02), scattered(draw, 1e-9), sample_sphere({.h = 0.1}),
           with_own_growths(scattered(draw, 0.02), draw),
           with_own_growths(sample_sphere({.h = 0.1}), draw)}) {
         const ConeField field(sources, g, wide);
-        ConeField::Memory memory;
-        NearbyCones gathered, cones, parts;
+        IsotropicCones::Hint hint = 0;
+        ConeList cones;
         int few = 0;
         for (int k = 0; k < 300; ++k) {
             const Box box = box_of(draw, std::pow(10, draw.uniform(-3, 0)));
-            if (!field.gather(box, gathered, memory)) continue;
+            if (!field.isotropic().gather(box, cones, hint)) continue;
             ++few;
-            cones.narrow(gathered, box);
-            REQUIRE(cones.size() <= gathered.size());
-            const Box part{box.low, box.centre()};
-            parts.narrow(cones, part);
             for (int i = 0; i < 20; ++i) {
-                const bool in_part = i % 2 == 0;
-                const NearbyCones& near = in_part ? parts : cones;
-                const Point x = place_in_box(draw, in_part ? part : box);
+                const Point x = place_in_box(draw, box);
                 const double exact =
                     smallest_of(sources, [&](const Point& q) { return (x - q).norm(); });
-                REQUIRE(near.smallest_length(x) == Approx(exact).epsilon(1e-12));
+                REQUIRE(cones.smallest_length(x, cap) == Approx(exact).epsilon(1e-12));
             }
         }
         CHECK(few > 100);
@@ -97,16 +89,12 @@ TEST_CASE("cones gathered for a box, and narrowed to parts of it, make the exact
 }
 
 TEST_CASE("what cannot be gathered is refused") {
-    Draw draw(2);
-    NearbyCones cones;
-    ConeField::Memory memory;
-    CHECK_FALSE(ConeField(sample_sphere({}), g, wide)
-                    .gather({Point::Constant(-1), Point::Constant(1)}, cones, memory));
-    const std::vector<PointSource> tensor{{Point::Zero(), draw.metric(0.1, 3)}};
-    CHECK_FALSE(ConeField(tensor, g, wide)
-                    .gather({Point::Constant(-1), Point::Constant(1)}, cones, memory));
-    CHECK(ConeField({}, g, wide).gather({Point::Zero(), Point::Ones()}, cones, memory));
-    CHECK(cones.smallest_length(Point::Zero()) == cap);
+    ConeList cones;
+    IsotropicCones::Hint hint = 0;
+    const Box box{Point::Constant(-1), Point::Constant(1)};
+    CHECK_FALSE(ConeField(sample_sphere({}), g, wide).isotropic().gather(box, cones, hint));
+    CHECK(ConeField({}, g, wide).isotropic().gather(box, cones, hint));
+    CHECK(cones.smallest_length(Point::Zero(), cap) == cap);
 }
 
 TEST_CASE("bounds in a box: the least is met, and one cone stays below the most") {
@@ -114,10 +102,10 @@ TEST_CASE("bounds in a box: the least is met, and one cone stays below the most"
     for (const auto& sources : {scattered(draw, 0.02), sample_sphere({.h = 0.1}),
                                 with_own_growths(scattered(draw, 0.02), draw)}) {
         const ConeField field(sources, g, wide);
-        ConeField::Memory memory;
+        IsotropicCones::Hint hint = 0;
         for (int k = 0; k < 200; ++k) {
             const Box box = box_of(draw, std::pow(10, draw.uniform(-3, 0.3)));
-            const auto [least, most] = field.range_in(box, memory);
+            const auto [least, most] = field.isotropic().range_in(box, hint);
             const auto near = [&](const Point& q) { return nearest(box, q); };
             const auto far = [&](const Point& q) { return farthest(box, q); };
             REQUIRE(least == Approx(smallest_of(sources, near)).epsilon(1e-12));
@@ -125,8 +113,8 @@ TEST_CASE("bounds in a box: the least is met, and one cone stays below the most"
         }
     }
     const auto [least, most] = [&] {
-        ConeField::Memory memory;
-        return ConeField({}, g, wide).range_in({Point::Zero(), Point::Ones()}, memory);
+        IsotropicCones::Hint hint = 0;
+        return ConeField({}, g, wide).isotropic().range_in({Point::Zero(), Point::Ones()}, hint);
     }();
     CHECK(least == cap);
     CHECK(most == cap);
@@ -137,16 +125,16 @@ TEST_CASE("a rough answer is never below the exact one, nor above it by more tha
     const auto sources = sample_sphere({.h = 0.05});
     const ConeField field(sources, g, wide);
     for (const double tolerance : {0.0, 0.01, 0.2}) {
-        ConeField::Memory memory;
+        IsotropicCones::Hint hint = 0;
         bool differs = false;
         for (int k = 0; k < 500; ++k) {
             const Point x = place(draw);
-            Metric exact, rough;
+            Metric exact;
             field.evaluate({&x, 1}, {&exact, 1});
-            field.evaluate_roughly({&x, 1}, tolerance, {&rough, 1}, memory);
-            CHECK(rough.xx >= exact.xx);
-            CHECK(rough.xx <= exact.xx * (1 + tolerance) * (1 + 1e-12));
-            differs = differs || rough != exact;
+            const double rough = field.isotropic().smallest_length(x, hint, tolerance);
+            CHECK(rough >= exact.xx);
+            CHECK(rough <= exact.xx * (1 + tolerance) * (1 + 1e-12));
+            differs = differs || rough != exact.xx;
         }
         CHECK(differs == (tolerance > 0));
     }
@@ -156,12 +144,12 @@ TEST_CASE("a source is found where it is below a length, and nowhere else") {
     Draw draw(5);
     const auto sources = with_own_growths(scattered(draw, 0.02), draw);
     const ConeField field(sources, g, wide);
-    ConeField::Memory memory;
+    IsotropicCones::Hint hint = 0;
     for (int k = 0; k < 300; ++k) {
         const Point x = place(draw);
         const double exact = smallest_of(sources, [&](const Point& q) { return (x - q).norm(); });
-        CHECK_FALSE(field.source_below(x, exact * (1 - 1e-12), memory).has_value());
-        const auto found = field.source_below(x, exact * (1 + 1e-12), memory);
+        CHECK_FALSE(field.isotropic().source_below(x, exact * (1 - 1e-12), hint).has_value());
+        const auto found = field.isotropic().source_below(x, exact * (1 + 1e-12), hint);
         REQUIRE(found.has_value());
         const double own = length(sources[*found], (x - sources[*found].position).norm());
         CHECK(own == Approx(exact).epsilon(1e-12));

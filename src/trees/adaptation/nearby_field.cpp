@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "cones/cone_field.h"
-#include "cones/nearby_cones.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/trees/detail/in_parallel.h"
@@ -69,7 +68,7 @@ struct NearbyField::Search {
     Box box = {};
     Trail trail = {};
     ConeField::Memory memory = {};
-    NearbyCones gathered = {}, cones = {};
+    ConeList cones = {};  // of the box, if they are few
     bool is_gathered = false;
     bool are_few = false;
     std::size_t evaluated = 0;    // places of the box that no other leaf shares
@@ -79,8 +78,7 @@ struct NearbyField::Search {
     void gather() {
         if (is_gathered) return;
         is_gathered = true;
-        are_few = field.cones().gather(box, gathered, memory);
-        if (are_few) cones.narrow(gathered, box);
+        are_few = !takes_long() && field.cones().isotropic().gather(box, cones, memory.hint);
     }
     void by_memory(std::span<const Point> x, std::span<Metric> out) {
         const std::vector<Metric> further = field.continuous_at(x);
@@ -144,7 +142,7 @@ struct NearbyField::Search {
     void by_few(std::span<const Point> x, std::span<Metric> out) const {
         const std::vector<Metric> further = field.continuous_at(x);
         for (std::size_t i = 0; i < x.size(); ++i) {
-            out[i] = Metric::isotropic(cones.smallest_length(x[i]));
+            out[i] = Metric::isotropic(cones.smallest_length(x[i], field.largest().xx));
             if (!further.empty()) out[i] = intersection(out[i], further[i]);
         }
     }
@@ -188,8 +186,12 @@ double NearbyField::evaluate_roughly(std::span<const Point> x, bool shared, std:
         evaluate(x, out);
         return 1;
     }
-    field.cones().evaluate_roughly(x, field.negligible(), out, search_->memory);
-    return 1 + field.negligible();
+    const double tolerance = field.negligible();
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        out[i] = Metric::isotropic(
+            field.cones().isotropic().smallest_length(x[i], search_->memory.hint, tolerance));
+    }
+    return 1 + tolerance;
 }
 
 Metric NearbyField::at(const Point& x) {
@@ -201,8 +203,8 @@ Metric NearbyField::at(const Point& x) {
 
 std::optional<NearbyField::Doubt> NearbyField::doubt_of(const std::array<double, 8>& at_corners) {
     const GoalField& field = search_->field;
-    const auto doubt = field.cones().doubt_of(
-        {search_->box, at_corners}, largest_factor_within(field.target()), search_->memory);
+    const auto doubt = field.cones().isotropic().doubt_of(
+        {search_->box, at_corners}, largest_factor_within(field.target()), search_->memory.hint);
     if (!doubt) return std::nullopt;
     return Doubt{doubt->where, doubt->is_certain};
 }
@@ -257,7 +259,8 @@ void evaluate_shared(const GoalField& field, std::span<const LeafBox> leaves, st
 }
 
 NearbyField::Range NearbyField::range() {
-    const auto [least, most] = search_->field.cones().range_in(search_->box, search_->memory);
+    const auto [least, most] =
+        search_->field.cones().isotropic().range_in(search_->box, search_->memory.hint);
     return {least, most};
 }
 

@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "controlspace/geometry/detail/large_pages.h"
+#include "geometry/hash_of_words.h"
 
 namespace controlspace {
 
@@ -12,13 +13,7 @@ constexpr NodeIndex none = ~NodeIndex{0};
 constexpr std::size_t smallest_table = 64;
 
 std::uint64_t hash(const Point& x) {
-    std::uint64_t h = 0;
-    for (Axis a = 0; a < 3; ++a) {
-        // 0.0 + x turns -0 into 0: the same place. The rest is a multiply-xorshift mixer.
-        h = (h ^ std::bit_cast<std::uint64_t>(0.0 + x[a])) * 0x9e3779b97f4a7c15u;
-        h ^= h >> 32;
-    }
-    return h;
+    return hash_of_words(Vector(Vector::Zero() + x));  // turns -0 into 0: the same place
 }
 
 }  // namespace

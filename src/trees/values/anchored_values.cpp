@@ -210,7 +210,8 @@ void AnchoredValues::fit(std::span<const LeafBox> leaves, const GoalField& field
             const Point x = leaf_places().in(leaves[i].box, p);
             const Metric own = cones_at(x, list.first(n));
             if (field.cones().is_isotropic()) {
-                const auto below = field.cones().source_below(x, own.xx / factor, memory);
+                const auto below =
+                    field.cones().isotropic().source_below(x, own.xx / factor, memory.hint);
                 if (below && n < most) list[n++] = *below;
                 continue;
             }
@@ -258,7 +259,8 @@ void AnchoredValues::cover(std::span<const LeafBox> leaves, const GoalField& fie
     in_parallel(leaves.size(), [&, memory = ConeField::Memory(),
                                 cover = ConeCover()](std::size_t i) mutable {
         memory.hint = 0;  // of several sources that are equally near the same is found always
-        is_kept[i] = field.cones().cover(leaves[i].box, tolerance, cover, memory) ? 1 : 0;
+        is_kept[i] =
+            field.cones().isotropic().cover(leaves[i].box, tolerance, cover, memory.hint) ? 1 : 0;
         const auto sources = cover.sources();
         std::ranges::copy(sources, chosen.begin() + static_cast<std::ptrdiff_t>(i * most));
         count[i] = sources.size();
