@@ -122,6 +122,8 @@ private:
     /// The same of all leaves; `centre` is that of the cover's box.
     template <class Add>
     bool add_all_uncovered(const Point& centre, const ConeCover& cover, const Add& add) const;
+    /// `smallest_lengths` of a few dozen places; false where too many cones matter for them.
+    bool find_together(std::span<const Point> x, std::span<double> lengths, Hint& hint) const;
     void visit_leaf(Hint leaf, const Point& p, double& smallest, Hint& hint) const;
     std::optional<Doubt> doubt_of_long(const TrilinearLengths& lengths, double factor) const;
     std::optional<Doubt> doubt_of_short(const TrilinearLengths& lengths, double factor,

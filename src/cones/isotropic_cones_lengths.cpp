@@ -131,21 +131,35 @@ bool IsotropicCones::gather(const Box& box, ConeList& nearby, Hint& hint) const 
 
 void IsotropicCones::smallest_lengths(std::span<const Point> x, std::span<double> lengths,
                                       Hint& hint) const {
-    // Fewer places are searched for one by one; so are those among too many cones.
-    constexpr std::size_t few = 4;
-    constexpr std::size_t most_cones = 256;
-    if (x.size() > group) {
-        for (std::size_t begin = 0; begin < x.size(); begin += group) {
-            const std::size_t count = std::min(group, x.size() - begin);
-            smallest_lengths(x.subspan(begin, count), lengths.subspan(begin, count), hint);
+    // How many places have few cones in common is learnt from those before; else one by one.
+    constexpr std::size_t least = 8;
+    constexpr int successes_to_grow = 4;
+    std::size_t together = group;
+    int successes = 0;
+    for (std::size_t done = 0; done < x.size();) {
+        std::size_t count = std::min(together, x.size() - done);
+        if (count >= least && find_together(x.subspan(done, count), lengths.subspan(done), hint)) {
+            if (++successes == successes_to_grow) {
+                together = std::min(2 * together, group);
+                successes = 0;
+            }
+        } else if (count >= 2 * least) {
+            together = count / 2;
+            successes = 0;
+            continue;
+        } else {
+            count = std::min(group, x.size() - done);
+            for (std::size_t i = done; i < done + count; ++i) {
+                lengths[i] = smallest_length(x[i], hint);
+            }
         }
-        return;
+        done += count;
     }
-    const auto one_by_one = [&] {
-        for (std::size_t i = 0; i < x.size(); ++i) lengths[i] = smallest_length(x[i], hint);
-    };
-    if (x.size() <= few) return one_by_one();
+}
 
+bool IsotropicCones::find_together(std::span<const Point> x, std::span<double> lengths,
+                                   Hint& hint) const {
+    constexpr std::size_t most_cones = 256;
     std::array<IsotropicCone, most_cones> cones;
     std::size_t count = 0;
     const Box box = extent_of(x);
@@ -156,11 +170,7 @@ void IsotropicCones::smallest_lengths(std::span<const Point> x, std::span<double
         cones[count++] = cone;
         return true;
     };
-    if (!add_all_uncovered(box.centre(), cover, add)) {
-        const std::size_t half = x.size() / 2;
-        smallest_lengths(x.first(half), lengths.first(half), hint);
-        return smallest_lengths(x.subspan(half), lengths.subspan(half), hint);
-    }
+    if (!add_all_uncovered(box.centre(), cover, add)) return false;
 
     Places places;
     for (std::size_t i = 0; i < group; ++i) {
@@ -185,6 +195,7 @@ void IsotropicCones::smallest_lengths(std::span<const Point> x, std::span<double
         }
         lengths[i] = smallest;
     }
+    return true;
 }
 
 }  // namespace controlspace
