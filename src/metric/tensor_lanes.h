@@ -129,7 +129,7 @@ struct Pivots {
     Lanes xx, yy, zz;
 
     bool are_positive(Eigen::Index lane) const {
-        return (xx[lane] > 0) & (yy[lane] > 0) & (zz[lane] > 0);
+        return (int{xx[lane] > 0} & int{yy[lane] > 0} & int{zz[lane] > 0}) != 0;
     }
 };
 

@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "controlspace/error.h"
 #include "controlspace/study/study.h"
@@ -12,7 +13,10 @@ namespace controlspace {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& place, const toml::source_region& source,
-                       std::string_view what) {
+                       std::string what) {
+    // The parser names a character that it did not expect, which may be the end of the line.
+    std::ranges::replace_if(
+        what, [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
     throw InputError(fmt::format("{}:{}: {}", place.string(), source.begin.line, what));
 }
 
@@ -123,7 +127,7 @@ Study parse_study(std::string_view text, const std::filesystem::path& place,
     try {
         table = toml::parse(text, place.string());
     } catch (const toml::parse_error& error) {
-        fail(place, error.source(), error.description());
+        fail(place, error.source(), std::string(error.description()));
     }
     std::vector<std::string> run_keys{structures_key};
     for (const CaseParameter& p : parameters) run_keys.push_back(p.key);

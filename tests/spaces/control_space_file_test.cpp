@@ -176,11 +176,11 @@ TEST_CASE("an array that is said to be huge is refused before memory is requeste
 
 TEST_CASE("numbers of a forged file from which no metrics could follow are refused") {
     const ScratchDirectory scratch("ctrl");
-    const std::string bytes = saved(scratch, "K_LA");
-    const auto refuse = [&](const std::string& array, double before, double forged_number) {
+    std::string bytes = saved(scratch, "K_LA");
+    const auto refuse = [&](const std::string& array, auto before, auto forged_number) {
         // Kind and sizes of the array, size of the chunk, and the head of Blosc's buffer.
         const std::size_t at = bytes.find(array) + array.size() + 4 + 4 + 8 + 4 + 16;
-        double number = 0;
+        auto number = before;
         std::memcpy(&number, bytes.data() + at, sizeof number);
         REQUIRE(number == before);
         std::string forged = bytes;
@@ -193,6 +193,8 @@ TEST_CASE("numbers of a forged file from which no metrics could follow are refus
     for (const double ratio : {-3.0, 0.5, nan, HUGE_VAL}) refuse("anchors.ratio", 1.25, ratio);
     for (const double x : {nan, -HUGE_VAL, 1e300}) refuse("sources.positions", 0.3, x);
     for (const double h : {nan, -1.0, 0.0, 1e300}) refuse("anchors.largest", std::sqrt(3), h);
+    bytes = saved(scratch, "K_oV");  // its first leaf
+    for (const std::uint32_t vertex : {1u, ~0u}) refuse("vertices.of_leaves", 0u, vertex);
     const auto h_max = [](double h) { return SpaceOptions{.domain = domain, .h_max = h}; };
     for (const double h : {nan, 0.0, 5e-324, HUGE_VAL}) {
         CHECK_THAT(error_of([&] { require_valid(h_max(h)); }), Contains("h_max is "));

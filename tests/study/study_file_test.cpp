@@ -158,6 +158,7 @@ TEST_CASE("what is wrong in a study file is named with its line") {
         {"tau = 1\ntaus = 1", "folder/my-study.toml:2: unknown key 'taus': known are "},
         {"[[runs]]\nseed = 1", ":2: unknown key 'seed': known are structures, "},
         {"tau = [1", "folder/my-study.toml:1: "},
+        {"threads = t\n", "folder/my-study.toml:1: "},
         {"\ntau = 'a'", ":2: tau: 'a' is not a number"},
         {"tau = true", ":1: tau: 'true' is not a number"},
         {"isotropic = 1", ":1: isotropic: 1 is neither true nor false"},

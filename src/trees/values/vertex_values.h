@@ -68,6 +68,13 @@ public:
     void loaded(const Topology<Node>& tree, const StateReader& state) {
         require_sound(state, tree.leaves());
         positions_ = vertex_positions(tree, corners_, metrics_.size());
+        tree.for_each_leaf([&](LeafIndex leaf, const Box& box) {
+            for (int i = 0; i < 8; ++i) {
+                const NodeIndex vertex = corners_[leaf][static_cast<std::size_t>(i)];
+                state.require(positions_[vertex] == corner(box, i), "vertices.of_leaves",
+                              "has a vertex in two places");
+            }
+        });
     }
 
     void describe(Footprint& footprint) const;
