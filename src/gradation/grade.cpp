@@ -8,6 +8,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/geometry/detail/large_pages.h"
+#include "controlspace/geometry/point.h"
 #include "geometry/threads.h"
 #include "gradation/require_known.h"
 #include "gradation/schedules.h"
@@ -15,9 +16,9 @@
 namespace controlspace {
 
 void require_valid(const GradationOptions& options) {
-    if (!std::isfinite(options.ratio) || options.ratio < 1) {
-        throw InputError(fmt::format("gradation ratio g_r is {}: give a finite value of at least 1",
-                                     options.ratio));
+    if (!(options.ratio >= 1 && options.ratio <= largest_magnitude)) {
+        throw InputError(fmt::format("gradation ratio g_r is {}: give a value of 1 to {}",
+                                     options.ratio, largest_magnitude));
     }
     require_known("the law of gradation", options.law, GradationLaw::mean_length);
     require_known("the schedule of gradation", options.schedule, GradationSchedule::sources);

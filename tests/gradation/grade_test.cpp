@@ -263,10 +263,10 @@ TEST_CASE("a lattice knows its nodes and neighbours") {
     CHECK(links == 2 * (2 * 4 * 5 + 3 * 3 * 5 + 3 * 4 * 4));
 }
 
-TEST_CASE("a ratio below 1 or not finite is refused") {
+TEST_CASE("a ratio below 1, too large or not finite is refused") {
     const Lattice lattice = cube(2);
     std::vector<Metric> metrics(lattice.size());
-    for (const double ratio : {0.99, -1.0, std::nan(""), HUGE_VAL}) {
+    for (const double ratio : {0.99, -1.0, 1e51, std::nan(""), HUGE_VAL}) {
         CHECK_THROWS_AS(grade(lattice, metrics, {.ratio = ratio}), InputError);
     }
 }

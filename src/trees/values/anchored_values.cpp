@@ -307,7 +307,8 @@ void AnchoredValues::load(std::size_t leaves, const StateReader& state) {
     sources_.load(state);
     anchors_.load(state, leaves, sources_.size());
     state("anchors.ratio", ratio_);
-    state.require(ratio_ >= 1 && std::isfinite(ratio_), "anchors.ratio", "is no gradation ratio");
+    state.require(ratio_ >= 1 && ratio_ <= largest_magnitude, "anchors.ratio",
+                  "is no gradation ratio");
     double largest = 0;
     state("anchors.largest", largest);
     state.require(is_length(largest), "anchors.largest", "is no length");

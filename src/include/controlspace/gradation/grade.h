@@ -29,7 +29,7 @@ enum class GradationSchedule {
 struct GradationOptions {
     GradationLaw law = GradationLaw::cone;
     GradationSchedule schedule = GradationSchedule::sources;
-    double ratio = 1.25;  ///< g_r of the paper, >= 1
+    double ratio = 1.25;  ///< g_r of the paper, 1 to 1e50
     /// `faces`, as in the paper, which for the passes of its tables means `nearest_per_face`; or
     /// `all`.
     Neighbourhood neighbourhood = Neighbourhood::faces;
