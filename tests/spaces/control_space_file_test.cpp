@@ -190,7 +190,8 @@ TEST_CASE("numbers of a forged file from which no metrics could follow are refus
         CHECK_THAT(loading_error(scratch, forged), Contains("changed.ctrl: its " + array));
     };
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const double ratio : {-3.0, 0.5, 1e51, nan, HUGE_VAL}) refuse("anchors.ratio", 1.25, ratio);
+    for (const double ratio : {-3.0, 0.5, 1e51, nan, HUGE_VAL})
+        refuse("anchors.ratio", 1.25, ratio);
     for (const double x : {nan, -HUGE_VAL, 1e300}) refuse("sources.positions", 0.3, x);
     for (const double h : {nan, -1.0, 0.0, 1e300}) refuse("anchors.largest", std::sqrt(3), h);
     bytes = saved(scratch, "K_oV");  // its first leaf
