@@ -16,7 +16,7 @@ namespace {
 
 int build(const Job& job) {
     const std::filesystem::path& output = job.output;
-    if (!is_control_space(output)) {
+    if (output.extension() != ".ctrl") {
         throw InputError(
             fmt::format("cannot save to {}: name a file that ends in .ctrl", output.string()));
     }

@@ -15,11 +15,20 @@
 #include "controlspace/error.h"
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/space/control_space_file.h"
+#include "controlspace/trees/octree_pieces.h"
 #include "modules/load.h"
 
 namespace controlspace {
 
-bool is_control_space(const std::filesystem::path& input) { return input.extension() == ".ctrl"; }
+bool is_control_space(const std::filesystem::path& input) {
+    return input.extension() == ".ctrl" || is_in_pieces(input);
+}
+bool is_in_pieces(const std::filesystem::path& input) { return input.extension() == ".pctrl"; }
+
+std::unique_ptr<ControlSpace> load_saved(const std::filesystem::path& input) {
+    return is_in_pieces(input) ? load_octree_pieces(input, structures())
+                               : load_control_space(input, structures());
+}
 
 void require_no_settings(const std::filesystem::path& space, const GivenSettings& given) {
     if (given.empty()) return;
@@ -52,6 +61,11 @@ FilledSpace made_or_loaded(const std::filesystem::path& input, const std::filesy
     if (observer.phase_started) observer.phase_started("reading");
     if (is_control_space(input)) {
         require_no_settings(input, given);
+        if (is_in_pieces(input)) {
+            filled.space = load_saved(input);
+            filled.structure = "an octree in pieces";
+            return filled;
+        }
         SavedControlSpace saved = open_control_space(input, structures());
         filled.builder = std::move(saved.builder);
         filled.space = std::move(saved.space);

@@ -91,12 +91,32 @@ std::string options_text(const CatalogueEntry& entry, const SpaceOptions& o) {
     return text;
 }
 
+/// Parts and memory.
+std::string footprint_info(const Footprint& footprint) {
+    std::string text = fmt::format("  cells        {}", footprint.cells);
+    if (footprint.tree_nodes > 0) {
+        text += fmt::format(" leaves of {} tree nodes, at levels of up to {}", footprint.tree_nodes,
+                            footprint.depth);
+    }
+    if (!footprint.remark.empty()) text += "; " + footprint.remark;
+    return text +
+           fmt::format(
+               "\n  memory       {:.3g} MB: metrics {:.3g}, topology {:.3g}, auxiliary {:.3g}",
+               mb(footprint.bytes_total()), mb(footprint.bytes_payload),
+               mb(footprint.bytes_topology), mb(footprint.bytes_auxiliary));
+}
+
+std::string pieces_info(const std::filesystem::path& index) {
+    const auto space = load_octree_pieces(index, structures());
+    return fmt::format("  structure    an octree in pieces, read-only\n  domain       {}\n{}\n",
+                       to_string(space->domain()), footprint_info(space->footprint()));
+}
+
 /// Structure and options, parts and memory, and the range of the control nodes' metrics.
 std::string space_info(const std::filesystem::path& file) {
     const SavedControlSpace saved = open_control_space(file, structures());
     const Recipe& recipe = saved.recipe;
     const CatalogueEntry& entry = *find_entry(structures(), recipe.structure);
-    const Footprint footprint = saved.space->footprint();
     std::string text = fmt::format("  structure    {}: {}\n", entry.id, entry.description);
     if (recipe.precision) {
         text += fmt::format("  compact      {}: read-only\n",
@@ -104,17 +124,8 @@ std::string space_info(const std::filesystem::path& file) {
     }
     text += fmt::format("  saved by     {}\n  domain       {}\n  options      {}\n", saved.saved_by,
                         to_string(saved.space->domain()), options_text(entry, recipe.options));
-    text += fmt::format("  cells        {}", footprint.cells);
-    if (footprint.tree_nodes > 0) {
-        text += fmt::format(" leaves of {} tree nodes, at levels of up to {}", footprint.tree_nodes,
-                            footprint.depth);
-    }
-    if (!footprint.remark.empty()) text += "; " + footprint.remark;
-    text += fmt::format(
-        "\n  memory       {:.3g} MB: metrics {:.3g}, topology {:.3g}, auxiliary {:.3g}; {:.3g} MB "
-        "in the file\n",
-        mb(footprint.bytes_total()), mb(footprint.bytes_payload), mb(footprint.bytes_topology),
-        mb(footprint.bytes_auxiliary), mb(std::filesystem::file_size(file)));
+    text += fmt::format("{}; {:.3g} MB in the file\n", footprint_info(saved.space->footprint()),
+                        mb(std::filesystem::file_size(file)));
     const auto nodes = control_nodes(*saved.space, Neighbourhood::faces);
     if (!nodes) return text;
     const LengthSummary lengths = summarise_lengths(nodes->metrics);
@@ -127,7 +138,7 @@ std::string space_info(const std::filesystem::path& file) {
 std::string info_text(const std::filesystem::path& input, const GivenSettings& settings) {
     if (is_control_space(input)) {
         require_no_settings(input, settings);
-        return space_info(input);
+        return is_in_pieces(input) ? pieces_info(input) : space_info(input);
     }
     try {
         return sources_info(summarise(sources_of_input(input, settings)));
@@ -140,9 +151,9 @@ std::string info_text(const std::filesystem::path& input, const GivenSettings& s
 
 Action add_info(Options& options) {
     const auto job = std::make_shared<Job>(Job{.output = "/dev/stdout"});
-    options.add(
-        {"FILE", "FILE", source_formats_help() + "; or a saved control space (.ctrl)", "", true},
-        job->input);
+    options.add({"FILE", "FILE",
+                 source_formats_help() + "; or a saved control space (.ctrl, .pctrl)", "", true},
+                job->input);
     options.add({"-o,--output", "FILE", "File to write; left out: standard output"}, job->output);
     add_reading_options(options, *job);
     options.set_statuses(

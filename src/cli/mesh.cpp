@@ -100,7 +100,8 @@ void mesh_saved(const std::filesystem::path& file, const ControlSpace& space, in
                 MeshFolder& folder) {
     if (!folder.settings().gmsh.part) require_volume(space.domain());
     MeshRow row{.saved = file};
-    row.setting.structure = recipe_of(space)->structure;
+    const auto recipe = recipe_of(space);
+    row.setting.structure = recipe ? recipe->structure : "pieces";
     const auto probes = make_probes(space, cell_centres(space.domain(), probe_grid));
     row.mesher = chosen_mesher(folder.settings().mesher, probes.reference);
     if (row.mesher == Mesher::mmg) require_mmg(folder.settings().mmg);
@@ -154,7 +155,7 @@ int mesh(const Job& job, const std::string& command_line) {
     settings.gmsh.part = part_of(settings, job.input, study);
     const auto threads = limit_threads(study.threads);
     Interruption interruption;
-    const auto saved = is_saved ? load_control_space(job.input, structures()) : nullptr;
+    const auto saved = is_saved ? load_saved(job.input) : nullptr;
     MeshFolder folder(study, std::move(settings), command_line, job.quiet, interruption);
     {
         const Interruption::Watch watch(interruption, nullptr, [&] {

@@ -180,12 +180,13 @@ void add_study_input(Options& options, std::filesystem::path& input) {
 }
 
 void add_filled_input(Options& options, std::filesystem::path& input, bool required) {
-    options.add({"INPUT", "FILE",
-                 std::string("Study file (.toml), control space (.ctrl), or sources: files, or "
-                             "another value of --sources") +
-                     (required ? "" : "; left out: the paper's sphere"),
-                 "", required},
-                input);
+    options.add(
+        {"INPUT", "FILE",
+         std::string("Study file (.toml), control space (.ctrl, .pctrl), or sources: files, or "
+                     "another value of --sources") +
+             (required ? "" : "; left out: the paper's sphere"),
+         "", required},
+        input);
 }
 
 void add_quiet(Options& options, bool& quiet) {

@@ -11,9 +11,13 @@
 #include <utility>
 
 #include "cones/isotropic_cones.h"
+#include "controlspace/io/write_vtk.h"
 #include "controlspace/measure/access_time.h"
 #include "controlspace/sources/cone.h"
+#include "controlspace/space/control_space_file.h"
+#include "controlspace/space/detail/saved.h"
 #include "controlspace/trees/leaf_metrics.h"
+#include "controlspace/trees/octree_pieces.h"
 #include "mpi/exchange.h"
 #include "mpi/octants.h"
 #include "mpi/rank_tree.h"
@@ -58,6 +62,7 @@ struct DistributedSpace::Impl {
         report.octants = of_ranks[static_cast<std::size_t>(ranks.rank())].size();
         report.octants_of_all = octants.tree().leaves();
         own = build(of_ranks, report);
+        dynamic_cast<Saved&>(*own).set_recipe(Recipe{options.structure, options.space});
         const int first_short = ranks.least(report.met ? ranks.size() : ranks.rank());
         report.met = first_short == ranks.size();
         if (!report.met) {
@@ -253,6 +258,58 @@ void DistributedSpace::sample(std::span<const Point> x, std::span<Metric> out) c
     for (const auto& of_rank : numbers) {
         for (const std::size_t i : of_rank) out[i] = found[k++];
     }
+}
+
+namespace {
+
+/// Collective: each rank writes its piece, then the first the index; where one fails, none is left.
+template <class WritePiece, class WriteIndex>
+void write_pieces(Ranks& ranks, const std::filesystem::path& index, std::string_view ending,
+                  const WritePiece& write_piece, const WriteIndex& write_index) {
+    const auto piece_of = [&](int rank) {
+        return index.parent_path() / fmt::format("{}_{}{}", index.stem().string(), rank, ending);
+    };
+    try {
+        ranks.together([&] { write_piece(piece_of(ranks.rank())); });
+        ranks.together([&] {
+            if (ranks.rank() != 0) return;
+            std::vector<std::filesystem::path> pieces;
+            for (int r = 0; r < ranks.size(); ++r) pieces.push_back(piece_of(r));
+            write_index(pieces);
+        });
+    } catch (const InputError&) {
+        std::error_code ignored;
+        std::filesystem::remove(piece_of(ranks.rank()), ignored);
+        throw;
+    }
+}
+
+}  // namespace
+
+void DistributedSpace::save(const std::filesystem::path& index) const {
+    const auto write_index = [&](std::span<const std::filesystem::path> files) {
+        const Octants& octants = impl_->octants;
+        std::vector<OctreePiece> pieces;
+        for (int r = 0; r < impl_->ranks.size(); ++r) {
+            pieces.push_back({files[static_cast<std::size_t>(r)], {}});
+            for (const LeafIndex leaf : octants.of_rank(r)) {
+                pieces.back().octants.push_back(octants.box(leaf));
+            }
+        }
+        write_octree_pieces(index, impl_->options.space.domain, pieces);
+    };
+    write_pieces(
+        impl_->ranks, index, ".ctrl",
+        [&](const std::filesystem::path& piece) { save_control_space(piece, own()); }, write_index);
+}
+
+void DistributedSpace::write_leaves(const std::filesystem::path& index) const {
+    write_pieces(
+        impl_->ranks, index, ".vtu",
+        [&](const std::filesystem::path& piece) {
+            controlspace::write_leaves(piece, own(), octants());
+        },
+        [&](std::span<const std::filesystem::path> pieces) { write_leaf_pieces(index, pieces); });
 }
 
 std::uint64_t DistributedSpace::checksum(std::size_t n, std::uint64_t seed) const {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -73,6 +74,14 @@ public:
 
     /// Collective: metrics at places of this rank, anywhere, by the ranks that own them.
     void sample(std::span<const Point> x, std::span<Metric> out) const;
+
+    /// Collective: writes each rank's octants as a piece, NAME_0.ctrl, NAME_1.ctrl, ..., and the
+    /// index NAME.pctrl: load_octree_pieces (controlspace/trees/octree_pieces.h) reads it, whole or
+    /// in part, in any number of processes. Throws InputError on all ranks if a file cannot be
+    /// written, and leaves none.
+    void save(const std::filesystem::path& index) const;
+    /// Collective: the same of the leaves, for ParaView: NAME.pvtu and NAME_0.vtu, NAME_1.vtu, ...
+    void write_leaves(const std::filesystem::path& index) const;
 
     /// Collective: the checksum (measure/access_time.h) of the metrics at `n` random places, as the
     /// program's results have it. The same on all ranks.

@@ -153,6 +153,20 @@ int build(Ranks& ranks, const ParallelJob& job) {
     return remark(ranks, *made.space);
 }
 
+int export_pieces(Ranks& ranks, const ParallelJob& job) {
+    const std::string ending = lower_case_extension(job.output);
+    if (ending != ".pctrl" && ending != ".pvtu") {
+        throw InputError(fmt::format("{}: name a .pctrl or a .pvtu", job.output.string()));
+    }
+    const Made made = make(ranks, job);
+    if (ending == ".pctrl") {
+        made.space->save(job.output);
+    } else {
+        made.space->write_leaves(job.output);
+    }
+    return remark(ranks, *made.space);
+}
+
 int print_checksum(Ranks& ranks, const ParallelJob& job) {
     const Made made = make(ranks, job);
     const std::uint64_t sum = made.space->checksum(made.study.access_points, made.study.seed);
@@ -185,6 +199,10 @@ struct CommandRow {
 };
 constexpr CommandRow commands[] = {
     {"build", "Build one structure, and write what each rank held, sent and took, as JSON", build},
+    {"export",
+     "Write it in pieces, one a rank: the index FILE.pctrl, which controlspace query, export and "
+     "mesh read, or FILE.pvtu, the leaves for ParaView",
+     export_pieces},
     {"checksum", "Print the checksum of its metrics at the study's random places", print_checksum},
     {"sample", "Write its metrics at given points", sample},
 };
@@ -198,7 +216,8 @@ int run(Ranks& ranks, int argc, const char* const* argv) {
     app.footer(
         "Examples:\n"
         "  mpirun -n 4 controlspace-mpi checksum sources.csv --structures K_oL\n"
-        "  mpirun -n 4 controlspace-mpi sample sources.csv places.csv -o metrics.csv\n");
+        "  mpirun -n 4 controlspace-mpi sample sources.csv places.csv -o metrics.csv\n"
+        "  mpirun -n 4 controlspace-mpi export sources.csv -o field.pctrl\n");
     set_help(app);
     std::vector<ParallelJob> jobs(std::size(commands));
     for (std::size_t i = 0; i < jobs.size(); ++i) {
@@ -211,7 +230,8 @@ int run(Ranks& ranks, int argc, const char* const* argv) {
             options.add({"POINTS", "FILE.csv", "Points: columns x, y and z", "", true}, job.points);
         }
         if (commands[i].run != print_checksum) {
-            options.add({"-o,--output", "FILE", "File to write"}, job.output);
+            const bool is_required = commands[i].run == export_pieces;
+            options.add({"-o,--output", "FILE", "File to write", "", is_required}, job.output);
         }
         options.add({"--octants", "N",
                      "Octants with more sources than the mean of N a rank are cut further, to "

@@ -13,6 +13,7 @@
 #include <vtkXMLHyperTreeGridReader.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLImageDataWriter.h>
+#include <vtkXMLPUnstructuredGridReader.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
@@ -147,6 +148,33 @@ TEST_CASE("leaves are hexahedra with the metrics at their centres") {
         CHECK(value_at(*grid->GetCellData(), "h_mean", i) == Approx(mean_length(m)));
         CHECK(value_at(*grid->GetCellData(), "anisotropy", i) == Approx(lengths[2] / lengths[0]));
     }
+}
+
+TEST_CASE("leaves in pieces are one grid") {
+    const ScratchDirectory folder;
+    const auto space = filled("K_oL");
+    const auto half = [&](bool high) {
+        Box box = domain;
+        (high ? box.low : box.high)[1] = domain.centre()[1];
+        return std::vector{box};
+    };
+    const std::vector<std::filesystem::path> pieces{folder / "all_0.vtu", folder / "all_1.vtu"};
+    write_leaves(pieces[0], *space, half(false));
+    write_leaves(pieces[1], *space, half(true));
+    write_leaf_pieces(folder / "all.pvtu", pieces);
+    const auto grid = read_back<vtkXMLPUnstructuredGridReader>(folder / "all.pvtu");
+    const std::vector<Box> elements = elements_of(*space);
+    REQUIRE(static_cast<std::size_t>(grid->GetNumberOfCells()) == elements.size());
+    double volume = 0;
+    for (vtkIdType i = 0; i < grid->GetNumberOfCells(); ++i) {
+        std::array<double, 6> b;
+        grid->GetCell(i)->GetBounds(b.data());
+        const Box box{{b[0], b[2], b[4]}, {b[1], b[3], b[5]}};
+        volume += measure(box);
+        const Metric m = sample_at(*space, box.centre());
+        CHECK(is_riemannian_of(tensor_at(*grid->GetCellData(), i), m));
+    }
+    CHECK(volume == Approx(measure(domain)));
 }
 
 TEST_CASE("control nodes are points that can be read as sources") {

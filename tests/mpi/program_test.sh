@@ -46,6 +46,22 @@ END
 expected=$(grep -o '"checksum": *"[0-9a-f]*"' results/results.json | head -n 1 | grep -o '[0-9a-f]\{16\}')
 [ "$(on 2 checksum study.toml)" = "checksum: $expected" ] || fail "another checksum than that of results"
 
+# In pieces, which the serial program reads.
+# shellcheck disable=SC2043
+for setting in "--structures K_oV"; do
+    # shellcheck disable=SC2086
+    on 3 export sources.csv -o field.pctrl $setting
+    "$serial" query field.pctrl places.csv -o found.csv
+    cmp -s found.csv expected.csv || fail "pieces: other metrics"
+    "$serial" info field.pctrl | grep -q "in pieces" || fail "info of pieces"
+    # shellcheck disable=SC2086
+    on 3 export sources.csv -o field.pvtu $setting
+done
+for rank in 0 1 2; do
+    [ -s field_$rank.ctrl ] && [ -s field_$rank.vtu ] || fail "no piece of rank $rank"
+    grep -q "field_$rank.vtu" field.pvtu || fail "field.pvtu without rank $rank"
+done
+
 # One message, no hang.
 expect_failure() { # PATTERN RANKS ARGUMENT...
     local pattern=$1 status=0
@@ -57,6 +73,8 @@ expect_failure() { # PATTERN RANKS ARGUMENT...
 }
 expect_failure "no such file\|No such file\|cannot" 3 build none.csv
 expect_failure "folder" 3 build sources.csv -o no/folder/report.json
+expect_failure "folder" 3 export sources.csv -o no/folder/field.pctrl
+expect_failure "pctrl" 2 export sources.csv -o field.vtu
 sed '$ s/,[^,]*$/,-1/' sources.csv >bad.csv
 expect_failure "bad.csv:" 3 build bad.csv
 expect_failure "K_oLB" 2 build sources.csv --structures K_oLB

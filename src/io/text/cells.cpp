@@ -49,8 +49,12 @@ std::vector<int> cell_corners(const Box& domain) {
 }
 
 std::vector<Box> elements_of(const ControlSpace& space) {
+    return elements_of(space, std::vector{space.domain()});
+}
+
+std::vector<Box> elements_of(const ControlSpace& space, std::span<const Box> within) {
     std::vector<Box> elements;
-    std::vector<Box> regions{space.domain()};
+    std::vector<Box> regions(within.begin(), within.end());
     while (!regions.empty()) {
         const Box region = regions.back();
         regions.pop_back();

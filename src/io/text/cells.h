@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "controlspace/geometry/box.h"
@@ -12,6 +13,8 @@ namespace controlspace {
 /// they lie in the domain. Found by asking for the element at places, so that nothing needs to be
 /// known of the structure; in ascending order of their low corners, x first.
 std::vector<Box> elements_of(const ControlSpace& space);
+/// The same of those in `regions`, unions of cells.
+std::vector<Box> elements_of(const ControlSpace& space, std::span<const Box> regions);
 
 /// The corners of a box (numbered as by `corner`) in the order of VTK's and Gmsh's hexahedra, which
 /// goes around each face.

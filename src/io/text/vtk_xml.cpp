@@ -14,15 +14,17 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the files say so");
 
+std::string head_of(std::string_view type) {
+    return fmt::format(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"{}\" version=\"1.0\" "
+        "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n",
+        type);
+}
+
 /// A file in the making: the XML, and the arrays that are appended to it.
 class Xml {
 public:
-    explicit Xml(std::string_view type) : type_(type) {
-        add(
-            fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"{}\" version=\"1.0\" "
-                        "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n",
-                        type));
-    }
+    explicit Xml(std::string_view type) : type_(type), text_(head_of(type)) {}
 
     void add(std::string_view text) { text_ += text; }
 
@@ -137,6 +139,27 @@ void write_vtk_grid(const std::filesystem::path& path, std::span<const Point> po
     if (!poly) xml.add_array("types", "UInt8", 1, types);
     xml.add(poly ? "</Verts>\n</Piece>\n" : "</Cells>\n</Piece>\n");
     xml.write(path);
+}
+
+void write_vtk_pieces(const std::filesystem::path& path,
+                      std::span<const std::filesystem::path> pieces,
+                      std::span<const VtkArray> cell_data) {
+    OutputFile file(path);
+    const auto print_array = [&](std::string_view name, int components) {
+        file.print("<PDataArray type=\"Float64\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n", name,
+                   components);
+    };
+    file.write(head_of("PUnstructuredGrid"));
+    file.write("<PUnstructuredGrid GhostLevel=\"0\">\n<PCellData>\n");
+    for (const VtkArray& array : cell_data) print_array(array.name, array.components);
+    file.write("</PCellData>\n<PPoints>\n");
+    print_array("Points", 3);
+    file.write("</PPoints>\n");
+    for (const auto& piece : pieces) {
+        file.print("<Piece Source=\"{}\"/>\n", piece.filename().string());
+    }
+    file.write("</PUnstructuredGrid>\n</VTKFile>\n");
+    file.commit();
 }
 
 void write_vtk_image(const std::filesystem::path& path, const Point& origin, const Vector& spacing,

@@ -47,6 +47,12 @@ void write_vtk_grid(const std::filesystem::path& path, std::span<const Point> po
                     const VtkCells& cells, std::span<const VtkArray> point_data,
                     std::span<const VtkArray> cell_data);
 
+/// The .vtu files `pieces`, beside it, as one grid: .pvtu. Their cells have the arrays `cell_data`,
+/// of which names and numbers of components are written.
+void write_vtk_pieces(const std::filesystem::path& path,
+                      std::span<const std::filesystem::path> pieces,
+                      std::span<const VtkArray> cell_data);
+
 /// An image of counts[0] x counts[1] x counts[2] points, x fastest: .vti.
 void write_vtk_image(const std::filesystem::path& path, const Point& origin, const Vector& spacing,
                      const std::array<int, 3>& counts, std::span<const VtkArray> point_data);

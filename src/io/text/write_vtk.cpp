@@ -105,7 +105,12 @@ VtkTree tree_below(const ControlSpace& space, const Box& root) {
 }  // namespace
 
 void write_leaves(const std::filesystem::path& path, const ControlSpace& space) {
-    const std::vector<Box> leaves = elements_of(space);
+    write_leaves(path, space, std::vector{space.domain()});
+}
+
+void write_leaves(const std::filesystem::path& path, const ControlSpace& space,
+                  std::span<const Box> regions) {
+    const std::vector<Box> leaves = elements_of(space, regions);
     const std::vector<Point> corners = corners_of(leaves);
     const std::vector<int> order = cell_corners(space.domain());
     VtkCells cells{order.size() == 8 ? VtkCells::hexahedron : VtkCells::quad, order.size(), {}};
@@ -121,6 +126,11 @@ void write_leaves(const std::filesystem::path& path, const ControlSpace& space) 
     std::vector<Metric> metrics(centres.size());
     space.sample(centres, metrics);
     write_vtk_grid(path, corners, cells, {}, metric_arrays(metrics));
+}
+
+void write_leaf_pieces(const std::filesystem::path& path,
+                       std::span<const std::filesystem::path> pieces) {
+    write_vtk_pieces(path, pieces, metric_arrays({}));
 }
 
 void write_nodes(const std::filesystem::path& path, const ControlSpace& space) {

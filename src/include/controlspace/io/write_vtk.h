@@ -17,6 +17,13 @@ namespace controlspace {
 /// The leaves or cells of `space` as hexahedra (.vtu), with the metrics at their centres as data of
 /// cells.
 void write_leaves(const std::filesystem::path& path, const ControlSpace& space);
+/// The same of those in `regions`, unions of cells: a piece of a .pvtu.
+void write_leaves(const std::filesystem::path& path, const ControlSpace& space,
+                  std::span<const Box> regions);
+
+/// What holds pieces together (.pvtu) that write_leaves has written, beside it.
+void write_leaf_pieces(const std::filesystem::path& path,
+                       std::span<const std::filesystem::path> pieces);
 
 /// The control nodes of `space` as vertices (.vtu), with their metrics as data of points.
 void write_nodes(const std::filesystem::path& path, const ControlSpace& space);
