@@ -17,6 +17,7 @@
 #include "controlspace/gradation/grade.h"
 #include "controlspace/space/control_space_file.h"
 #include "controlspace/space/split_words.h"
+#include "controlspace/trees/octree_pieces.h"
 #include "io/text/metric_rows.h"
 #include "measure/source_summary.h"
 

@@ -34,6 +34,11 @@ for setting in "--structures K_oL --target-delta 0" "--structures K_oL --within 
         on $ranks sample sources.csv places.csv -o found.csv $setting
         cmp -s found.csv expected.csv || fail "$setting on $ranks ranks: other metrics"
     done
+    # In pieces, which the serial program reads.
+    # shellcheck disable=SC2086
+    on 3 export sources.csv -o field.pctrl $setting
+    "$serial" query field.pctrl places.csv -o found.csv
+    cmp -s found.csv expected.csv || fail "$setting in pieces: other metrics"
 done
 
 # The checksum of results.
@@ -46,17 +51,8 @@ END
 expected=$(grep -o '"checksum": *"[0-9a-f]*"' results/results.json | head -n 1 | grep -o '[0-9a-f]\{16\}')
 [ "$(on 2 checksum study.toml)" = "checksum: $expected" ] || fail "another checksum than that of results"
 
-# In pieces, which the serial program reads.
-# shellcheck disable=SC2043
-for setting in "--structures K_oV"; do
-    # shellcheck disable=SC2086
-    on 3 export sources.csv -o field.pctrl $setting
-    "$serial" query field.pctrl places.csv -o found.csv
-    cmp -s found.csv expected.csv || fail "pieces: other metrics"
-    "$serial" info field.pctrl | grep -q "in pieces" || fail "info of pieces"
-    # shellcheck disable=SC2086
-    on 3 export sources.csv -o field.pvtu $setting
-done
+"$serial" info field.pctrl | grep -q "in pieces" || fail "info of pieces"
+on 3 export sources.csv -o field.pvtu
 for rank in 0 1 2; do
     [ -s field_$rank.ctrl ] && [ -s field_$rank.vtu ] || fail "no piece of rank $rank"
     grep -q "field_$rank.vtu" field.pvtu || fail "field.pvtu without rank $rank"
