@@ -7,6 +7,7 @@ from .command import OK
 from .results import PAPER_TIMES, InputError, read_results
 
 DIFFERENT = 1
+SHOWN = 3  # of the numbers that differ in a case
 TOLERANCE = 1e-10  # relative, of numbers that are no counts
 # Settings that say where accuracy is measured: where they differ nothing can be compared.
 PLACES = ["domain", "margin", "seed", "access_points", "probe_grid", "fine_probe_grid",
@@ -44,25 +45,30 @@ def check(here, there):
     pairs = row_pairs(here, there)
     if not pairs:
         raise InputError("the runs have no case in common: give runs of the same study")
-    equal = rounded = 0
-    different = []
+    equal = rounded = different = 0
+    cases = []
     for a, b in pairs:
         numbers_of_b = compared(b)
+        texts = []
         for key, value in compared(a).items():
             if key not in numbers_of_b:
                 continue
             state = differs(value, numbers_of_b[key])
             if state:
-                different.append(f"{a.label}, {a.group}: {key} {value!r}, there {numbers_of_b[key]!r}")
+                texts.append(f"{key} {value!r}, there {numbers_of_b[key]!r}")
             equal += state is False
             rounded += state is None
+        different += len(texts)
+        if texts:
+            more = f"; and {len(texts) - SHOWN} more" if len(texts) > SHOWN else ""
+            cases.append(f"{a.label}, {a.group}: {'; '.join(texts[:SHOWN])}{more}")
     bits = sum(a.measures.get("checksum") == b.measures.get("checksum") for a, b in pairs)
     lines = [f"here   {here.origin}", f"there  {there.origin}",
              f"{len(pairs)} cases in both, of {len(here.measured)} here and {len(there.measured)} there; "
              f"metrics at random places: the same bits in {bits} of them",
-             f"{equal + rounded + len(different)} counts, sizes and errors: {equal} equal, {rounded} within "
-             f"{TOLERANCE:g}, {len(different)} different"]
-    return lines + different, bool(different)
+             f"{equal + rounded + different} counts, sizes and errors: {equal} equal, {rounded} within "
+             f"{TOLERANCE:g}, {different} different"]
+    return lines + cases, different > 0
 
 
 def main(arguments):
