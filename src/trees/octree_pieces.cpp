@@ -1,9 +1,11 @@
 #include "controlspace/trees/octree_pieces.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -21,6 +23,7 @@ namespace controlspace {
 namespace {
 
 constexpr std::string_view first_line = "controlspace pieces 1";
+constexpr std::string_view piece_word = "piece ";
 
 std::string text_of(const Box& box) {
     return fmt::format("{},{},{},{},{},{}", box.low.x(), box.low.y(), box.low.z(), box.high.x(),
@@ -35,10 +38,20 @@ std::string_view cut_front(std::string_view& text, char separator) {
     return front;
 }
 
+/// By which a file is told from those of other runs: its own checksum, which ends it.
+std::string checksum_of(const std::filesystem::path& file) {
+    std::array<unsigned char, 8> end{};
+    std::ifstream bytes(file, std::ios::binary);
+    bytes.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
+    bytes.read(reinterpret_cast<char*>(end.data()), end.size());
+    if (!bytes) throw InputError(file.string() + " is no piece of an octree, or cannot be read");
+    return fmt::format("{:02x}", fmt::join(end, ""));
+}
+
 /// What an index says.
 struct Index {
     Box domain;
-    std::vector<std::string> names;
+    std::vector<std::string> names, checksums;
     std::vector<Box> octants;
     std::vector<std::uint32_t> piece_of;  ///< by octant, a name's number
 };
@@ -53,18 +66,18 @@ public:
             fail("no index of pieces: give a .pctrl that controlspace-mpi has written");
         }
         Index index;
+        line();
         index.domain = box();
         require_extent(index.domain);
         while (!rest_.empty()) {
-            index.octants.push_back(box());
-            // A name alone: nothing outside of the index's folder is read.
-            const std::string name(line_);
-            if (name.empty() || name != std::filesystem::path(name).filename() || name[0] == '.') {
-                fail(quote(name) + " is no name of a piece beside the index");
+            line();
+            if (line_.starts_with(piece_word)) {
+                add_piece(index);
+            } else {
+                if (index.names.empty()) fail("no piece for this octant");
+                index.octants.push_back(box());
+                index.piece_of.push_back(static_cast<std::uint32_t>(index.names.size() - 1));
             }
-            // Those of a piece come together.
-            if (index.names.empty() || index.names.back() != name) index.names.push_back(name);
-            index.piece_of.push_back(static_cast<std::uint32_t>(index.names.size() - 1));
         }
         return index;
     }
@@ -74,9 +87,19 @@ private:
         ++number_;
         return line_ = cut_front(rest_, '\n');
     }
-    /// At the beginning of the next line.
+    void add_piece(Index& index) {
+        const std::size_t space = line_.rfind(' ');
+        const std::string name(line_.substr(piece_word.size(), space - piece_word.size()));
+        // A name alone: nothing outside of the index's folder is read.
+        if (space < piece_word.size() || name.empty() || name[0] == '.' ||
+            name != std::filesystem::path(name).filename()) {
+            fail(quote(line_) + " names no piece beside the index");
+        }
+        index.names.push_back(name);
+        index.checksums.emplace_back(line_.substr(space + 1));
+    }
+    /// Of the line.
     Box box() {
-        line();
         std::array<double, 6> ends;
         for (double& end : ends) {
             const std::string_view number = cut_front(line_, ',');
@@ -117,6 +140,10 @@ public:
             piece = index.piece_of[i];
             if (!touch(octant, domain_) || pieces_[piece]) continue;
             const auto file = path.parent_path() / index.names[piece];
+            if (checksum_of(file) != index.checksums[piece]) {
+                throw InputError(fmt::format("{} is of another run than {}: write both again",
+                                             file.string(), path.string()));
+            }
             pieces_[piece] = load_control_space(file, structures);
             if (pieces_[piece]->domain() != index.domain) {
                 throw InputError(fmt::format("{}: its domain {} is not that of {}", file.string(),
@@ -235,9 +262,8 @@ void write_octree_pieces(const std::filesystem::path& index, const Box& domain,
     OutputFile out(index);
     out.print("{}\n{}\n", first_line, text_of(domain));
     for (const OctreePiece& piece : pieces) {
-        for (const Box& octant : piece.octants) {
-            out.print("{},{}\n", text_of(octant), piece.file.filename().string());
-        }
+        out.print("{}{} {}\n", piece_word, piece.file.filename().string(), checksum_of(piece.file));
+        for (const Box& octant : piece.octants) out.print("{}\n", text_of(octant));
     }
     out.commit();
 }

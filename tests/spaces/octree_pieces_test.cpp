@@ -148,7 +148,8 @@ TEST_CASE("an index of pieces that does not fit is refused") {
     CHECK_THAT(made.error_after("-1,2,0,1,4,2", "-1,2,0,1,4,3"), Contains("no octant"));
     CHECK_THAT(made.error_after("-1,2,0,1,4,2", "-1,2,0,1,4,nan"), Contains("2"));
     CHECK_THAT(made.error_after("field_0", "../field_0"), Contains("beside the index"));
-    CHECK_THAT(made.error_after("field_0.ctrl", ""), Contains("beside the index"));
+    CHECK_THAT(made.error_after("field_0.ctrl ", ""), Contains("beside the index"));
+    CHECK_THAT(made.error_after("piece field_0.ctrl", "field_0.ctrl"), Contains("no piece"));
     CHECK_THAT(made.error_after("-1,2,0,1,4,2", "-1,2,0,1,x,2"), Contains("no coordinate"));
     const std::string text = file_text(made.index);
     const std::string last = text.substr(text.rfind('\n', text.size() - 2) + 1);
@@ -156,11 +157,22 @@ TEST_CASE("an index of pieces that does not fit is refused") {
     CHECK_THAT(made.error_after(last, last + last), Contains("twice"));
     CHECK_THAT(error_of([&] { load_octree_pieces(made.scratch / "none.pctrl", structures()); }),
                Contains("none.pctrl"));
-    // A piece of another domain.
+    // A piece of another run, and one of another domain.
+    save_control_space(made.scratch / "field_0.ctrl", *made.spaces[1]);
+    CHECK_THAT(error_of([&] { load_octree_pieces(made.index, structures()); }),
+               Contains("of another run"));
     const std::vector<PointSource> one{{Point(0, 0, 0), Metric::isotropic(0.1)}};
     const auto other =
         make_control_space("K_oL", one, {.domain = {Point(-1, -1, -1), Point(1, 1, 1)}});
-    save_control_space(made.scratch / "field_1.ctrl", *other);
+    save_control_space(made.scratch / "field_0.ctrl", *other);
+    write_octree_pieces(made.index, domain,
+                        std::vector<OctreePiece>{{made.scratch / "field_0.ctrl", {domain}}});
     CHECK_THAT(error_of([&] { load_octree_pieces(made.index, structures()); }),
                Contains("is not that of"));
+    CHECK_THAT(error_of([&] {
+                   write_octree_pieces(made.index, domain,
+                                       std::vector<OctreePiece>{{made.scratch / "none.ctrl", {}}});
+               }),
+               Contains("none.ctrl"));
+    CHECK(file_text(made.index).find("field_0.ctrl") != std::string::npos);
 }

@@ -15,8 +15,8 @@ namespace controlspace {
 // pieces, control spaces (.ctrl) in the same folder. Each answers in some octants of the domain.
 //
 // The index is a text: a line "controlspace pieces 1"; a line with the domain, "x0,y0,z0,x1,y1,z1";
-// and for each octant a line with its box in the same form and the name of its piece,
-// "x0,y0,z0,x1,y1,z1,name".
+// and for each piece a line "piece NAME CHECKSUM", the last eight bytes of the file, followed by
+// the boxes of its octants, a line each.
 
 /// A piece, and the octants in which it answers.
 struct OctreePiece {
@@ -31,8 +31,8 @@ void write_octree_pieces(const std::filesystem::path& index, const Box& domain,
 /// The control space of all pieces, to be read: in each octant its piece answers, the low side of
 /// a face between two. Of a `region` only the pieces are loaded that answer in it, and the domain
 /// is that part of the region: what a process needs to mesh its own subdomain. Throws InputError
-/// if a file is missing or damaged, if the octants are not the leaves of one octree over the
-/// domain, or if the region is outside the domain.
+/// if a file is missing, damaged or of another run, if the octants are not the leaves of one octree
+/// over the domain, or if the region is outside the domain.
 std::unique_ptr<ControlSpace> load_octree_pieces(const std::filesystem::path& index,
                                                  std::span<const CatalogueEntry> structures,
                                                  const Box& region = Box::everywhere());
