@@ -16,6 +16,7 @@
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/space/control_space_file.h"
 #include "controlspace/space/make_control_space.h"
+#include "controlspace/trees/octree_pieces.h"
 #include "controlspace/version.h"
 
 namespace {
@@ -253,5 +254,16 @@ cspace_status cspace_load(const char* file, cspace** space) {
         SavedControlSpace saved = open_control_space(file, structures());
         *space = new cspace{std::move(saved.builder), std::move(saved.space),
                             saved.recipe.options.ratio};
+    });
+}
+
+cspace_status cspace_load_pieces(const char* index, const double* region, cspace** space) {
+    return guarded([&] {
+        require(space, "space");
+        *space = nullptr;
+        require(index, "index");
+        const Box box =
+            region == nullptr ? Box::everywhere() : Box{point_at(region, 0), point_at(region, 1)};
+        *space = new cspace{nullptr, load_octree_pieces(index, structures(), box)};
     });
 }

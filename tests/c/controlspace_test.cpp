@@ -13,6 +13,7 @@
 
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/measure/access_time.h"
+#include "controlspace/trees/octree_pieces.h"
 #include "editable_space.h"
 #include "scratch_directory.h"
 
@@ -100,6 +101,31 @@ TEST_CASE("C: every structure answers as from C++, also after saving and loading
     }
     CHECK(cspace_structure(i) == nullptr);
     cspace_free(nullptr);
+}
+
+TEST_CASE("C: an octree in pieces, whole and of a region") {
+    const ScratchDirectory folder;
+    cspace* space = made("K_oL");
+    REQUIRE(cspace_insert(space, 1, place.data(), tensor.data()) == CSPACE_OK);
+    REQUIRE(cspace_save(space, (folder / "field_0.ctrl").c_str()) == CSPACE_OK);
+    const std::string index = folder / "field.pctrl";
+    write_octree_pieces(index, domain,
+                        std::vector<OctreePiece>{{folder / "field_0.ctrl", {domain}}});
+    cspace* loaded = nullptr;
+    REQUIRE(cspace_load_pieces(index.c_str(), nullptr, &loaded) == CSPACE_OK);
+    CHECK(sampled(loaded) == sampled(space));
+    CHECK(cspace_insert(loaded, 1, place.data(), tensor.data()) == CSPACE_BAD_INPUT);
+    cspace_free(loaded);
+    const std::array<double, 6> region{-1, -1, -1, 0, 0, 5};
+    REQUIRE(cspace_load_pieces(index.c_str(), region.data(), &loaded) == CSPACE_OK);
+    std::array<double, 6> box{};
+    CHECK(cspace_domain(loaded, box.data()) == CSPACE_OK);
+    CHECK(box == std::array<double, 6>{-1, -1, -1, 0, 0, 1});
+    cspace_free(loaded);
+    const std::array<double, 6> outside{2, 2, 2, 3, 3, 3};
+    CHECK(cspace_load_pieces(index.c_str(), outside.data(), &loaded) == CSPACE_BAD_INPUT);
+    CHECK(loaded == nullptr);
+    cspace_free(space);
 }
 
 TEST_CASE("C: what cannot be used is refused with a reason") {
