@@ -79,6 +79,11 @@ std::string named(const Rows& rows, const StudyRows& columns) {
     return text;
 }
 
+/// Trees are adapted to the exact field, not to another reference.
+bool follows_exact_field(const Rows& rows) {
+    return rows.front()->setting.reference == &exact_reference_kind();
+}
+
 /// Where no row is within the factor.
 std::string nearest(const Rows& measured, double factor, bool is_asked, const StudyRows& columns) {
     Rows finite = measured;
@@ -88,8 +93,7 @@ std::string nearest(const Rows& measured, double factor, bool is_asked, const St
             ? "All errors are infinite"
             : fmt::format("Closest: {}", named(least(finite, factor_of, rounding), columns));
     if (is_asked) return found + "; the remarks of the rows say what would help.";
-    // Trees are adapted to the exact field, not to another reference.
-    if (measured.front()->setting.reference != &exact_reference_kind()) return found + ".";
+    if (!follows_exact_field(measured)) return found + ".";
     return fmt::format("{}; --within {:.4g} adapts trees to it.", found, factor);
 }
 
@@ -131,6 +135,13 @@ Outcome outcome_of(const std::string& work, const Rows& measured, const Asked& a
             : fmt::format("Fastest: {}{}.", fastest.size() > 1 ? "indistinguishable between " : "",
                           named(fastest, columns)),
         fmt::format("Most accurate: {}.", named(accurate, columns))};
+    const bool has_trees =
+        std::ranges::any_of(measured, [](const Row* row) { return row->number("tree_nodes") > 0; });
+    if (!is_asked && has_trees && follows_exact_field(measured)) {
+        o.sentences.push_back(fmt::format(
+            "No tree was adapted: --within {:.4g} makes trees for this error, often smaller ones.",
+            factor));
+    }
     return o;
 }
 

@@ -56,7 +56,12 @@ TEST_CASE("the smallest, the fastest and the most accurate are those within the 
               "Lengths within 1.25x of the reference's at all probes (by default): 3 of 4 rows.",
               "Smallest: small (0.41 MB, 19.0 ns per query, lengths within 1.240x).",
               "Fastest: fast (0.9 MB, 10.0 ns per query, lengths within 1.200x).",
-              "Most accurate: exact (5 MB, 1000.0 ns per query, lengths within 1.000x)."});
+              "Most accurate: exact (5 MB, 1000.0 ns per query, lengths within 1.000x).",
+              "No tree was adapted: --within 1.25 makes trees for this error, often smaller "
+              "ones."});
+    std::vector<Row> grids = sample();
+    for (Row& row : grids) row.values["tree_nodes"] = std::int64_t{0};
+    CHECK(only(grids).sentences.size() == 4);
 }
 
 TEST_CASE("either kind of probes puts a structure out, and so does an infinite error") {
