@@ -135,16 +135,19 @@ class Evidence:
         return self.by_key.get(row.key_with(**changes))
 
     def near_ties(self, row, **changes):
-        """The same but for what decides between edges that are almost equally long: l_min or the
-        box differ by 1e-8 of their size at most, and s_G's sections may be exact."""
-        key, tau = row.key_with(**changes), row.setting["tau"]
+        """The same but for what decides between edges that are almost equally long: l_min, the box
+        or the sources' normal lengths differ by 1e-8 of their size at most, and s_G's sections may
+        be exact. Of sources that are isotropic but for that all intersections are alike."""
+        key, tau, s_n = row.key_with(**changes), row.setting["tau"], row.setting["s_n"]
         found = []
         for other, box in self.entries:
             if other.measures is None or (box == PAPER_BOX and other.key == key):
                 continue
             split = other.setting.get("split")
-            same = other.key_with(tau=tau, split="s_G" if split == "s_Gx" else split) == key
-            if same and abs(other.setting["tau"] - tau) <= ROUNDING * tau:
+            same = other.key_with(tau=tau, s_n=s_n, intersection=row.setting.get("intersection"),
+                                  split="s_G" if split == "s_Gx" else split) == key
+            if same and all(abs(other.setting[k] - x) <= ROUNDING * x
+                            for k, x in (("tau", tau), ("s_n", s_n))):
                 found.append(other)
         return found
 

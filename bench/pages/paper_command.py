@@ -13,7 +13,7 @@ from .results import InputError, read_results, write_file
 STUDIES = DATA / "studies"
 # Experiments on why cells differ: the folder of their results in that of the cells, and the study.
 EXPERIMENTS = [("experiments", "paper-experiments.toml"), ("tie-order-x", "paper-tie-order-x.toml"),
-               ("tie-order-zx", "paper-tie-order-zx.toml")]
+               ("tie-order-zx", "paper-tie-order-zx.toml"), ("round-off", "paper-round-off.toml")]
 
 
 def experiments_in(folder):

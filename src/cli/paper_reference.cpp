@@ -1,5 +1,7 @@
 #include "cli/paper_reference.h"
 
+#include <cmath>
+
 #include "controlspace/error.h"
 #include "controlspace/fields/surface_fields.h"
 #include "controlspace/study/workload.h"
@@ -25,7 +27,8 @@ void require_isotropic_sphere(const SourcesChoice& sources) {
     if (sources.centre != Point::Zero()) {
         throw InputError("reference published-sphere is around the origin: use exact");
     }
-    if (sources.s_n != 1) {
+    constexpr double rounding = 1e-9;  // such lengths show what round-off decides
+    if (std::abs(sources.s_n - 1) > rounding) {
         throw InputError("reference published-sphere is isotropic: use exact, or s_n = 1");
     }
 }

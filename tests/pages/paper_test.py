@@ -159,6 +159,15 @@ class Cells(unittest.TestCase):
         exact = [*ours, measured("K_L", "s_Gx", 8.4, 1.6)]
         self.assertEqual(verdict_on(exact, DELTA_R, "K_L").verdict, paper.EXPLAINED)
 
+    def test_sources_isotropic_but_for_rounding_are_another_order_of_ties(self):
+        # Table 4: 1.62.
+        def verdict(s_n):
+            return verdict_on([measured("K_L", "s_G", 8.16, 1.66),
+                               measured("K_L", "s_G", 8.19, 1.60, s_n=s_n, intersection="in-turn")],
+                              DELTA_R, "K_L").verdict
+        self.assertEqual(verdict(1.0000000000000002), paper.EXPLAINED)
+        self.assertEqual(verdict(1.001), paper.UNEXPLAINED)
+
     def test_shared_vertices_explain_a_tree_with_more_nodes_than_places(self):
         # Table 1: 42.89, Table 4: 1.79.
         def verdict(size, delta, table):

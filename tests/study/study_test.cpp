@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <set>
 
 #include "cli/paper_reference.h"
@@ -161,7 +162,9 @@ TEST_CASE("studies that make no sense are refused") {
     CHECK_THROWS_WITH(expand(study), Contains("for the sphere"));
     study.sources.kind = SourcesKind::sphere;
     CHECK_NOTHROW(expand(study));
-    study.runs[0]["s_n"] = {1, 0.5};
+    study.runs[0]["s_n"] = {1, std::nextafter(1.0, 2.0)};
+    CHECK_NOTHROW(expand(study));
+    study.runs[0]["s_n"] = {1, 1.001};
     CHECK_THROWS_WITH(expand(study), Contains("isotropic"));
 
     Study huge = study_of({"K_L"});
