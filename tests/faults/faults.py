@@ -1,16 +1,17 @@
 #!/usr/bin/python3 -B
 """Faults for real: full disks, missing rights, folders that vanish, kill -9, two runs at once, little memory.
 
-    faults.py PROGRAM [--kills N] [--only PART]
+    faults.py PROGRAM [--kills N] [--cases N] [--only PART]
 
 After each fault finished cases are readable, an old file is intact or a new one whole, and what was not killed has
 said what is wrong in one line and a status other than 0. N: kills of saving and of a study, together. Parts are the functions below that take a folder alone, and kills.
 """
-import argparse, collections, fcntl, json, os, pathlib, random, resource, shutil, signal, subprocess, sys, tempfile, time
+import argparse, collections, fcntl, json, os, pathlib, random, resource, shutil, signal, subprocess, sys, tempfile, threading, time
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("program", type=pathlib.Path)
 parser.add_argument("--kills", type=int, default=20)
+parser.add_argument("--cases", type=int, default=30)
 parser.add_argument("--only")
 options = parser.parse_args()
 
@@ -251,6 +252,59 @@ def kill_study(folder, kills):
         finish_killed(folder, out, reference)
 
 
+def drawn_runs(cases):
+    """Runs of a study with settings at random."""
+    trees, others = "K_L K_Li K_V K_oL K_oLB K_oV K_oLi".split(), "K_LA K_oLA uniform-nearest uniform-trilinear".split()
+    text = ""
+    for _ in range(cases):
+        run = {"structures": f'"{chance.choice(trees + others)}"', "splits": f'"{chance.choice(["s_L", "s_G", "s_M"])}"',
+               "g_r": round(chance.uniform(1.05, 2), 3), "tau": round(chance.uniform(0.3, 3), 3),
+               "rho": chance.choice([4, 6, 8]), "epsilon": round(chance.uniform(0.01, 0.4), 3)}
+        if chance.random() < 0.3:
+            run["target_delta"] = round(chance.uniform(0.1, 0.5), 3)
+        elif chance.random() < 0.3:
+            run["schedule"] = f'"{chance.choice(["queue", "passes"])}"'
+        if chance.random() < 0.3:
+            run |= {"s_a": 2, "s_n": 0.5}
+        text += "[[runs]]\n" + "".join(f"{key} = {value}\n" for key, value in run.items())
+    return text
+
+
+def resident_bytes(process):
+    try:
+        status = pathlib.Path(f"/proc/{process.pid}/status").read_text()
+    except OSError:
+        return 0
+    return next((1024 * int(line.split()[1]) for line in status.splitlines() if line.startswith("VmRSS")), 0)
+
+
+def long_study(folder):
+    """Many cases with random settings in one run: all finish, in memory that does not grow with their number."""
+    (folder / "long.toml").write_text(
+        'sources = "sphere"\nh = 0.1\naccess_points = 100\naccess_repeats = 1\ncreation_repeats = 1\n'
+        "fine_probe_grid = 9\nprobe_grid = 5\nvoxel = 0.1\nmax_memory = 0.2\n" + drawn_runs(options.cases))
+    out = folder / "long"
+    process = start(["compare", "long.toml", "--output", out, "--quiet"], folder)
+    samples = []
+
+    def watch():
+        while process.poll() is None:
+            samples.append(resident_bytes(process))
+            time.sleep(0.02)
+    watcher = threading.Thread(target=watch)
+    watcher.start()
+    _, err = process.communicate(timeout=3600)
+    watcher.join()
+    check(process.returncode in (0, 3), f"a long study: status {process.returncode}, {err[-400:]!r}")
+    rows = rows_of(out) or []
+    check(len(rows) == options.cases, f"a long study has {len(rows)} of {options.cases} rows")
+    # By halves: what single cases take varies, what leaks adds up.
+    earlier, later = (max(part, default=0) for part in (samples[:len(samples) // 2], samples[len(samples) // 2:]))
+    check(later <= 1.25 * earlier + 2e7, f"a long study grows from {earlier / 1e6:.0f} to {later / 1e6:.0f} MB")
+    counts["cases of a long study"] += len(rows)
+    counts["MB of its first half, at most"], counts["MB of its second half"] = round(earlier / 1e6), round(later / 1e6)
+
+
 def kills(folder):
     kill_saving(folder, options.kills // 2)
     kill_study(folder, options.kills - options.kills // 2)
@@ -330,7 +384,8 @@ def little_memory(folder):
 with tempfile.TemporaryDirectory(prefix="controlspace-faults-") as name:
     folder = pathlib.Path(name)
     inputs(folder)
-    for part in (file_sizes, study_sizes, small_disk, no_rights, folder_vanishes, two_at_once, little_memory, kills):
+    for part in (file_sizes, study_sizes, small_disk, no_rights, folder_vanishes, two_at_once, little_memory, long_study,
+                 kills):
         if options.only in (None, part.__name__):
             part(folder)
 print(", ".join(f"{what}: {count}" for what, count in sorted(counts.items())))
