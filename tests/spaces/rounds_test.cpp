@@ -31,7 +31,7 @@ int rounds() {
 
 }  // namespace
 
-CASE_OF_EACH(entry, of_control_nodes(), "many rounds of insertion, gradation and queries", "") {
+CASE_OF_EACH(entry, of_control_nodes(), "many rounds of insertion and gradation", "") {
     const Box domain{Point::Zero(), Point::Ones()};
     auto made = entry.make({.domain = domain, .finest_length = 0.2});
     auto& builder = dynamic_cast<NodeBuilder&>(*made);
