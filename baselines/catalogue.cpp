@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "baselines/add_structures.h"
-#include "baselines/direct/direct.h"
-#include "baselines/uniform/uniform_grid.h"
+#include "baselines/rows.h"
 #ifdef CONTROLSPACE_OPENVDB
 #include "baselines/openvdb/catalogue.h"
 #endif

@@ -1,5 +1,3 @@
-#include "baselines/direct/direct.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,13 +6,14 @@
 #include <memory>
 #include <utility>
 
+#include "baselines/rows.h"
 #include "cones/cone_field.h"
-#include "controlspace/error.h"
 #include "controlspace/space/detail/goal_field.h"
 #include "controlspace/space/detail/own_growths.h"
 #include "controlspace/space/detail/saved.h"
 #include "controlspace/space/detail/shared_builder.h"
 #include "controlspace/space/detail/state.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -61,7 +60,7 @@ public:
 
     void save(StateWriter& state) const {
         if (continuous_) {
-            throw InputError(
+            refuse(
                 "`direct` cannot be saved with a continuous field: save a structure that holds "
                 "metrics");
         }
@@ -118,7 +117,7 @@ private:
         search_.reset();
         require_valid(source, index, domain_);
         if (sources_.size() >= std::numeric_limits<std::uint32_t>::max() / 2) {
-            throw InputError("sources kept as they are: give fewer than 2^31");
+            refuse("sources kept as they are: give fewer than 2^31");
         }
         sources_.push_back(source);
     }

@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "baselines/lattice/stencil.h"
-#include "controlspace/error.h"
 #include "controlspace/geometry/detail/large_pages.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/space/detail/past_gradation.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -48,10 +48,10 @@ LatticeData::LatticeData(const SpaceOptions& options, const GridKind& kind)
       })) {
     if (!options.takes_later_sources) return;
     if (options.prune_delta > 0) {
-        throw InputError("a grid that takes later sources cannot be pruned: set prune_delta 0");
+        refuse("a grid that takes later sources cannot be pruned: set prune_delta 0");
     }
     if (kind.stored != nullptr) {
-        throw InputError("a grid of floats takes no later sources: use one of doubles");
+        refuse("a grid of floats takes no later sources: use one of doubles");
     }
 }
 

@@ -9,6 +9,7 @@
 #include "controlspace/geometry/extent.h"
 #include "controlspace/gradation/node_graph.h"
 #include "controlspace/input_errors.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -45,10 +46,10 @@ Vector whole_cells(const Vector& cells) { return (cells.array() * (1 - 1e-12)).c
 double longest_voxel_edge(const SpaceOptions& options) {
     if (options.voxel > 0) return options.voxel;
     if (!std::isfinite(options.finest_length) || !(options.finest_length > 0)) {
-        throw InputError(
-            fmt::format("a grid cannot size its voxels by a finest length of {}: set SpaceOptions::"
-                        "voxel, or finest_length to the smallest length that any source requests",
-                        options.finest_length));
+        refuse(
+            "a grid cannot size its voxels by a finest length of {}: set SpaceOptions::"
+            "voxel, or finest_length to the smallest length that any source requests",
+            options.finest_length);
     }
     return options.l_min * options.finest_length;
 }

@@ -5,9 +5,9 @@
 
 #include <limits>
 
-#include "controlspace/error.h"
 #include "controlspace/metric/metric.h"
 #include "controlspace/metric/stored_metric.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -36,9 +36,8 @@ inline Metric in_floats(const Metric& m) {
     constexpr float most = std::numeric_limits<float>::max();
     const auto fits = [&](float entry) { return entry >= least && entry <= most; };
     if (!fits(kept.xx) || !fits(kept.yy) || !fits(kept.zz) || !is_positive_definite(kept)) {
-        throw InputError(fmt::format(
-            "floats cannot hold the metric {} (xx yy zz xy xz yz): use a grid of doubles",
-            to_string(m)));
+        refuse("floats cannot hold the metric {} (xx yy zz xy xz yz): use a grid of doubles",
+               to_string(m));
     }
     return kept;
 }

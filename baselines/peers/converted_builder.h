@@ -5,9 +5,9 @@
 #include <string>
 #include <utility>
 
-#include "controlspace/error.h"
 #include "controlspace/space/catalogue.h"
 #include "controlspace/space/control_space_builder.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -26,7 +26,7 @@ public:
     }
     AdaptationReport adapt(const AdaptationGoal& goal) override { return ours_->adapt(goal); }
     std::unique_ptr<ControlSpace> build(const BuildOptions& options) override {
-        if (options.precision) throw InputError("a foreign system has no compact form");
+        if (options.precision) refuse("a foreign system has no compact form");
         return std::make_unique<Space>(*ours_->build());
     }
     Box domain() const override { return ours_->domain(); }

@@ -12,6 +12,7 @@
 #include "controlspace/space/catalogue.h"
 #include "controlspace/space/control_space_builder.h"
 #include "controlspace/space/detail/goal_field.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -50,8 +51,7 @@ public:
     }
     AdaptationReport adapt(const AdaptationGoal& goal) override {
         if (goal.continuous) {
-            throw InputError(
-                "this system is built from point sources: give no field that is continuous");
+            refuse("this system is built from point sources: give no field that is continuous");
         }
         AdaptationGoal bounded = goal;
         bounded.h_max = std::min(input_.options.h_max, goal.h_max);
@@ -69,7 +69,7 @@ public:
         return report;
     }
     std::unique_ptr<ControlSpace> build(const BuildOptions& options) override {
-        if (options.precision) throw InputError("a foreign system has no compact form");
+        if (options.precision) refuse("a foreign system has no compact form");
         return make_(input_);
     }
     Box domain() const override { return input_.options.domain; }

@@ -1,7 +1,6 @@
-#include "baselines/uniform/uniform_grid.h"
-
 #include "baselines/lattice/grid_row.h"
 #include "baselines/lattice/grid_space.h"
+#include "baselines/rows.h"
 
 namespace controlspace {
 

@@ -18,12 +18,13 @@
 #include "controlspace/space/make_control_space.h"
 #include "controlspace/trees/octree_pieces.h"
 #include "controlspace/version.h"
+#include "refuse.h"
 
 namespace {
 
 using namespace controlspace;
 
-// What the caller of this thread may ask for: the one thing that outlives a call.
+// The last error of this thread: the only state that outlives a call.
 thread_local std::string last_error;
 thread_local std::size_t last_index = no_index, last_bytes = 0;
 
@@ -32,7 +33,7 @@ template <class Edit>
 void change(cspace* handle, Edit&& edit) {
     require(handle, "space");
     if (!handle->builder) {
-        throw InputError("a compact form is only read: insert, grade and adapt before it is made");
+        refuse("a compact form is only read: insert, grade and adapt before it is made");
     }
     handle->space.reset();  // so that nothing has to be copied
     try {
@@ -55,15 +56,15 @@ template <class Struct>
 Struct complete(const Struct* given, const char* name) {
     Struct own{};
     if (given->struct_size < sizeof given->struct_size) {
-        throw InputError(fmt::format("struct_size of the {0} is {1}: set it to sizeof(cspace_{0})",
-                                     name, given->struct_size));
+        refuse("struct_size of the {0} is {1}: set it to sizeof(cspace_{0})", name,
+               given->struct_size);
     }
     const char* bytes = reinterpret_cast<const char*>(given);
     std::memcpy(&own, bytes, std::min(given->struct_size, sizeof own));
     for (std::size_t i = sizeof own; i < given->struct_size; ++i) {
         if (bytes[i] == 0) continue;
-        throw InputError(fmt::format(
-            "the {} have a member that version {} does not know: leave it at 0", name, version()));
+        refuse("the {} have a member that version {} does not know: leave it at 0", name,
+               version());
     }
     return own;
 }
@@ -76,7 +77,7 @@ std::vector<PointSource> sources_in(const cspace_sources* sources) {
     require(given.positions, "positions");
     if (given.lengths == nullptr) require(given.metrics, "metrics");
     if (given.lengths != nullptr && given.metrics != nullptr) {
-        throw InputError("sources have lengths and metrics: give one of them");
+        refuse("sources have lengths and metrics: give one of them");
     }
     result.reserve(given.n);
     for (std::size_t i = 0; i < given.n; ++i) {
@@ -115,7 +116,7 @@ cspace_status fail(cspace_status status, const char* what, std::size_t index,
 }
 
 void require(const void* argument, const char* name) {
-    if (argument == nullptr) throw InputError(fmt::format("{} is NULL", name));
+    if (argument == nullptr) refuse("{} is NULL", name);
 }
 
 const ControlSpace& space_of(const cspace* handle) {

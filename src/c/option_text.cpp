@@ -1,14 +1,12 @@
 #include "c/option_text.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <set>
 #include <utility>
 
-#include "controlspace/error.h"
 #include "controlspace/space/split_words.h"
 #include "files/text_file.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -37,7 +35,7 @@ template <class Number>
 Number number_from(std::string_view name, std::string_view text) {
     Number value{};
     if (!parse_number(text, value)) {
-        throw InputError(fmt::format("option {} is {}: give a number", name, quote(text)));
+        refuse("option {} is {}: give a number", name, quote(text));
     }
     return value;
 }
@@ -50,8 +48,7 @@ void set_option(SpaceOptions& options, std::string_view name, std::string_view v
     } else if (name == "split") {
         const auto split = from_name<SplitRule>(value);
         if (!split) {
-            throw InputError(
-                fmt::format("there is no split {}: give s_L, s_G, s_Gx or s_M", quote(value)));
+            refuse("there is no split {}: give s_L, s_G, s_Gx or s_M", quote(value));
         }
         options.split = *split;
     } else if (name == "takes_later_sources") {
@@ -59,11 +56,11 @@ void set_option(SpaceOptions& options, std::string_view name, std::string_view v
     } else if (name == "max_memory") {
         const auto gib = number_from<double>(name, value);
         if (!(gib > 0 && gib < 1e9)) {
-            throw InputError(fmt::format("max_memory is {} GiB: give a value above 0", gib));
+            refuse("max_memory is {} GiB: give a value above 0", gib);
         }
         options.max_bytes = static_cast<std::size_t>(gib * (1 << 30));
     } else {
-        throw InputError(fmt::format("there is no option {}: see controlspace.h", quote(name)));
+        refuse("there is no option {}: see controlspace.h", quote(name));
     }
 }
 
@@ -80,11 +77,11 @@ SpaceOptions options_from_text(const Box& domain, std::string_view text) {
         const std::string_view word = text.substr(begin, end - begin);
         const std::size_t sign = word.find('=');
         if (sign == std::string_view::npos) {
-            throw InputError(fmt::format("option {} has no value: write name=value", quote(word)));
+            refuse("option {} has no value: write name=value", quote(word));
         }
         const std::string_view name = word.substr(0, sign);
         if (!given.insert(name).second) {
-            throw InputError(fmt::format("option {} is given twice: give it once", quote(name)));
+            refuse("option {} is given twice: give it once", quote(name));
         }
         set_option(options, name, word.substr(sign + 1));
         text.remove_prefix(end);

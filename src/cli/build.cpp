@@ -8,8 +8,8 @@
 #include "cli/filled_space.h"
 #include "cli/options.h"
 #include "cli/standard_output.h"
-#include "controlspace/error.h"
 #include "controlspace/space/control_space_file.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -17,8 +17,7 @@ namespace {
 int build(const Job& job) {
     const std::filesystem::path& output = job.output;
     if (output.extension() != ".ctrl") {
-        throw InputError(
-            fmt::format("cannot save to {}: name a file that ends in .ctrl", output.string()));
+        refuse("cannot save to {}: name a file that ends in .ctrl", output.string());
     }
     const FilledSpace filled = filled_space(
         job, "writing", [&](const auto& made, auto&) { save_control_space(output, *made.space); });

@@ -26,6 +26,7 @@
 #include "controlspace/error.h"
 #include "controlspace/study/results.h"
 #include "controlspace/study/run.h"
+#include "refuse.h"
 #include "study/forecast.h"
 #include "study/text_table.h"
 
@@ -97,7 +98,7 @@ std::pair<Provenance, std::vector<Row>> go_on_from(const std::filesystem::path& 
     try {
         return {earlier.provenance, rows_to_go_on_from(earlier, study, expand(study, rows), now)};
     } catch (const InputError& error) {
-        throw InputError(fmt::format("--resume {}: {}", folder.string(), error.what()));
+        refuse("--resume {}: {}", folder.string(), error.what());
     }
 }
 

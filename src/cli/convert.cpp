@@ -7,8 +7,8 @@
 #include "cli/input_study.h"
 #include "cli/options.h"
 #include "cli/progress.h"
-#include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -27,7 +27,7 @@ Action add_convert(Options& options) {
     add_reading_options(options, *job);
     return [job](const std::string&) {
         const std::filesystem::path& output = job->out.empty() ? job->output : job->out;
-        if (output.empty()) throw InputError("no OUT: name the file to write");
+        if (output.empty()) refuse("no OUT: name the file to write");
         require_no_input(output, files_named(job->input));
         StepProgress progress(job->quiet, output);
         progress.started("reading");

@@ -9,9 +9,9 @@
 
 #include "cli/command.h"
 #include "cli/standard_output.h"
-#include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/io/write_vtk.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -57,14 +57,12 @@ const FieldFormat& chosen_format(const ExportJob& job, const Options& options) {
             std::vector<std::string> endings = endings_of(job.formats, group);
             const std::string last = endings.back();
             endings.pop_back();
-            throw InputError(fmt::format("{} is for {}{}{}: leave it out", given.front(),
-                                         fmt::join(endings, ", "), endings.empty() ? "" : " and ",
-                                         last));
+            refuse("{} is for {}{}{}: leave it out", given.front(), fmt::join(endings, ", "),
+                   endings.empty() ? "" : " and ", last);
         }
     }
     if (chosen == job.formats.end()) {
-        throw InputError(fmt::format("{}: name a file of one of {}", job.output.string(),
-                                     all_endings(job.formats)));
+        refuse_at(job.output, "name a file of one of {}", all_endings(job.formats));
     }
     return *chosen;
 }

@@ -5,9 +5,8 @@
 #include <cmath>
 
 #include "cli/export.h"
-#include "controlspace/error.h"
-#include "controlspace/io/read_sources.h"
 #include "io/text/size_files.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -56,10 +55,10 @@ std::filesystem::path background_base(const std::filesystem::path& output) {
     std::filesystem::path base = output;
     base.replace_extension();
     if (base.extension() == ".b") return base;
-    throw InputError(fmt::format(
-        "{}: TetGen reads the background mesh of NAME.poly from NAME.b.node, NAME.b.ele and "
-        "NAME.b.mtr: name {}.b{}",
-        output.string(), base.string(), output.extension().string()));
+    refuse_at(output,
+              "TetGen reads the background mesh of NAME.poly from NAME.b.node, NAME.b.ele and "
+              "NAME.b.mtr: name {}.b{}",
+              base.string(), output.extension().string());
 }
 
 std::string write_tetgen(const Export& e) {

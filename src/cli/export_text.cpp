@@ -6,33 +6,29 @@
 #include <memory>
 
 #include "cli/export.h"
-#include "controlspace/error.h"
 #include "controlspace/geometry/extent.h"
 #include "controlspace/io/read_sources.h"
+#include "controlspace/space/sample_parallel.h"
 #include "io/text/medit.h"
+#include "io/text/metric_rows.h"
 #include "io/text/pos.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
 
 std::string write_solution(const Export& e, const std::filesystem::path& mesh) {
     const std::vector<Point> vertices = read_medit_vertices(mesh);
-    std::vector<Metric> metrics(vertices.size());
-    e.filled.space->sample(vertices, metrics);
-    write_medit_solution(e.output, metrics);
+    write_medit_solution(e.output, sample_parallel(*e.filled.space, vertices));
     return written(e,
                    fmt::format("metrics at the {} vertices of {}", vertices.size(), mesh.string()));
 }
 
 std::string write_node_table(const Export& e) {
     const auto nodes = control_nodes(*e.filled.space, Neighbourhood::faces);
-    if (!nodes) throw InputError("this structure has no control nodes: name a .vti");
-    const std::vector<Point> places = positions(nodes->graph);
-    std::vector<PointSource> sources;
-    for (std::size_t i = 0; i < places.size(); ++i)
-        sources.push_back({places[i], nodes->metrics[i]});
-    write_sources(e.output, sources);
-    return written(e, fmt::format("{} control nodes", sources.size()));
+    if (!nodes) refuse("this structure has no control nodes: name a .vti");
+    write_sources(e.output, sources_from(positions(nodes->graph), nodes->metrics));
+    return written(e, fmt::format("{} control nodes", nodes->metrics.size()));
 }
 
 std::string write_view(const Export& e) {
@@ -68,7 +64,7 @@ std::vector<FieldFormat> add_text_formats(Options& options) {
              [mesh](const Export& e) { return write_solution(e, *mesh); },
              {group},
              [mesh](const auto&, const auto&) {
-                 if (mesh->empty()) throw InputError("name the mesh of the solution by --mesh");
+                 if (mesh->empty()) refuse("name the mesh of the solution by --mesh");
              }}};
 }
 

@@ -6,12 +6,12 @@
 
 #include "cli/export.h"
 #include "cli/peak_memory.h"
-#include "controlspace/error.h"
 #include "controlspace/io/metric_grids.h"
 #include "controlspace/io/write_vdb.h"
 #include "controlspace/study/provenance.h"
 #include "files/text_file.h"
 #include "measure/stopwatch.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -57,8 +57,7 @@ std::string export_vdb(const Export& e, VdbOptions vdb) {
         vdb.max_bytes = space_options(study, c, workload).max_bytes;
         if (with_sources) vdb.sources = workload.sources;
     } else if (with_sources) {
-        throw InputError(
-            fmt::format("{} keeps no sources: leave them out of --grids", e.input.string()));
+        refuse("{} keeps no sources: leave them out of --grids", e.input.string());
     }
     const Stopwatch time;
     const VdbReport report = write_vdb(e.output, *e.filled.space, vdb);
@@ -76,7 +75,7 @@ VdbCompression compression_named(const std::string& name) {
     if (name == "blosc") return VdbCompression::blosc;
     if (name == "zip") return VdbCompression::zip;
     if (name == "none") return VdbCompression::none;
-    throw InputError(fmt::format("--compression: {} is none of blosc, zip and none", quote(name)));
+    refuse("--compression: {} is none of blosc, zip and none", quote(name));
 }
 
 }  // namespace

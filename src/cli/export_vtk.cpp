@@ -5,12 +5,12 @@
 #include <memory>
 
 #include "cli/export.h"
-#include "controlspace/error.h"
 #include "controlspace/geometry/extent.h"
 #include "controlspace/io/write_lengths.h"
 #include "controlspace/io/write_vtk.h"
 #include "files/text_file.h"
 #include "io/netcdf/write_netcdf.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -34,15 +34,13 @@ Slice slice_of(const SliceOptions& options, const Box& domain, std::optional<int
     const std::string plain(1, "xyz"[flat_axis(domain).value_or(2)]);
     const std::string& name = options.place.empty() ? plain : options.place.front();
     const std::size_t axis = std::string("xyz").find(name);
-    if (name.size() != 1 || axis > 2) {
-        throw InputError(fmt::format("--slice: {} is no axis: give x, y or z", quote(name)));
-    }
+    if (name.size() != 1 || axis > 2) refuse("--slice: {} is no axis: give x, y or z", quote(name));
     Slice slice;
     slice.axis = static_cast<Axis>(axis);
     slice.at = domain.centre()[slice.axis];
     if (samples) slice.samples = *samples;
     if (options.place.size() > 1 && !parse_number(options.place[1], slice.at)) {
-        throw InputError(fmt::format("--slice: {} is not a number", quote(options.place[1])));
+        refuse("--slice: {} is not a number", quote(options.place[1]));
     }
     return slice;
 }

@@ -12,11 +12,11 @@
 #include "cli/standard_output.h"
 #include "cli/threads.h"
 #include "controlspace/baselines/catalogue.h"
-#include "controlspace/error.h"
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/space/control_space_file.h"
 #include "controlspace/trees/octree_pieces.h"
 #include "modules/load.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -32,8 +32,8 @@ std::unique_ptr<ControlSpace> load_saved(const std::filesystem::path& input) {
 
 void require_no_settings(const std::filesystem::path& space, const GivenSettings& given) {
     if (given.empty()) return;
-    throw InputError(fmt::format("{}: {} was made with its own: leave it out",
-                                 option_name(given.front().first), space.string()));
+    refuse("{}: {} was made with its own: leave it out", option_name(given.front().first),
+           space.string());
 }
 
 void start_library_of(const std::string& structure) {

@@ -6,7 +6,7 @@
 
 #include <cerrno>
 
-#include "controlspace/error.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -17,9 +17,8 @@ FolderLock::FolderLock(const std::filesystem::path& folder, bool make) {
     if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
     if (errno != EWOULDBLOCK) return;  // a file system without locks
     ::close(descriptor_);
-    throw InputError(folder.string() +
-                     ": another run writes its results there: wait for it, or choose another "
-                     "output folder");
+    refuse_at(folder,
+              "another run writes its results there: wait for it, or choose another output folder");
 }
 
 FolderLock::~FolderLock() {

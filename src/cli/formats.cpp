@@ -9,7 +9,6 @@
 #include <string_view>
 #include <utility>
 
-#include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/io/read_vdb.h"
 #include "controlspace/io/read_vtk_sources.h"
@@ -19,6 +18,7 @@
 #include "io/surface/surface_mesh.h"
 #include "io/surface/surface_sources.h"
 #include "modules/load.h"
+#include "refuse.h"
 #include "study/file_endings.h"
 
 namespace controlspace {
@@ -103,8 +103,7 @@ const SourceFormat* format_of(const std::filesystem::path& file) {
 /// The format of a part, which can be read.
 const SourceFormat& checked_part(const std::filesystem::path& file) {
     if (!is_part(file)) {
-        throw InputError(fmt::format("{} is no part: name a {}", file.string(),
-                                     fmt::join(part_endings(), ", ")));
+        refuse("{} is no part: name a {}", file.string(), fmt::join(part_endings(), ", "));
     }
     const SourceFormat& format = *format_of(file);
     load_module(format.module);
@@ -140,12 +139,9 @@ FileReaders file_readers() {
         const std::string ending = lower_case_extension(choice.file);
         const bool is_vtk = ending == ".vtu" || ending == ".vti";
         if (!is_vtk && ending != ".vdb") {
-            throw InputError(
-                fmt::format("{}: name a .vdb, .vtu or .vti as the field", choice.file.string()));
+            refuse_at(choice.file, "name a .vdb, .vtu or .vti as the field");
         }
-        if (is_vtk && choice.vdb.density) {
-            throw InputError("field_density_sizes is for a .vdb: leave it out");
-        }
+        if (is_vtk && choice.vdb.density) refuse("field_density_sizes is for a .vdb: leave it out");
         const auto read = [&] {
             return is_vtk ? read_vtk_field(choice.file, choice.vdb.grid)
                           : read_vdb_field(choice.file, choice.vdb);

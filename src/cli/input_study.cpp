@@ -10,10 +10,9 @@
 #include "cli/formats.h"
 #include "cli/options.h"
 #include "cli/paper_reference.h"
-#include "controlspace/baselines/catalogue.h"
-#include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/metric/nonconformity.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -26,22 +25,21 @@ void add_sources(const SourcesChoice& input, SourcesChoice& sources) {
                (choice.kind == SourcesKind::none && !choice.primitives.empty());
     };
     if (!may_join(input) || !may_join(sources)) {
-        throw InputError(fmt::format("--sources {} does not go with {}: leave one out",
-                                     sources_name(sources), sources_name(input)));
+        refuse("--sources {} does not go with {}: leave one out", sources_name(sources),
+               sources_name(input));
     }
+    const auto add_new = [](auto& all, const auto& more) {
+        for (const auto& one : more) {
+            if (std::ranges::count(all, one) == 0) all.push_back(one);
+        }
+    };
     if (input.kind == SourcesKind::file) {
         std::vector<std::filesystem::path> files = input.files;  // before the others
-        for (const std::filesystem::path& file : sources.files) {
-            if (std::ranges::count(files, file) == 0) files.push_back(file);
-        }
+        add_new(files, sources.files);
         sources.kind = SourcesKind::file;
         sources.files = std::move(files);
     }
-    for (const Primitive& primitive : input.primitives) {
-        if (std::ranges::count(sources.primitives, primitive) == 0) {
-            sources.primitives.push_back(primitive);
-        }
-    }
+    add_new(sources.primitives, input.primitives);
 }
 
 bool are_given(const GivenSettings& given, std::initializer_list<const char*> keys) {
@@ -66,9 +64,8 @@ void set_sources(Study& study, const std::filesystem::path& input) {
         if (file.has_extension() || std::filesystem::exists(file, none)) continue;
         std::vector<std::string_view> names;
         for (const auto& word : Words<SourcesKind>::table) names.push_back(word.name);
-        throw InputError(
-            fmt::format("there is no file '{}', and it names no sources: give a file, or one of {}",
-                        file.string(), fmt::join(names, ", ")));
+        refuse("there is no file '{}', and it names no sources: give a file, or one of {}",
+               file.string(), fmt::join(names, ", "));
     }
 }
 
@@ -127,11 +124,11 @@ bool DefaultTarget::set(Case& c, const Workload& workload) const {
 Case only_case(const Study& study) {
     const std::vector<Case> cases = expand(study, program_rows());
     if (cases.size() > 1) {
-        throw InputError(fmt::format(
+        refuse(
             "{} cases, the first two {} ({}) and {} ({}): choose one by --structures, --splits, "
             "--tau and so on",
             cases.size(), structure_label(cases[0]), setting_label(cases[0]),
-            structure_label(cases[1]), setting_label(cases[1])));
+            structure_label(cases[1]), setting_label(cases[1]));
     }
     require_set_voxels(cases.front());
     return cases.front();
@@ -139,7 +136,7 @@ Case only_case(const Study& study) {
 
 void require_set_voxels(const Case& c) {
     if (!c.equal_delta && !c.equal_memory) return;
-    throw InputError("equal_delta and equal_memory are for compare: give the voxel that it found");
+    refuse("equal_delta and equal_memory are for compare: give the voxel that it found");
 }
 
 namespace {
@@ -167,7 +164,7 @@ void require_no_input(const std::filesystem::path& output,
         for (const std::filesystem::path& input : inputs) {
             for (const std::filesystem::path& read : with_partner(input)) {
                 if (!std::filesystem::equivalent(written, read, none)) continue;
-                throw InputError(fmt::format("{} is read: name another output", written.string()));
+                refuse("{} is read: name another output", written.string());
             }
         }
     }
@@ -181,8 +178,8 @@ std::vector<PointSource> sources_of_input(const std::filesystem::path& input,
     apply(given, study_parameters(), study);
     require_applicable(study);
     if (!study.sources.primitives.empty()) {
-        throw InputError(fmt::format("{} is no set of points: give it to build, export or compare",
-                                     to_string(study.sources.primitives.front())));
+        refuse("{} is no set of points: give it to build, export or compare",
+               to_string(study.sources.primitives.front()));
     }
     if (study.sources.kind == SourcesKind::file) {
         return read_source_file(study.sources, file_readers());

@@ -20,6 +20,7 @@
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/space/control_space_file.h"
 #include "controlspace/study/run.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -114,11 +115,9 @@ void mesh_saved(const std::filesystem::path& file, const ControlSpace& space, in
 GivenSettings without_settings_of_meshing(const GivenSettings& given) {
     GivenSettings left = given;
     std::erase_if(left, [&](const auto& setting) {
-        const auto meshing = mesh_parameters();
-        const auto of_study = study_parameters();
         const auto is_it = [&](const auto& p) { return p.key == setting.first; };
-        return setting.first == "threads" || std::ranges::any_of(meshing, is_it) ||
-               std::ranges::any_of(of_study, [&](const Parameter<Study>& p) {
+        return setting.first == "threads" || std::ranges::any_of(mesh_parameters(), is_it) ||
+               std::ranges::any_of(study_parameters(), [&](const Parameter<Study>& p) {
                    return is_it(p) && (p.use == Use::results || p.use == Use::accuracy);
                });
     });
@@ -133,9 +132,8 @@ std::shared_ptr<const Part> part_of(const MeshSettings& settings,
         std::vector<std::filesystem::path> parts = input_files_of(study.sources);
         std::erase_if(parts, [](const auto& name) { return !is_part(name); });
         if (parts.size() > 1) {
-            throw InputError(fmt::format(
-                "{} and {} are parts: name the one to mesh (--part FILE), or --part box",
-                parts[0].string(), parts[1].string()));
+            refuse("{} and {} are parts: name the one to mesh (--part FILE), or --part box",
+                   parts[0].string(), parts[1].string());
         }
         if (!parts.empty()) file = parts.front();
     }

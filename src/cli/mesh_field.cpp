@@ -89,10 +89,8 @@ void write_mesh(const std::filesystem::path& stem, const TetMesh& mesh, const Co
         } else if (kind == "vtu") {
             write_vtu(file(".vtu"), mesh, field);
         } else {
-            std::vector<Metric> metrics(mesh.vertices.size());
-            sample_parallel(field, mesh.vertices, metrics);
             write_medit_mesh(file(".mesh"), mesh);
-            write_medit_solution(file(".sol"), metrics);
+            write_medit_solution(file(".sol"), sample_parallel(field, mesh.vertices));
         }
     }
 }

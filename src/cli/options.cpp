@@ -7,6 +7,8 @@
 #include <type_traits>
 
 #include "cli/paper_reference.h"
+#include "files/text_file.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -24,17 +26,6 @@ std::string type_name(ValueType type, std::size_t at_most) {
 void describe(CLI::Option& option, const OptionText& text) {
     option.option_text(text.value)->required(text.required);
     if (!text.group.empty()) option.group(text.group);
-}
-
-/// What is between commas, where CLI11 would leave out what is empty.
-std::vector<std::string> items_of(const std::string& word) {
-    std::vector<std::string> items;
-    for (std::size_t first = 0;;) {
-        const std::size_t end = word.find(',', first);
-        items.push_back(word.substr(first, end - first));
-        if (end == std::string::npos) return items;
-        first = end + 1;
-    }
 }
 
 /// "-" is standard output where a file is written, and standard input where one is read.
@@ -160,10 +151,9 @@ GivenSettings given_settings(const WordsByKey& given) {
         if (words.empty()) continue;
         std::vector<std::string> all;
         for (const std::string& word : words) {
-            const std::vector<std::string> items = items_of(word);
+            const auto items = split(word, ',');  // CLI11 would leave out empty ones
             if (items.size() > 1 && std::ranges::count(items, "") > 0) {
-                throw InputError(fmt::format("{} {}: a comma without a value: leave it out",
-                                             option_name(key), word));
+                refuse("{} {}: a comma without a value: leave it out", option_name(key), word);
             }
             all.insert(all.end(), items.begin(), items.end());
         }

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "controlspace/error.h"
 #include "controlspace/fields/surface_fields.h"
 #include "controlspace/study/workload.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -22,14 +22,14 @@ std::shared_ptr<const ControlSpace> make(const Study&, const Case& c, const Work
 
 void require_isotropic_sphere(const SourcesChoice& sources) {
     if (sources.kind != SourcesKind::sphere || has_field(sources)) {
-        throw InputError("reference published-sphere is for the sphere alone: use exact");
+        refuse("reference published-sphere is for the sphere alone: use exact");
     }
     if (sources.centre != Point::Zero()) {
-        throw InputError("reference published-sphere is around the origin: use exact");
+        refuse("reference published-sphere is around the origin: use exact");
     }
     constexpr double rounding = 1e-9;  // such lengths show what round-off decides
     if (std::abs(sources.s_n - 1) > rounding) {
-        throw InputError("reference published-sphere is isotropic: use exact, or s_n = 1");
+        refuse("reference published-sphere is isotropic: use exact, or s_n = 1");
     }
 }
 

@@ -23,6 +23,7 @@
 #include "cli/standard_output.h"
 #include "controlspace/error.h"
 #include "controlspace/study/provenance.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -76,8 +77,7 @@ void require_command(const std::string& word) {
     std::vector<std::string> names;
     for (const CommandRow& row : commands) names.emplace_back(row.name);
     if (std::find(names.begin(), names.end(), word) != names.end()) return;
-    throw InputError(
-        fmt::format("unknown command '{}': give one of {}", word, fmt::join(names, ", ")));
+    refuse("unknown command '{}': give one of {}", word, fmt::join(names, ", "));
 }
 
 /// The command line, quoted for a shell.
@@ -127,8 +127,8 @@ int run(int argc, const char* const* argv) {
         return 0;
     } catch (const CLI::ParseError& error) {
         const auto given = app.get_subcommands();
-        throw InputError(fmt::format("{} (see controlspace {}--help)", error.what(),
-                                     given.empty() ? "" : given.front()->get_name() + " "));
+        refuse("{} (see controlspace {}--help)", error.what(),
+               given.empty() ? "" : given.front()->get_name() + " ");
     }
     for (std::size_t i = 0; i < actions.size(); ++i) {
         if (app.got_subcommand(commands[i].name)) return actions[i](command_line_text(argc, argv));

@@ -17,9 +17,10 @@
 #include "cli/input_study.h"
 #include "cli/options.h"
 #include "cli/standard_output.h"
-#include "controlspace/error.h"
 #include "controlspace/space/sample_parallel.h"
 #include "io/text/csv.h"
+#include "io/text/metric_rows.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -27,7 +28,7 @@ namespace {
 using Place = std::array<double, 3>;
 
 [[noreturn]] void fail(const char* what) {
-    throw InputError(fmt::format("{}: {}", what, std::generic_category().message(errno)));
+    refuse("{}: {}", what, std::generic_category().message(errno));
 }
 
 /// What is there to read, and at least one byte; 0 at the end.
@@ -78,9 +79,8 @@ void answer_places(const ControlSpace& space) {
         filled -= used;
     }
     if (filled > 0) {
-        throw InputError(
-            fmt::format("the last place has {} of {} bytes: send three doubles for each", filled,
-                        sizeof(Place)));
+        refuse("the last place has {} of {} bytes: send three doubles for each", filled,
+               sizeof(Place));
     }
 }
 
@@ -90,12 +90,12 @@ struct Query : Job {
 };
 
 int answer_pipe(const Query& job) {
-    if (!job.points.empty()) throw InputError("--pipe reads the points: leave out POINTS");
+    if (!job.points.empty()) refuse("--pipe reads the points: leave out POINTS");
     const auto files = is_control_space(job.input)
                            ? std::vector{job.input}
                            : study_of_input(job.input, given_settings(job.given)).sources.files;
     if (std::ranges::count(files, std::filesystem::path("/dev/stdin")) > 0) {
-        throw InputError("--pipe reads the points from standard input: name a file of sources");
+        refuse("--pipe reads the points from standard input: name a file of sources");
     }
     const FilledSpace filled = filled_space(job, "starting", [](const auto&, auto&) {});
     const int status = report_remark(filled);
@@ -106,21 +106,18 @@ int answer_pipe(const Query& job) {
 int query(const Query& job) {
     if (job.pipe) return answer_pipe(job);
     if (job.points.empty()) {
-        throw InputError("no POINTS: name a .csv, or give --pipe (see controlspace query --help)");
+        refuse("no POINTS: name a .csv, or give --pipe (see controlspace query --help)");
     }
     require_no_input(job.output, {job.input, job.points});
     if (is_control_space(job.output)) {
-        throw InputError(
-            fmt::format("{}: metrics are written as .csv: name such a file", job.output.string()));
+        refuse_at(job.output, "metrics are written as .csv: name such a file");
     }
     const std::vector<Point> points = read_csv_points(job.points);
     std::vector<Metric> metrics(points.size());
     const FilledSpace filled = filled_space(job, "sampling", [&](const auto& made, auto&) {
         sample_parallel(*made.space, points, metrics);
     });
-    std::vector<PointSource> answers(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) answers[i] = {points[i], metrics[i]};
-    write_csv_sources(job.output, answers);
+    write_csv_sources(job.output, sources_from(points, metrics));
     const Box domain = filled.space->domain();
     const auto outside =
         std::ranges::count_if(points, [&](const Point& p) { return !domain.contains(p); });

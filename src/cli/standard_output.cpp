@@ -5,8 +5,8 @@
 
 #include <cstdio>
 
-#include "controlspace/error.h"
 #include "controlspace/study/results.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -20,7 +20,7 @@ void occupy_standard_descriptors() {
 void print(std::string_view text) {
     if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() ||
         std::fflush(stdout) != 0) {
-        throw InputError("standard output cannot be written: check where it is sent to");
+        refuse("standard output cannot be written: check where it is sent to");
     }
 }
 

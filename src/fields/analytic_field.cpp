@@ -1,12 +1,10 @@
 #include "controlspace/fields/analytic_field.h"
 
-#include <fmt/format.h>
-
 #include <utility>
 
-#include "controlspace/error.h"
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/sources/point_source.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -16,10 +14,10 @@ AnalyticField function_field(std::function<Metric(const Point&)> formula, double
     auto checked = [formula = std::move(formula)](const Point& p) {
         const Metric m = formula(p);
         if (!is_positive_definite(m)) {
-            throw InputError(fmt::format(
+            refuse(
                 "the field answers {} (xx yy zz xy xz yz) at ({}, {}, {}), which is not positive "
                 "definite: correct its formula or shrink the domain",
-                to_string(m), p.x(), p.y(), p.z()));
+                to_string(m), p.x(), p.y(), p.z());
         }
         return m;
     };
@@ -31,10 +29,10 @@ void require_defined(const AnalyticField& field, const Box& domain, const std::s
     if (!field.field) return;
     const Box definition = field.field->domain();
     if (definition.contains(domain.low) && definition.contains(domain.high)) return;
-    throw InputError(
-        fmt::format("the field {} is defined in {}, but the domain is {}: give one "
-                    "that lies within",
-                    name, to_string(definition), to_string(domain)));
+    refuse(
+        "the field {} is defined in {}, but the domain is {}: give one "
+        "that lies within",
+        name, to_string(definition), to_string(domain));
 }
 
 }  // namespace controlspace

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -14,7 +14,7 @@ class Mixture final : public ControlSpace {
 public:
     explicit Mixture(std::vector<std::shared_ptr<const ControlSpace>> fields)
         : fields_(std::move(fields)) {
-        if (fields_.empty()) throw InputError("a mixture of no fields: give at least one");
+        if (fields_.empty()) refuse("a mixture of no fields: give at least one");
     }
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {

@@ -10,9 +10,9 @@
 #include <span>
 #include <utility>
 
-#include "controlspace/error.h"
 #include "controlspace/sources/point_source.h"
 #include "files/text_file.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -49,28 +49,23 @@ public:
     Primitive primitive() {
         if (syntax_ == nullptr) fail("begin with box:, ball:, cylinder:, segment: or surface:");
         made_.shape = syntax_->shape;
-        std::string_view rest = text_.substr(syntax_->name.size() + 1);
-        while (true) {
-            const std::size_t end = std::min(rest.find(','), rest.size());
-            add(rest.substr(0, end));
-            if (end == rest.size()) break;
-            rest.remove_prefix(end + 1);
-        }
+        for (const auto word : split(text_.substr(syntax_->name.size() + 1), ',')) add(word);
         finish();
         return made_;
     }
 
 private:
-    [[noreturn]] void fail(const std::string& what) const {
-        throw InputError(fmt::format("{}: {}", text_, what));
+    template <class... Args>
+    [[noreturn]] void fail(fmt::format_string<Args...> text, Args&&... args) const {
+        refuse_at(text_, text, std::forward<Args>(args)...);
     }
     [[noreturn]] void fail_with_form(const std::string& what) const {
-        fail(fmt::format("{}: write {}:{}", what, syntax_->name, syntax_->form));
+        fail("{}: write {}:{}", what, syntax_->name, syntax_->form);
     }
 
     double number(std::string_view word) const {
         double x = 0;
-        if (!parse_number(word, x)) fail(fmt::format("'{}' is no number", word));
+        if (!parse_number(word, x)) fail("'{}' is no number", word);
         return x;
     }
 
@@ -88,18 +83,18 @@ private:
     void set(std::string_view key, double value) {
         const bool is_radius = key == "r" && syntax_->has_radius;
         if (!is_radius && key != "h" && key != "g") {
-            fail(fmt::format("unknown setting '{}': known are {}h and g", key,
-                             syntax_->has_radius ? "r, " : ""));
+            fail("unknown setting '{}': known are {}h and g", key,
+                 syntax_->has_radius ? "r, " : "");
         }
-        if (!given_.insert(key).second) fail(fmt::format("{} is given twice", key));
+        if (!given_.insert(key).second) fail("{} is given twice", key);
         if (key == "g") {
             if (!(value >= 1 && value <= steepest_primitive)) {
-                fail(fmt::format("g is {}: give a gradation ratio from 1 to 5", value));
+                fail("g is {}: give a gradation ratio from 1 to 5", value);
             }
             made_.ratio = value;
             return;
         }
-        if (!is_length(value)) fail(fmt::format("{} is {}: give a positive length", key, value));
+        if (!is_length(value)) fail("{} is {}: give a positive length", key, value);
         (key == "r" ? made_.radius : made_.h) = value;
     }
 
@@ -114,15 +109,15 @@ private:
         if (syntax_->has_radius && !given_.contains("r")) fail_with_form("the radius r is missing");
         if (!given_.contains("h")) fail_with_form("the length h is missing");
         for (const double x : numbers_) {
-            if (!is_coordinate(x)) fail(fmt::format("{} is no coordinate: give finite ones", x));
+            if (!is_coordinate(x)) fail("{} is no coordinate: give finite ones", x);
         }
         if (made_.shape == Shape::box) {
             made_.a = {numbers_[0], numbers_[2], numbers_[4]};
             made_.b = {numbers_[1], numbers_[3], numbers_[5]};
             for (int axis = 0; axis < 3; ++axis) {
                 if (made_.a[axis] < made_.b[axis]) continue;
-                fail(fmt::format("{0}0 is {1} and {0}1 is {2}: give {0}0 < {0}1", "xyz"[axis],
-                                 made_.a[axis], made_.b[axis]));
+                fail("{0}0 is {1} and {0}1 is {2}: give {0}0 < {0}1", "xyz"[axis], made_.a[axis],
+                     made_.b[axis]);
             }
             return;
         }
@@ -257,7 +252,7 @@ DistanceField distance_from(const Primitive& p) {
 AnalyticField primitives_field(std::span<const Primitive> primitives,
                                std::vector<DistanceField> distances, double ratio) {
     assert(primitives.size() == distances.size());
-    if (primitives.empty()) throw InputError("no primitives: give at least one");
+    if (primitives.empty()) refuse("no primitives: give at least one");
     AnalyticField field;
     field.is_isotropic = true;
     field.finest_length = std::ranges::min(primitives, {}, &Primitive::h).h;
@@ -265,9 +260,8 @@ AnalyticField primitives_field(std::span<const Primitive> primitives,
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         const double g = primitives[i].ratio.value_or(ratio);
         if (!(g >= 1 && g <= steepest_primitive)) {
-            throw InputError(
-                fmt::format("{} grows by g_r = {}: give a gradation ratio from 1 to {}",
-                            to_string(primitives[i]), g, steepest_primitive));
+            refuse("{} grows by g_r = {}: give a gradation ratio from 1 to {}",
+                   to_string(primitives[i]), g, steepest_primitive);
         }
         require_length("h", primitives[i].h);
         laws.push_back({primitives[i].h, g - 1, std::move(distances[i].distance)});

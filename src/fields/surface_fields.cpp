@@ -1,14 +1,12 @@
 #include "controlspace/fields/surface_fields.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "controlspace/error.h"
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/sources/point_source.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -19,8 +17,7 @@ void require_valid(const SurfaceLengths& lengths) {
     require_length("length along of a field", lengths.along);
     require_length("largest length of a field", lengths.largest);
     if (!(lengths.growth >= 0 && is_coordinate(lengths.growth))) {
-        throw InputError(
-            fmt::format("growth {} of a field: give 0 or a positive number", lengths.growth));
+        refuse("growth {} of a field: give 0 or a positive number", lengths.growth);
     }
 }
 
@@ -55,7 +52,7 @@ AnalyticField sphere_field(const SphereField& sphere) {
 AnalyticField planes_field(const PlanesField& planes) {
     require_valid(planes.lengths);
     if (!is_coordinate(planes.slope)) {
-        throw InputError(fmt::format("slope {} of a field: give a finite number", planes.slope));
+        refuse("slope {} of a field: give a finite number", planes.slope);
     }
     const double stretch = std::sqrt(1 + planes.slope * planes.slope);
     const Vector second = Vector(planes.slope, -1, 0) / stretch;

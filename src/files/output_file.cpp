@@ -4,7 +4,7 @@
 #include <cstring>
 #include <random>
 
-#include "controlspace/error.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -31,9 +31,8 @@ void require_room(const std::filesystem::path& path, std::uintmax_t bytes) {
     const auto space = std::filesystem::space(folder, unknown);
     if (unknown || bytes <= space.available) return;
     constexpr double mb = 1e6;
-    throw InputError(fmt::format(
-        "cannot write {}: it takes {:.1f} MB, and the disk has {:.1f} MB left", path.string(),
-        static_cast<double>(bytes) / mb, static_cast<double>(space.available) / mb));
+    refuse("cannot write {}: it takes {:.1f} MB, and the disk has {:.1f} MB left", path.string(),
+           static_cast<double>(bytes) / mb, static_cast<double>(space.available) / mb);
 }
 
 std::filesystem::path OutputFile::partial(const std::filesystem::path& path) {
@@ -44,8 +43,7 @@ std::filesystem::path OutputFile::partial(const std::filesystem::path& path) {
 OutputFile::OutputFile(const std::filesystem::path& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) {
-        throw InputError(
-            fmt::format("cannot write {}: it is a directory, name a file", path.string()));
+        refuse("cannot write {}: it is a directory, name a file", path.string());
     }
     // A file that standard output is sent to may hold other things already.
     const bool standard_output = path == "/dev/stdout";
@@ -89,7 +87,7 @@ void OutputFile::commit() {
 }
 
 void OutputFile::fail() const {
-    throw InputError(fmt::format("cannot write {}: {}", target_.string(), std::strerror(errno)));
+    refuse("cannot write {}: {}", target_.string(), std::strerror(errno));
 }
 
 }  // namespace controlspace

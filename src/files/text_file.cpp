@@ -7,16 +7,15 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
-#include <vector>
 
-#include "controlspace/error.h"
+#include "refuse.h"
 
 namespace controlspace {
 
 namespace {
 
 [[noreturn]] void fail_with_zero_byte(const std::filesystem::path& path) {
-    throw InputError(fmt::format("{} holds a zero byte: give a text file", path.string()));
+    refuse("{} holds a zero byte: give a text file", path.string());
 }
 
 /// Stops early where a text holds a zero byte: a device may send nothing else, without an end.
@@ -24,11 +23,11 @@ std::string read_file(const std::filesystem::path& path, std::size_t largest, bo
     const std::string name = path.string();
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) {
-        throw InputError(fmt::format("{} is a directory: name a file", name));
+        refuse("{} is a directory: name a file", name);
     }
     const auto close = [](std::FILE* f) { std::fclose(f); };
     const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(name.c_str(), "rb"), close);
-    if (!file) throw InputError(fmt::format("cannot read {}: {}", name, std::strerror(errno)));
+    if (!file) refuse("cannot read {}: {}", name, std::strerror(errno));
 
     std::string bytes;
     constexpr std::size_t block = std::size_t{1} << 16;
@@ -44,14 +43,11 @@ std::string read_file(const std::filesystem::path& path, std::size_t largest, bo
         bytes.resize(size + got);
         if (is_text && bytes.find('\0', size) != std::string::npos) fail_with_zero_byte(path);
         if (bytes.size() > size_on_disk + largest) {
-            throw InputError(fmt::format("{} does not end after {} bytes: give a file", name,
-                                         size_on_disk + largest));
+            refuse("{} does not end after {} bytes: give a file", name, size_on_disk + largest);
         }
     }
-    if (std::ferror(file.get()) != 0) {
-        throw InputError(fmt::format("cannot read {}: {}", name, std::strerror(errno)));
-    }
-    if (bytes.empty()) throw InputError(fmt::format("{} is empty: name another file", name));
+    if (std::ferror(file.get()) != 0) refuse("cannot read {}: {}", name, std::strerror(errno));
+    if (bytes.empty()) refuse("{} is empty: name another file", name);
     return bytes;
 }
 
@@ -77,9 +73,7 @@ std::string_view text_in(std::string_view bytes, const std::filesystem::path& pa
     constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
     if (bytes.find('\0') != std::string_view::npos) fail_with_zero_byte(path);
     if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
-    if (bytes.empty()) {
-        throw InputError(fmt::format("{} is empty: name another file", path.string()));
-    }
+    if (bytes.empty()) refuse("{} is empty: name another file", path.string());
     return bytes;
 }
 
@@ -94,6 +88,14 @@ std::string quote(std::string_view text) {
     return shown + (text.size() > most ? "...'" : "'");
 }
 
+std::vector<std::string_view> split(std::string_view text, char separator) {
+    std::vector<std::string_view> parts;
+    for (std::size_t begin = 0; begin <= text.size(); begin += parts.back().size() + 1) {
+        parts.push_back(text.substr(begin, text.find(separator, begin) - begin));
+    }
+    return parts;
+}
+
 std::size_t chosen_array(const std::filesystem::path& path, std::string_view kind,
                          std::span<const std::string> names, const std::string& wanted) {
     std::vector<std::string> quoted;
@@ -103,8 +105,8 @@ std::size_t chosen_array(const std::filesystem::path& path, std::string_view kin
         if (wanted.empty() || names[i] == wanted) chosen.push_back(i);
     }
     if (chosen.size() == 1) return chosen.front();
-    throw InputError(fmt::format("{}: {} of its {} can be meant: name one of {} (--source-array)",
-                                 path.string(), chosen.size(), kind, fmt::join(quoted, ", ")));
+    refuse_at(path, "{} of its {} can be meant: name one of {} (--source-array)", chosen.size(),
+              kind, fmt::join(quoted, ", "));
 }
 
 }  // namespace controlspace

@@ -6,10 +6,11 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 namespace controlspace {
 
-/// What is read of a pipe or a device, which may never end: some six million sources.
+/// Maximum bytes read from a pipe or a device, which may never end: some six million sources.
 constexpr std::size_t largest_stream = std::size_t{1} << 30;
 
 /// The whole file, without a leading UTF-8 byte order mark. Throws InputError, naming the file, if
@@ -29,6 +30,9 @@ std::string place(const std::filesystem::path& path, std::size_t line);
 
 /// A piece of a file as a message can quote it: its beginning, in printable characters.
 std::string quote(std::string_view text);
+
+/// The parts of `text` between separators: one more than there are separators.
+std::vector<std::string_view> split(std::string_view text, char separator);
 
 /// Index in `names` of the array that is called `wanted`; of the only one, if that is empty. Throws
 /// InputError that lists them if there is none, or more than one. `kind` is "views", for messages.

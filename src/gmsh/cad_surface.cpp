@@ -1,6 +1,5 @@
 #include "gmsh/cad_surface.h"
 
-#include <fmt/format.h>
 #include <gmsh.h>
 
 #include <Eigen/Eigenvalues>
@@ -11,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "controlspace/error.h"
 #include "controlspace/geometry/box.h"
 #include "gmsh/gmsh_mesh.h"
 #include "gmsh/gmsh_session.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -150,9 +149,7 @@ double model_diagonal() {
 }  // namespace
 
 SurfaceMesh read_cad_surface(const std::filesystem::path& path) {
-    if (!std::filesystem::is_regular_file(path)) {
-        throw InputError(fmt::format("{}: no such file", path.string()));
-    }
+    if (!std::filesystem::is_regular_file(path)) refuse_at(path, "no such file");
     constexpr double triangles_around = 36;
     SurfaceMesh mesh;
     in_gmsh_session(1, [&] {
@@ -172,9 +169,7 @@ SurfaceMesh read_cad_surface(const std::filesystem::path& path) {
         gmsh::model::getEntities(faces, surface);
         for (const auto& [dimension, tag] : faces) add_face(tag, nodes, mesh);
     });
-    if (mesh.triangles.empty()) {
-        throw InputError(fmt::format("{} has no surfaces: export a solid", path.string()));
-    }
+    if (mesh.triangles.empty()) refuse("{} has no surfaces: export a solid", path.string());
     return mesh;
 }
 

@@ -1,6 +1,5 @@
 #include "controlspace/gmsh/gmsh_mesher.h"
 
-#include <fmt/format.h>
 #include <gmsh.h>
 
 #include <algorithm>
@@ -10,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "controlspace/error.h"
 #include "gmsh/gmsh_mesh.h"
 #include "gmsh/gmsh_session.h"
 #include "measure/stopwatch.h"
 #include "mesh/estimate.h"
 #include "mesh/size_query.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -83,8 +82,7 @@ void add_cad(const Part& part, const UnitFrame& frame) {
     Entities volumes;
     gmsh::model::getEntities(volumes, 3);
     if (volumes.size() != 1) {
-        throw InputError(
-            fmt::format("{} holds {} solids: give one", part.cad.string(), volumes.size()));
+        refuse("{} holds {} solids: give one", part.cad.string(), volumes.size());
     }
 }
 
@@ -97,9 +95,9 @@ void require_inside(const UnitFrame& frame) {
         return;
     }
     const auto place = [&](const Vector& x) { return Point(frame.domain.low + frame.scale * x); };
-    throw InputError(fmt::format(
+    refuse(
         "the part {} is not inside of the field's domain {}: make a field with a larger --domain",
-        to_string(Box{place(low), place(high)}), to_string(frame.domain)));
+        to_string(Box{place(low), place(high)}), to_string(frame.domain));
 }
 
 void add_geometry(const Part* part, const UnitFrame& frame) {
@@ -152,14 +150,14 @@ void require_valid(const Box& domain, const ControlSpace& field, const GmshOptio
     require_volume(domain);
     const double factor = options.factor.value_or(1);
     if (!std::isfinite(factor) || factor <= 0) {
-        throw InputError(fmt::format("factor {} of sizes: give a positive one", factor));
+        refuse("factor {} of sizes: give a positive one", factor);
     }
     const double optimize = options.optimize.value_or(0);
     if (!(optimize >= 0 && optimize < 1)) {
-        throw InputError(
-            fmt::format("optimize {}: give a quality from 0 to below 1; 0.7 is good, "
-                        "from 0.8 on it takes long",
-                        optimize));
+        refuse(
+            "optimize {}: give a quality from 0 to below 1; 0.7 is good, "
+            "from 0.8 on it takes long",
+            optimize);
     }
     // Of a part the estimate, which is for the domain, would be too high.
     if (!options.part) require_few_tets(domain, field, options.max_tets);
@@ -183,7 +181,7 @@ MeshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshO
     in_gmsh_session(options.threads, [&] {
         add_geometry(options.part.get(), frame);
         set_options(options);
-        // Triangles are hardly larger than asked for, and most edges of a thin part are on its
+        // Triangles are hardly larger than requested, and most edges of a thin part are on its
         // surface: L_R of the pipes of bench/day-one, by HXT, is 0.82, and 0.45 without this.
         constexpr double surface_factor = 0.95;
         set_size_callback(query,
@@ -206,9 +204,9 @@ MeshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshO
         if (run.mesh.tets.empty()) {
             std::string why;
             gmsh::logger::getLastError(why);
-            throw InputError(fmt::format("Gmsh made no tetrahedra{}{}: {}try the other algorithm",
-                                         why.empty() ? "" : ": ", why,
-                                         options.part ? "check that the part is closed, or " : ""));
+            refuse("Gmsh made no tetrahedra{}{}: {}try the other algorithm",
+                   why.empty() ? "" : ": ", why,
+                   options.part ? "check that the part is closed, or " : "");
         }
     });
     return run;

@@ -3,7 +3,6 @@
 #ifdef __linux__
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -20,6 +19,7 @@
 #include "controlspace/error.h"
 #include "io/give_up_rights.h"
 #include "io/text/metric_rows.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -111,9 +111,7 @@ void require_readable(const std::filesystem::path& file, const std::function<voi
         child > 0 && TEMP_FAILURE_RETRY(::waitpid(child, &status, 0)) == child && WIFEXITED(status);
     if (ended && WEXITSTATUS(status) == readable) return;
     if (ended && WEXITSTATUS(status) == refused) throw InputError(answer);
-    throw InputError(
-        fmt::format("{}: the library that reads such files fails on it: is it damaged, or cut off?",
-                    file.string()));
+    refuse_at(file, "the library that reads such files fails on it: is it damaged, or cut off?");
 }
 
 }  // namespace controlspace

@@ -1,15 +1,13 @@
 #include "controlspace/measure/access_time.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <stdexcept>
 
-#include "controlspace/error.h"
 #include "geometry/random_fractions.h"
 #include "measure/stopwatch.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -30,7 +28,7 @@ double duration_s(const ControlSpace& space, std::span<const Point> points,
 
 std::vector<Point> random_points(const Box& box, std::size_t n, std::uint64_t seed) {
     constexpr std::size_t most = std::size_t{1} << 28;
-    if (n > most) throw InputError(fmt::format("{} random points: give at most {}", n, most));
+    if (n > most) refuse("{} random points: give at most {}", n, most);
     RandomFractions fraction(seed);
     std::vector<Point> points(n);
     for (Point& p : points) {
@@ -53,10 +51,8 @@ std::uint64_t checksum(std::span<const Metric> metrics) {
 }
 
 double quartile(std::vector<double> samples, int number) {
-    if (number < 1 || number > 3) {
-        throw InputError(fmt::format("quartile {}: there are 1, 2 and 3", number));
-    }
-    if (samples.empty()) throw InputError("a quartile of no samples: time at least one repeat");
+    if (number < 1 || number > 3) refuse("quartile {}: there are 1, 2 and 3", number);
+    if (samples.empty()) refuse("a quartile of no samples: time at least one repeat");
     std::sort(samples.begin(), samples.end());
     const double rank = 0.25 * number * static_cast<double>(samples.size() - 1);
     const auto below = static_cast<std::size_t>(rank);
@@ -67,8 +63,8 @@ double quartile(std::vector<double> samples, int number) {
 std::vector<AccessTime> access_times(std::span<const ControlSpace* const> spaces,
                                      std::span<const Point> points, int repeats, Calls calls,
                                      double shortest_s) {
-    if (points.empty()) throw InputError("access time at no places: give at least one point");
-    if (repeats < 1) throw InputError(fmt::format("{} timed repeats: give at least one", repeats));
+    if (points.empty()) refuse("access time at no places: give at least one point");
+    if (repeats < 1) refuse("{} timed repeats: give at least one", repeats);
 
     std::vector<Metric> answers(points.size());
     std::vector<AccessTime> results(spaces.size());

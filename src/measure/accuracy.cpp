@@ -1,6 +1,5 @@
 #include "controlspace/measure/accuracy.h"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -8,11 +7,11 @@
 #include <limits>
 #include <utility>
 
-#include "controlspace/error.h"
 #include "controlspace/geometry/extent.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/sample_parallel.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -70,9 +69,7 @@ std::array<int, 3> cell_counts(const Box& box, int n) {
 
 std::vector<Point> cell_centres(const Box& box, int n) {
     constexpr int most = 512;
-    if (n < 1 || n > most) {
-        throw InputError(fmt::format("{} cells along each axis: give 1 to {}", n, most));
-    }
+    if (n < 1 || n > most) refuse("{} cells along each axis: give 1 to {}", n, most);
     const auto coordinate = [&](Axis a, int k) {
         const double edge = box.high[a] - box.low[a];
         return box.low[a] + edge / (2 * n) + (k * edge) / n;
@@ -92,15 +89,13 @@ std::vector<Point> cell_centres(const Box& box, int n) {
 }
 
 Probes make_probes(const ControlSpace& field, std::vector<Point> points) {
-    Probes probes{std::move(points), {}};
-    probes.reference.resize(probes.points.size());
-    sample_parallel(field, probes.points, probes.reference);
-    return probes;
+    std::vector<Metric> reference = sample_parallel(field, points);
+    return {std::move(points), std::move(reference)};
 }
 
 Accuracy accuracy(const ControlSpace& space, const Probes& probes) {
     const std::size_t n = probes.points.size();
-    if (n == 0) throw InputError("accuracy at no places: give at least one probe");
+    if (n == 0) refuse("accuracy at no places: give at least one probe");
     struct Partial {
         double sum = 0;
         double riemannian_max = 0;

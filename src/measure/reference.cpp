@@ -13,6 +13,8 @@
 #include "controlspace/input_errors.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/sources/cone.h"
+#include "controlspace/space/control_space_builder.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -21,33 +23,20 @@ namespace {
 void require_usable(std::span<const PointSource> sources, double g, const Metric& largest) {
     require_valid(GradationOptions{.ratio = g});
     if (!is_positive_definite(largest)) {
-        throw InputError(
-            fmt::format("largest metric {} of the reference is not positive definite: "
-                        "give one with positive lengths",
-                        to_string(largest)));
+        refuse(
+            "largest metric {} of the reference is not positive definite: "
+            "give one with positive lengths",
+            to_string(largest));
     }
     if (sources.size() >= std::numeric_limits<std::uint32_t>::max() / 2) {
-        throw InputError(
-            fmt::format("{} sources for the reference: give fewer than 2^31", sources.size()));
+        refuse("{} sources for the reference: give fewer than 2^31", sources.size());
     }
     for (std::size_t i = 0; i < sources.size(); ++i) {
-        const auto& [position, metric, own_growth] = sources[i];
-        if (!position.allFinite()) {
+        if (!sources[i].position.allFinite()) {
             throw IndexedError(i,
                                fmt::format("source {}: its position is not finite: correct it", i));
         }
-        if (!is_positive_definite(metric)) {
-            throw IndexedError(
-                i, fmt::format("source {}: metric {} is not positive definite: give one "
-                               "with positive lengths",
-                               i, to_string(metric)));
-        }
-        if (!is_source_growth(own_growth)) {
-            throw IndexedError(
-                i, fmt::format("source {}: gradation ratio {}: give one from 1 to 1e6, or 0 for "
-                               "that of the field",
-                               i, own_growth));
-        }
+        require_valid(sources[i], i, Box::everywhere());
     }
 }
 
@@ -115,8 +104,7 @@ std::unique_ptr<ControlSpace> exact_reference(std::vector<PointSource> sources, 
                                               std::shared_ptr<const ControlSpace> continuous) {
     require_usable(sources, g, largest);
     if (!std::isfinite(tolerance) || tolerance < 0) {
-        throw InputError(
-            fmt::format("tolerance {} of the reference: give a finite one >= 0", tolerance));
+        refuse("tolerance {} of the reference: give a finite one >= 0", tolerance);
     }
     return std::make_unique<ExactReference>(sources, g, largest, tolerance, rule,
                                             std::move(continuous));

@@ -5,10 +5,11 @@
 #include <numeric>
 #include <vector>
 
-#include "controlspace/error.h"
 #include "controlspace/gradation/grade.h"
+#include "geometry/extent_of.h"
 #include "geometry/point_order.h"
 #include "measure/nearest.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -69,11 +70,11 @@ LengthSummary summarise_lengths(std::span<const Metric> metrics) {
 }
 
 SourceSummary summarise(std::span<const PointSource> sources) {
-    if (sources.empty()) throw InputError("there are no sources: give one at least");
+    if (sources.empty()) refuse("there are no sources: give one at least");
     SourceSummary summary;
     const DistinctPlaces places = distinct_places(sources);
     summary.contradictory = places.contradictory;
-    summary.extent = {sources.front().position, sources.front().position};
+    summary.extent = extent_of(places.positions);
     std::vector<Metric> metrics;
     for (const auto& [position, metric, growth] : sources) {
         metrics.push_back(metric);
@@ -82,8 +83,6 @@ SourceSummary summarise(std::span<const PointSource> sources) {
                 summary.own_growths++ > 0 ? std::min(summary.least_growth, growth) : growth;
             summary.most_growth = std::max(summary.most_growth, growth);
         }
-        summary.extent.low = summary.extent.low.cwiseMin(position);
-        summary.extent.high = summary.extent.high.cwiseMax(position);
     }
     static_cast<LengthSummary&>(summary) = summarise_lengths(metrics);
     summary.gradation = largest_gradation(nearest_neighbours(places.positions, near_sources),

@@ -1,5 +1,6 @@
 #include "controlspace/measure/steepness.h"
 
+#include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
 #include <Eigen/LU>
@@ -65,34 +66,28 @@ Steepness steepness(const ControlSpace& space, const Box& domain,
             between_on_log_scale(shortest_pair, longest_pair, fraction) * unit_vector(fraction);
     }
     const auto flat = flat_axis(domain);
-    std::vector<Metric> at_p(pairs), at_q(pairs);
-    sample_parallel(space, p, at_p);
+    const std::vector<Metric> at_p = sample_parallel(space, p);
     for (std::size_t i = 0; i < pairs; ++i) {
         if (!is_positive_definite(at_p[i])) return {infinity, infinity};
         q[i] = p[i] + at_p[i].matrix() * ways[i];
         if (flat) q[i][*flat] = p[i][*flat];
         if (q[i] != nearest_in(domain, q[i])) q[i] = p[i];  // no pair
     }
-    sample_parallel(space, q, at_q);
+    const std::vector<Metric> at_q = sample_parallel(space, q);
 
-    constexpr std::size_t block = 1024;
-    std::vector<Steepness> found((pairs + block - 1) / block);
-    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t b) {
-        for (std::size_t i = b * block; i < std::min((b + 1) * block, pairs); ++i) {
-            if (!is_positive_definite(at_q[i])) {
-                found[b] = {infinity, infinity};
-                return;
-            }
-            note_growth(at_p[i], at_q[i], q[i] - p[i], found[b]);
-            note_growth(at_q[i], at_p[i], p[i] - q[i], found[b]);
+    tbb::combinable<Steepness> found;
+    tbb::parallel_for(std::size_t{0}, pairs, [&](std::size_t i) {
+        Steepness& largest = found.local();
+        if (!is_positive_definite(at_q[i])) {
+            largest = {infinity, infinity};
+            return;
         }
+        note_growth(at_p[i], at_q[i], q[i] - p[i], largest);
+        note_growth(at_q[i], at_p[i], p[i] - q[i], largest);
     });
-    Steepness result;
-    for (const Steepness& s : found) {
-        result.det = std::max(result.det, s.det);
-        result.dir = std::max(result.dir, s.dir);
-    }
-    return result;
+    return found.combine([](const Steepness& a, const Steepness& b) {
+        return Steepness{std::max(a.det, b.det), std::max(a.dir, b.dir)};
+    });
 }
 
 }  // namespace controlspace

@@ -18,7 +18,7 @@
 #include <memory>
 #include <thread>
 
-#include "controlspace/error.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -51,7 +51,7 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 File opened(const fs::path& path, const std::string& mode) {
     File file(std::fopen(path.c_str(), (mode + "e").c_str()), std::fclose);
     if (file) return file;
-    throw InputError(fmt::format("cannot open {}: {}", path.string(), std::strerror(errno)));
+    refuse("cannot open {}: {}", path.string(), std::strerror(errno));
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ File opened(const fs::path& path, const std::string& mode) {
 ChildOutcome run_child(const std::vector<std::string>& arguments, const fs::path& folder,
                        const fs::path& log, double time_limit_s) {
     if (::access(arguments.front().c_str(), X_OK) != 0) {
-        throw InputError(fmt::format("cannot run {}: {}", arguments.front(), std::strerror(errno)));
+        refuse("cannot run {}: {}", arguments.front(), std::strerror(errno));
     }
     const File in = opened("/dev/null", "r"), out = opened(log, "w");
     std::vector<char*> words;
@@ -67,10 +67,7 @@ ChildOutcome run_child(const std::vector<std::string>& arguments, const fs::path
     words.push_back(nullptr);
 
     const pid_t child = ::fork();
-    if (child < 0) {
-        throw InputError(
-            fmt::format("cannot start {}: {}", arguments.front(), std::strerror(errno)));
-    }
+    if (child < 0) refuse("cannot start {}: {}", arguments.front(), std::strerror(errno));
     if (child == 0) become(words.data(), folder.c_str(), ::fileno(in.get()), ::fileno(out.get()));
 
     using Clock = std::chrono::steady_clock;
@@ -95,8 +92,7 @@ ChildOutcome run_child(const std::vector<std::string>& arguments, const fs::path
     outcome.processor_seconds = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
     outcome.peak_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;
     if (outcome.status == could_not_start && fs::is_empty(log)) {
-        throw InputError(
-            fmt::format("cannot run {}: is it a program of this system?", arguments.front()));
+        refuse("cannot run {}: is it a program of this system?", arguments.front());
     }
     return outcome;
 }

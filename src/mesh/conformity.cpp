@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "controlspace/error.h"
 #include "controlspace/metric/blend.h"
 #include "controlspace/space/sample_parallel.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -31,8 +31,7 @@ std::vector<Point> middles_of(const TetMesh& mesh, std::span<const Edge> edges) 
 void count_lengths(const TetMesh& mesh, const ControlSpace& field,
                    std::span<const Metric> at_vertices, Conformity& c) {
     const std::vector<Edge> edges = edges_of(mesh);
-    std::vector<Metric> at_middles(edges.size());
-    sample_parallel(field, middles_of(mesh, edges), at_middles);
+    const std::vector<Metric> at_middles = sample_parallel(field, middles_of(mesh, edges));
     std::size_t in_range = 0, in_range_middle = 0, in_unit = 0;
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const auto& [a, b] = edges[i];
@@ -88,12 +87,11 @@ std::vector<double> tet_qualities(const TetMesh& mesh, std::span<const Metric> a
 }
 
 Conformity conformity(const TetMesh& mesh, const ControlSpace& field) {
-    if (mesh.tets.empty()) throw InputError("a mesh without tetrahedra has nothing to measure");
+    if (mesh.tets.empty()) refuse("a mesh without tetrahedra has nothing to measure");
     Conformity c;
     c.nodes = mesh.vertices.size();
     c.tets = mesh.tets.size();
-    std::vector<Metric> at_vertices(mesh.vertices.size());
-    sample_parallel(field, mesh.vertices, at_vertices);
+    const std::vector<Metric> at_vertices = sample_parallel(field, mesh.vertices);
     count_lengths(mesh, field, at_vertices, c);
     const std::vector<double> qualities = tet_qualities(mesh, at_vertices);
     c.quality_min = *std::min_element(qualities.begin(), qualities.end());

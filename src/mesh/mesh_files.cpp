@@ -127,8 +127,7 @@ void write_msh(const std::filesystem::path& path, const TetMesh& mesh) {
 }
 
 void write_vtu(const std::filesystem::path& path, const TetMesh& mesh, const ControlSpace& field) {
-    std::vector<Metric> metrics(mesh.vertices.size());
-    sample_parallel(field, mesh.vertices, metrics);
+    const std::vector<Metric> metrics = sample_parallel(field, mesh.vertices);
     VtkArray tensor{"length_tensor", 6, {}}, h_min{"h_min", 1, {}};
     for (const Metric& m : metrics) {
         tensor.values.insert(tensor.values.end(), {m.xx, m.yy, m.zz, m.xy, m.yz, m.xz});

@@ -17,6 +17,7 @@
 #include "measure/stopwatch.h"
 #include "mesh/child_program.h"
 #include "mesh/size_query.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -29,8 +30,7 @@ public:
     explicit TemporaryFolder(const fs::path& parent) {
         std::string pattern = (parent / "mmg-XXXXXX").string();
         if (::mkdtemp(pattern.data()) == nullptr) {
-            throw InputError(fmt::format("cannot make a folder in {}: {}", parent.string(),
-                                         std::strerror(errno)));
+            refuse("cannot make a folder in {}: {}", parent.string(), std::strerror(errno));
         }
         path_ = fs::absolute(pattern);
     }
@@ -50,8 +50,7 @@ private:
 };
 
 std::vector<Metric> metrics_at(const TetMesh& mesh, const ControlSpace& field) {
-    std::vector<Metric> metrics(mesh.vertices.size());
-    sample_parallel(field, mesh.vertices, metrics);
+    std::vector<Metric> metrics = sample_parallel(field, mesh.vertices);
     for (std::size_t i = 0; i < metrics.size(); ++i) require_metric(metrics[i], mesh.vertices[i]);
     return metrics;
 }
@@ -91,9 +90,8 @@ TetMesh remesh(const TetMesh& mesh, const std::vector<Metric>& metrics, const fs
     folder.keep();
     constexpr std::size_t enough = 3;
     const std::string said = last_lines(log, enough);
-    throw InputError(fmt::format("MMG {}{}: {} (its files: {})", reason(outcome, options),
-                                 unreadable, said.empty() ? "it printed nothing" : said,
-                                 folder.path().string()));
+    refuse("MMG {}{}: {} (its files: {})", reason(outcome, options), unreadable,
+           said.empty() ? "it printed nothing" : said, folder.path().string());
 }
 
 }  // namespace
@@ -108,29 +106,23 @@ fs::path find_mmg() {
 fs::path require_mmg(const MmgOptions& options) {
     if (options.program.empty()) {
         fs::path found = find_mmg();
-        if (found.empty()) {
-            throw InputError("MMG is missing: there is no mmg3d_O3 in PATH; name it by --mmg");
-        }
+        if (found.empty()) refuse("MMG is missing: there is no mmg3d_O3 in PATH; name it by --mmg");
         return found;
     }
     fs::path found = find_program(options.program.string());
     if (found.empty()) {
-        throw InputError(fmt::format("{}: no program that can be run: name MMG's mmg3d_O3",
-                                     options.program.string()));
+        refuse_at(options.program, "no program that can be run: name MMG's mmg3d_O3");
     }
     return found;
 }
 
 MeshRun mesh_with_mmg(const TetMesh& start, const ControlSpace& field, const MmgOptions& options) {
-    if (options.rounds < 1) {
-        throw InputError(fmt::format("{} rounds of MMG: give 1 or more", options.rounds));
-    }
+    if (options.rounds < 1) refuse("{} rounds of MMG: give 1 or more", options.rounds);
     if (!(options.factor > 0 && std::isfinite(options.factor))) {
-        throw InputError(fmt::format("factor {} of lengths: give a positive one", options.factor));
+        refuse("factor {} of lengths: give a positive one", options.factor);
     }
     if (!(options.time_limit_s > 0)) {
-        throw InputError(
-            fmt::format("a time limit of {} s: give a positive one", options.time_limit_s));
+        refuse("a time limit of {} s: give a positive one", options.time_limit_s);
     }
     const fs::path program = require_mmg(options);
     MeshRun run;

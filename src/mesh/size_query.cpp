@@ -1,12 +1,10 @@
 #include "mesh/size_query.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <limits>
 
-#include "controlspace/error.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -31,8 +29,7 @@ std::int64_t cost_of_clock() {
 
 void require_metric(const Metric& m, const Point& p) {
     if (is_positive_definite(m)) return;
-    throw InputError(fmt::format("the field at ({}, {}, {}) is no metric: {}", p.x(), p.y(), p.z(),
-                                 to_string(m)));
+    refuse("the field at ({}, {}, {}) is no metric: {}", p.x(), p.y(), p.z(), to_string(m));
 }
 
 SizeQuery::SizeQuery(const ControlSpace& field, const UnitFrame& frame, double factor)

@@ -1,13 +1,12 @@
 #include "modules/load.h"
 
 #include <dlfcn.h>
-#include <fmt/format.h>
 #include <link.h>
 
 #include <filesystem>
 
-#include "controlspace/error.h"
 #include "controlspace/version.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -33,12 +32,10 @@ fs::path module_file(const std::string& name) {
 void* open_module(const std::string& name) {
     const fs::path file = module_file(name);
     if (!fs::exists(file)) {
-        throw InputError(
-            fmt::format("{}: no such file: controlspace is built or installed without {}",
-                        file.string(), name));
+        refuse_at(file, "no such file: controlspace is built or installed without {}", name);
     }
     void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (module == nullptr) throw InputError(fmt::format("cannot be loaded: {}", ::dlerror()));
+    if (module == nullptr) refuse("cannot be loaded: {}", ::dlerror());
     return module;
 }
 
@@ -55,8 +52,7 @@ const void* module_table_of(const std::string& name) {
     const void* table = function ? reinterpret_cast<const void* (*)()>(function)() : nullptr;
     // Every table begins with its version.
     if (table == nullptr || *static_cast<const std::string_view*>(table) != version()) {
-        throw InputError(
-            fmt::format("{}: its version is not {}", module_file(name).string(), version()));
+        refuse_at(module_file(name), "its version is not {}", version());
     }
     return table;
 }

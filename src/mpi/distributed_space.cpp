@@ -3,8 +3,6 @@
 #define MPICH_SKIP_MPICXX 1
 #include "mpi/distributed_space.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <ctime>
 #include <optional>
@@ -23,6 +21,7 @@
 #include "mpi/rank_tree.h"
 #include "mpi/record.h"
 #include "mpi/shared_sources.h"
+#include "refuse.h"
 #include "trees/values/vertex_values.h"
 
 // Why the answers do not depend on the ranks: octants are cut as in the serial octree (octants.h),
@@ -77,22 +76,22 @@ struct DistributedSpace::Impl {
     std::vector<Record> read(std::span<const PointSource> sources, std::uint64_t first) const {
         require_valid(options.space);
         if (options.structure != "K_oL" && !(options.structure == "K_oV" && options.target)) {
-            throw InputError(fmt::format(
+            refuse(
                 "{}{} depends on the order in which the whole tree is made, and is not built by "
                 "ranks: give K_oL, or K_oV with target_delta",
-                options.structure, options.target ? "" : ", inserted and graded,"));
+                options.structure, options.target ? "" : ", inserted and graded,");
         }
-        if (options.octants_per_rank == 0) throw InputError("octants per rank: give at least 1");
+        if (options.octants_per_rank == 0) refuse("octants per rank: give at least 1");
         std::vector<Record> records;
         records.reserve(sources.size());
         for (std::size_t i = 0; i < sources.size(); ++i) {
             const PointSource& s = sources[i];
             require_valid(s, first + i, options.space.domain);
             if (!is_isotropic(s.metric)) {
-                throw InputError(
-                    fmt::format("source {} is a tensor: ranks build fields of lengths alone; give "
-                                "--isotropic, or build it without MPI",
-                                first + i));
+                refuse(
+                    "source {} is a tensor: ranks build fields of lengths alone; give "
+                    "--isotropic, or build it without MPI",
+                    first + i);
             }
             records.push_back({s.position, s.metric.xx, s.growth, first + i});
         }

@@ -26,9 +26,11 @@
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
 #include "io/text/csv.h"
+#include "io/text/metric_rows.h"
 #include "mpi/distributed_space.h"
 #include "mpi/exchange.h"
 #include "mpi/read_part.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -47,12 +49,12 @@ struct Made {
 
 void require_possible(const Case& c) {
     if (has_field(c.sources)) {
-        throw InputError("ranks build fields of point sources: leave out primitives and --field");
+        refuse("ranks build fields of point sources: leave out primitives and --field");
     }
     if (c.law != GradationLaw::cone || c.schedule != GradationSchedule::sources) {
-        throw InputError("ranks grade by the sources: leave out --law and --schedule");
+        refuse("ranks grade by the sources: leave out --law and --schedule");
     }
-    if (c.frozen != Frozen::no) throw InputError("ranks build no compact form: leave out --frozen");
+    if (c.frozen != Frozen::no) refuse("ranks build no compact form: leave out --frozen");
 }
 
 /// This rank's share of the sources. Of one .csv it reads no more than that.
@@ -184,10 +186,7 @@ int sample(Ranks& ranks, const ParallelJob& job) {
     std::vector<Metric> metrics(points.size());
     made.space->sample(points, metrics);
     ranks.together([&] {
-        if (ranks.rank() != 0) return;
-        std::vector<PointSource> answers(points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) answers[i] = {points[i], metrics[i]};
-        write_csv_sources(job.output, answers);
+        if (ranks.rank() == 0) write_csv_sources(job.output, sources_from(points, metrics));
     });
     return remark(ranks, *made.space);
 }
@@ -245,7 +244,7 @@ int run(Ranks& ranks, int argc, const char* const* argv) {
         if (ranks.rank() == 0) print(app.help());
         return 0;
     } catch (const CLI::ParseError& error) {
-        throw InputError(fmt::format("{} (see controlspace-mpi --help)", error.what()));
+        refuse("{} (see controlspace-mpi --help)", error.what());
     }
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         if (app.got_subcommand(commands[i].name)) return commands[i].run(ranks, jobs[i]);

@@ -1,7 +1,5 @@
 #include "mpi/read_part.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <fstream>
 #include <string>
@@ -9,6 +7,7 @@
 
 #include "controlspace/error.h"
 #include "io/text/csv.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -22,8 +21,7 @@ bool is_empty(std::string_view line) {
 std::string lines_of_part(const std::filesystem::path& path, int part, int parts) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) {
-        throw InputError(
-            fmt::format("cannot read {} by parts: give a file, not a pipe", path.string()));
+        refuse("cannot read {} by parts: give a file, not a pipe", path.string());
     }
     std::ifstream file(path, std::ios::binary);
     std::string text, line;

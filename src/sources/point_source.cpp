@@ -1,16 +1,14 @@
 #include "controlspace/sources/point_source.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "controlspace/error.h"
+#include "refuse.h"
 
 namespace controlspace {
 
 double finest_length(std::span<const PointSource> sources) {
-    if (sources.empty()) throw InputError("no sources: give at least one");
+    if (sources.empty()) refuse("no sources: give at least one");
     double finest = largest_magnitude;
     for (const PointSource& source : sources) {
         finest = std::min(finest, eigen_frame(source.metric).lengths[0]);
@@ -30,13 +28,12 @@ bool is_source_growth(double g) { return g == 0 || (g >= 1 && g <= 1e6); }
 
 void require_length(std::string_view name, double value) {
     if (is_length(value)) return;
-    throw InputError(fmt::format("{} = {}: give a positive number", name, value));
+    refuse("{} = {}: give a positive number", name, value);
 }
 
 void require_coordinates(std::string_view name, const Point& p) {
     if (std::all_of(p.begin(), p.end(), is_coordinate)) return;
-    throw InputError(
-        fmt::format("{} = ({}, {}, {}): give three finite coordinates", name, p.x(), p.y(), p.z()));
+    refuse("{} = ({}, {}, {}): give three finite coordinates", name, p.x(), p.y(), p.z());
 }
 
 }  // namespace controlspace

@@ -1,13 +1,11 @@
 #include "controlspace/sources/sampled_surfaces.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include "controlspace/error.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -15,9 +13,8 @@ namespace {
 
 void require_few(double samples, double h, double rho) {
     if (!(samples <= most_samples)) {
-        throw InputError(fmt::format(
-            "h = {} and rho = {} make {:.2g} sources, more than {:.0g}: give a larger rho", h, rho,
-            samples, most_samples));
+        refuse("h = {} and rho = {} make {:.2g} sources, more than {:.0g}: give a larger rho", h,
+               rho, samples, most_samples);
     }
 }
 
@@ -88,8 +85,8 @@ std::vector<PointSource> sample_sphere(const SphereSampling& s) {
 std::vector<PointSource> sample_planes(const PlanesSampling& s) {
     require_lengths(s);
     if (!(std::abs(s.slope) <= 0.8)) {
-        throw InputError(fmt::format(
-            "slope = {}: give one from -0.8 to 0.8, so that the plane stays in [-1,1]^3", s.slope));
+        refuse("slope = {}: give one from -0.8 to 0.8, so that the plane stays in [-1,1]^3",
+               s.slope);
     }
     const double spacing = s.h * s.rho;
     const double stretch = std::sqrt(1 + s.slope * s.slope);  // |dS/du| of the second plane

@@ -48,4 +48,10 @@ void sample_parallel(const ControlSpace& space, std::span<const Point> x, std::s
     });
 }
 
+std::vector<Metric> sample_parallel(const ControlSpace& space, std::span<const Point> x) {
+    std::vector<Metric> metrics(x.size());
+    sample_parallel(space, x, metrics);
+    return metrics;
+}
+
 }  // namespace controlspace

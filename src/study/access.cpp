@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "refuse.h"
+
 namespace controlspace {
 namespace {
 
@@ -11,18 +13,18 @@ void require_type(ValueType type, const Value& value) {
     const double* x = std::get_if<double>(&value);
     if (type == ValueType::flag) {
         if (value != Value("true") && value != Value("false")) {
-            throw InputError(fmt::format("{} is neither true nor false", to_string({value})));
+            refuse("{} is neither true nor false", to_string({value}));
         }
         return;
     }
     if (type == ValueType::text) {
-        if (x != nullptr) throw InputError(fmt::format("{} is not a text", *x));
+        if (x != nullptr) refuse("{} is not a text", *x);
         return;
     }
-    if (x == nullptr) throw InputError(fmt::format("'{}' is not a number", value.text()));
-    if (!std::isfinite(*x)) throw InputError(fmt::format("{} is not a finite number", *x));
+    if (x == nullptr) refuse("'{}' is not a number", value.text());
+    if (!std::isfinite(*x)) refuse("{} is not a finite number", *x);
     if (type == ValueType::whole_number && *x != std::floor(*x)) {
-        throw InputError(fmt::format("{} is not a whole number", *x));
+        refuse("{} is not a whole number", *x);
     }
 }
 
@@ -38,9 +40,9 @@ std::string to_string(const Values& values) {
 }
 
 void require_fit(ValueType type, std::size_t at_most, const Values& values) {
-    if (values.empty()) throw InputError("no value: give at least one");
+    if (values.empty()) refuse("no value: give at least one");
     if (at_most > 0 && values.size() > at_most) {
-        throw InputError(fmt::format("{} values: give {} at most", values.size(), at_most));
+        refuse("{} values: give {} at most", values.size(), at_most);
     }
     for (const Value& value : values) require_type(type, value);
 }
@@ -48,14 +50,14 @@ void require_fit(ValueType type, std::size_t at_most, const Values& values) {
 Check within(double least, double most) {
     return [=](double number) {
         if (number < least || number > most) {
-            throw InputError(fmt::format("{} is out of range: give {} to {}", number, least, most));
+            refuse("{} is out of range: give {} to {}", number, least, most);
         }
         return number;
     };
 }
 
 double positive(double number) {
-    if (!(number > 0)) throw InputError(fmt::format("{} is not positive", number));
+    if (!(number > 0)) refuse("{} is not positive", number);
     return number;
 }
 
@@ -65,7 +67,7 @@ void require_choice(const std::string& word, const std::vector<Choice>& choices)
         if (choice.name == word) return;
         known += (known.empty() ? "" : ", ") + choice.name;
     }
-    throw InputError(fmt::format("unknown value '{}': give {}", word, known));
+    refuse("unknown value '{}': give {}", word, known);
 }
 
 }  // namespace controlspace

@@ -9,6 +9,7 @@
 #include "controlspace/gradation/law.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/study/parameter.h"
+#include "refuse.h"
 #include "space/depth_limits.h"
 #include "study/member_of.h"
 
@@ -75,8 +76,7 @@ Access<Case> target_factor() {
                                                                       const Values& values) {
         set_factor(c, values);
         if (!c.within) return;
-        if (!(*c.within >= 1.0001 && *c.within <= 1e6))
-            throw InputError("give a factor from 1.0001 to 1e6");
+        if (!(*c.within >= 1.0001 && *c.within <= 1e6)) refuse("give a factor from 1.0001 to 1e6");
         set_target(c, Values{nonconformity_of_factor(*c.within)});
     };
     return access;

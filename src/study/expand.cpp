@@ -6,6 +6,7 @@
 #include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/study/study.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -27,8 +28,8 @@ std::vector<const CatalogueEntry*> chosen(const Values& names,
             if (std::ranges::count(entries, &entry) == 0) entries.push_back(&entry);
         }
         if (!known) {
-            throw InputError(fmt::format("unknown structure '{}': give a family ({}) or some of {}",
-                                         name, fmt::join(families, ", "), all));
+            refuse("unknown structure '{}': give a family ({}) or some of {}", name,
+                   fmt::join(families, ", "), all);
         }
     }
     return entries;
@@ -37,9 +38,7 @@ std::vector<const CatalogueEntry*> chosen(const Values& names,
 /// Lists multiply: an error in a study file should not request a year of work, or all memory.
 void require_few(std::size_t cases) {
     constexpr std::size_t most = 5000;
-    if (cases > most) {
-        throw InputError(fmt::format("the study has more than {} cases: shorten its lists", most));
-    }
+    if (cases > most) refuse("the study has more than {} cases: shorten its lists", most);
 }
 
 /// Replaces each case by one for each value; the first list multiplied varies slowest.
@@ -59,8 +58,7 @@ void multiply(std::vector<Case>& cases, const CaseParameter& parameter, const Va
 bool is_needed(const CaseParameter& parameter, const Run& run, const Case& c) {
     if (parameter.applies(c)) return true;
     if (run.values(parameter) == parameter.defaults) return false;
-    throw InputError(
-        fmt::format("{} is for {}: leave it out", parameter.key, parameter.applies_to.what));
+    refuse("{} is for {}: leave it out", parameter.key, parameter.applies_to.what);
 }
 
 std::vector<Case> settings_of(const Study& study, const Run& run,
@@ -99,21 +97,20 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
 
 void require_sensible(const Case& c) {
     if (c.sources.kind == SourcesKind::none && !has_field(c.sources)) {
-        throw InputError("neither sources nor a field: give one of them");
+        refuse("neither sources nor a field: give one of them");
     }
     if (c.sources.field.kind == FieldKind::file && c.sources.field.file.empty()) {
-        throw InputError("field = \"file\" needs field_file: name a .vdb, .vtu or .vti");
+        refuse("field = \"file\" needs field_file: name a .vdb, .vtu or .vti");
     }
     if (!(c.sources.h_min <= c.sources.h_max)) {
-        throw InputError(fmt::format("h_min is {} and h_max {}: give h_min <= h_max",
-                                     c.sources.h_min, c.sources.h_max));
+        refuse("h_min is {} and h_max {}: give h_min <= h_max", c.sources.h_min, c.sources.h_max);
     }
     c.reference->require_fit(c.sources);
     if (c.equal_delta && c.equal_memory) {
-        throw InputError("equal_delta and equal_memory choose the same voxels: give one of them");
+        refuse("equal_delta and equal_memory choose the same voxels: give one of them");
     }
     if ((c.equal_delta || c.equal_memory) && c.voxel) {
-        throw InputError("equal_delta and equal_memory choose voxel: leave it out");
+        refuse("equal_delta and equal_memory choose voxel: leave it out");
     }
 }
 
@@ -203,7 +200,7 @@ std::vector<Case> expand(const Study& study, const StudyRows& rows) {
             }
         }
     }
-    if (cases.empty()) throw InputError("the study has no cases: give at least one structure");
+    if (cases.empty()) refuse("the study has no cases: give at least one structure");
     return cases;
 }
 

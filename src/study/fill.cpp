@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/study/run.h"
 #include "measure/stopwatch.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 /// A field is followed by adaptation; without a target only what keeps its cells can follow it.
 void require_follows(const Case& c, const CatalogueEntry& entry) {
     if (c.target_delta || !entry.has<SourceLeaves>()) return;
-    throw InputError("a continuous field is followed by adaptation: set target_delta, for trees");
+    refuse("a continuous field is followed by adaptation: set target_delta, for trees");
 }
 
 /// δ and the factor between lengths, and how they are known.

@@ -25,22 +25,17 @@ std::vector<PointSource> patch_of(std::vector<PointSource> sources, std::size_t 
 }
 
 struct Trial {
-    double seconds = 0;        ///< to make and grade the structure
-    double bytes = 0;          ///< of the structure
+    Eigen::Array2d cost;       ///< seconds to make and grade the structure, and its bytes
     double query_seconds = 0;  ///< for each place
 };
 
 Trial try_case(const PreparedStudy& prepared, const Case& c, const Workload& workload) {
     const Stopwatch time;
     const auto space = make_and_fill(prepared.study(), c, prepared.rows(), workload).build(c);
-    Trial trial{time.seconds(), static_cast<double>(space->footprint().bytes_total()), 0};
+    const double seconds = time.seconds();
     const auto places = random_points(workload.domain, 1000, 1);
-    trial.query_seconds = 1e-9 * access_time(*space, places, 3).median_ns();
-    return trial;
-}
-
-Trial scaled(const Trial& trial, double factor) {
-    return {factor * trial.seconds, factor * trial.bytes, trial.query_seconds};
+    return {{seconds, static_cast<double>(space->footprint().bytes_total())},
+            1e-9 * access_time(*space, places, 3).median_ns()};
 }
 
 /// A grid, by one with fewer voxels.
@@ -53,10 +48,11 @@ Trial forecast_grid(const PreparedStudy& prepared, Case c, const Workload& workl
     const double voxels = measure(workload.domain) / std::pow(voxel, dimensions);
     const double factor = std::max(1.0, voxels / voxels_of_trial);
     c.voxel = voxel * std::pow(factor, 1 / dimensions);
-    const Trial whole = scaled(try_case(prepared, c, workload), factor);
+    Trial trial = try_case(prepared, c, workload);
+    trial.cost *= factor;
     // Grids that outgrow the cap become coarser.
-    const auto cap = static_cast<double>(options.max_bytes);
-    return whole.bytes > cap ? scaled(whole, cap / whole.bytes) : whole;
+    trial.cost *= std::min(1.0, static_cast<double>(options.max_bytes) / trial.cost[1]);
+    return trial;
 }
 
 /// Anything else, from two patches of sources: what they have in common does not grow.
@@ -64,16 +60,13 @@ Trial forecast_patches(const PreparedStudy& prepared, const Case& c, const Workl
     constexpr std::size_t sources_of_trial = 4000;
     Workload patch = workload;
     patch.sources = patch_of(workload.sources, sources_of_trial);
-    const Trial large = try_case(prepared, c, patch);
-    if (patch.sources.size() == workload.sources.size()) return large;
+    Trial trial = try_case(prepared, c, patch);
+    if (patch.sources.size() == workload.sources.size()) return trial;
     patch.sources = patch_of(patch.sources, sources_of_trial / 2);
-    const Trial small = try_case(prepared, c, patch);
     const double steps =
         static_cast<double>(workload.sources.size() - sources_of_trial) / (sources_of_trial / 2.0);
-    const auto further = [&](double Trial::*of) {
-        return large.*of + steps * std::max(0.0, large.*of - small.*of);
-    };
-    return {further(&Trial::seconds), further(&Trial::bytes), large.query_seconds};
+    trial.cost += steps * (trial.cost - try_case(prepared, c, patch).cost).max(0);
+    return trial;
 }
 
 /// Seconds that the reference takes for all probes.
@@ -89,41 +82,38 @@ double probes_seconds(const Study& study, const Case& c, const Workload& workloa
 
 double cubed(int n) { return std::pow(n, 3); }
 
-}  // namespace
-
-std::vector<std::optional<Forecast>> forecast(const PreparedStudy& prepared) {
+/// None where only running the case shows its cost.
+std::optional<Forecast> forecast_case(const PreparedStudy& prepared, std::size_t i) {
     const Study& study = prepared.study();
+    const Case& c = prepared.cases()[i];
+    if (c.target_delta || c.equal_delta || c.equal_memory || has_field(c.sources)) return {};
+    const Workload& workload = prepared.workload(c);
     const double probes = cubed(study.probe_grid) + cubed(study.fine_probe_grid);
     const double timed =  // each run is preceded by one that is not timed
         2 * study.access_repeats *
         (static_cast<double>(study.access_points) + cubed(study.probe_grid));
-    std::vector<std::optional<Forecast>> forecasts;
-    for (std::size_t i = 0; i < prepared.cases().size(); ++i) {
-        const Case& c = prepared.cases()[i];
-        const Workload& workload = prepared.workload(c);
-        std::optional<Forecast> forecast;
-        const bool only_running_tells =
-            c.target_delta || c.equal_delta || c.equal_memory || has_field(c.sources);
-        if (!only_running_tells) {
-            try {
-                const CatalogueEntry& entry = prepared.entry(c);
-                const Trial trial = entry.has<VoxelSize>()
-                                        ? forecast_grid(prepared, c, workload)
-                                        : forecast_patches(prepared, c, workload);
-                forecast = {
-                    study.creation_repeats * trial.seconds + trial.query_seconds * (timed + probes),
-                    trial.bytes};
-                const auto earlier = prepared.cases().first(i);
-                if (std::ranges::none_of(earlier,
-                                         [&](const Case& e) { return share_probes(e, c); })) {
-                    forecast->seconds += probes_seconds(study, c, workload, probes);
-                }
-            } catch (const std::exception&) {
-                // The row will contain the reason.
-                forecast.reset();
-            }
+    const Trial trial = prepared.entry(c).has<VoxelSize>()
+                            ? forecast_grid(prepared, c, workload)
+                            : forecast_patches(prepared, c, workload);
+    Forecast forecast{
+        study.creation_repeats * trial.cost[0] + trial.query_seconds * (timed + probes),
+        trial.cost[1]};
+    const auto shares = [&](const Case& earlier) { return share_probes(earlier, c); };
+    if (std::ranges::none_of(prepared.cases().first(i), shares)) {
+        forecast.seconds += probes_seconds(study, c, workload, probes);
+    }
+    return forecast;
+}
+
+}  // namespace
+
+std::vector<std::optional<Forecast>> forecast(const PreparedStudy& prepared) {
+    std::vector<std::optional<Forecast>> forecasts(prepared.cases().size());
+    for (std::size_t i = 0; i < forecasts.size(); ++i) {
+        try {
+            forecasts[i] = forecast_case(prepared, i);
+        } catch (const std::exception&) {  // the row will contain the reason
         }
-        forecasts.push_back(forecast);
     }
     return forecasts;
 }

@@ -1,8 +1,6 @@
 #include "study/mesh_settings.h"
 
-#include <fmt/format.h>
-
-#include "controlspace/error.h"
+#include "refuse.h"
 #include "study/member_of.h"
 
 namespace controlspace {
@@ -18,8 +16,7 @@ Access<MeshSettings> kinds_of_files() {
             const std::string& kind = value.text();
             if (kind == "none" && values.size() == 1) return;
             if (kind != "msh" && kind != "mesh" && kind != "vtu") {
-                throw InputError(fmt::format(
-                    "unknown kind of file '{}': give some of msh, mesh, vtu, or none", kind));
+                refuse("unknown kind of file '{}': give some of msh, mesh, vtu, or none", kind);
             }
             s.files.push_back(kind);
         }

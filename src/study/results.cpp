@@ -7,8 +7,8 @@
 #include <fstream>
 #include <utility>
 
-#include "controlspace/error.h"
 #include "files/output_file.h"
+#include "refuse.h"
 #include "study/outcome.h"
 #include "study/pareto.h"
 #include "study/results_json.h"
@@ -103,7 +103,7 @@ void GrowingFile::append(std::string_view text, std::string tail) {
     };
     if (!write(std::string(text) + tail)) {
         write(tail_);
-        throw InputError(fmt::format("{} cannot be written: is the disk full?", path_.string()));
+        refuse("{} cannot be written: is the disk full?", path_.string());
     }
     end_ += text.size();
     tail_ = std::move(tail);
@@ -184,12 +184,11 @@ void make_results_folder(const std::filesystem::path& folder, std::string_view f
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error || !std::filesystem::is_directory(folder)) {
-        throw InputError(fmt::format("{}: cannot be made ({}): choose another output folder",
-                                     folder.string(), error ? error.message() : "it is a file"));
+        refuse_at(folder, "cannot be made ({}): choose another output folder",
+                  error ? error.message() : "it is a file");
     }
     if (std::filesystem::exists(folder / file, error)) {
-        throw InputError(fmt::format("{}: contains results already: choose another output folder",
-                                     folder.string()));
+        refuse_at(folder, "contains results already: choose another output folder");
     }
 }
 

@@ -1,11 +1,10 @@
 #include "study/results_json.h"
 
-#include <fmt/format.h>
-
 #include <utility>
 
 #include "controlspace/error.h"
 #include "controlspace/study/results.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -167,7 +166,7 @@ Row row_from_json(const Json& json, const StudyRows& rows, const SourcesChoice& 
         try {
             set_checked(p.access, row.setting, values_from(*found));
         } catch (const InputError& error) {
-            throw InputError(fmt::format("{}: {}", result_key(p), error.what()));
+            refuse("{}: {}", result_key(p), error.what());
         }
     }
     row.sources = json.at("sources");
@@ -235,7 +234,7 @@ Study study_from_json(const Json& head) {
         try {
             set_checked(p.access, study, values_from(*found));
         } catch (const std::exception& error) {
-            throw InputError(fmt::format("settings, {}: {}", p.key, error.what()));
+            refuse("settings, {}: {}", p.key, error.what());
         }
     }
     return study;

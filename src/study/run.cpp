@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "controlspace/error.h"
+#include "controlspace/space/sample_parallel.h"
 #include "measure/stopwatch.h"
 #include "study/equal_setting.h"
 
@@ -23,12 +23,6 @@ void notify(const std::function<Callback>& callback, Arguments&&... arguments) {
 void append(Creation& creation, const Creation& again) {
     creation.insert_s.push_back(again.insert_s.front());
     creation.gradation_s.push_back(again.gradation_s.front());
-}
-
-std::uint64_t checksum_of(const ControlSpace& space, std::span<const Point> points) {
-    std::vector<Metric> answers(points.size());
-    space.sample(points, answers);
-    return checksum(answers);
 }
 
 /// A case of a batch: its structure where it could be made, to be timed with the others.
@@ -147,7 +141,7 @@ private:
             member.space.reset();  // its memory first
             const Filled filled = make_and_fill(study_, c, rows_, workload, observer_);
             member.space = filled.build(c);
-            const std::uint64_t sum = checksum_of(*member.space, places);
+            const std::uint64_t sum = checksum(sample_parallel(*member.space, places));
             if (repeat == 0) {
                 creation = filled.creation;
                 expected = sum;

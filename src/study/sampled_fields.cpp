@@ -44,9 +44,7 @@ Numbers numbers_of(std::span<const Metric> metrics) {
 }
 
 Numbers sampled(const ControlSpace& space, std::span<const Point> places) {
-    std::vector<Metric> metrics(places.size());
-    sample_parallel(space, places, metrics);
-    return numbers_of(metrics);
+    return numbers_of(sample_parallel(space, places));
 }
 
 }  // namespace

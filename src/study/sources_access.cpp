@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "controlspace/error.h"
 #include "controlspace/fields/primitives.h"
 #include "controlspace/study/sources_choice.h"
 #include "files/text_file.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -50,8 +50,7 @@ Access<Study> sources_access() {
         std::optional<SourcesKind> kind;
         for (const std::string& what : whole_sources(v)) {
             if (what.empty()) {
-                throw InputError(
-                    "no name: give sphere, planes, none, the names of files or primitives");
+                refuse("no name: give sphere, planes, none, the names of files or primitives");
             }
             if (is_primitive(what)) {
                 primitives.push_back(parse_primitive(what));
@@ -59,8 +58,8 @@ Access<Study> sources_access() {
             }
             const auto word = from_name<SourcesKind>(what);
             if (kind || (word && !files.empty())) {
-                throw InputError((kind ? std::string(name_of(*kind)) : what) +
-                                 " is no file: give it alone, or only names of files");
+                refuse("{} is no file: give it alone, or only names of files",
+                       kind ? name_of(*kind) : what);
             }
             kind = word;
             if (!word) files.emplace_back(what == "-" ? "/dev/stdin" : what);

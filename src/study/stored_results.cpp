@@ -1,10 +1,9 @@
-#include <fmt/format.h>
 
 #include <string_view>
 
-#include "controlspace/error.h"
 #include "controlspace/study/results.h"
 #include "files/text_file.h"
+#include "refuse.h"
 #include "study/results_json.h"
 
 namespace controlspace {
@@ -12,20 +11,20 @@ namespace {
 
 StoredResults results_from(const Json& json, const StudyRows& rows) {
     if (!json.is_object() || !json.contains("program") || json["program"] != "controlspace") {
-        throw InputError("not written by this program: give a folder of results");
+        refuse("not written by this program: give a folder of results");
     }
     if (json.at("schema_version") != results_schema_version) {
-        throw InputError(fmt::format("schema version {} is not {}: run the study again",
-                                     json.at("schema_version").dump(), results_schema_version));
+        refuse("schema version {} is not {}: run the study again", json.at("schema_version").dump(),
+               results_schema_version);
     }
     StoredResults results{
         provenance_from_json(json), study_from_json(json), {}, json.at("complete").get<bool>()};
-    if (!json.at("rows").is_array()) throw InputError("rows is no list of rows");
+    if (!json.at("rows").is_array()) refuse("rows is no list of rows");
     for (const Json& row : json.at("rows")) {
         try {
             results.rows.push_back(row_from_json(row, rows, results.study.sources));
         } catch (const std::exception& error) {
-            throw InputError(fmt::format("row {}: {}", results.rows.size() + 1, error.what()));
+            refuse("row {}: {}", results.rows.size() + 1, error.what());
         }
     }
     return results;
@@ -65,10 +64,10 @@ bool is_outcome_of(const Row& row, Case c) {
 void require_same_program(const Provenance& earlier, const Provenance& now) {
     const auto same = [](std::string_view what, std::string_view a, std::string_view b) {
         if (a == b) return;
-        throw InputError(
-            fmt::format("{} was \"{}\" and is \"{}\" now: run the study anew, since times of the "
-                        "two cannot be compared",
-                        what, a, b));
+        refuse(
+            "{} was \"{}\" and is \"{}\" now: run the study anew, since times of the "
+            "two cannot be compared",
+            what, a, b);
     };
     same("the program", version_text(earlier), version_text(now));
     same("the compiler", earlier.compiler + ", " + earlier.flags, now.compiler + ", " + now.flags);
@@ -79,8 +78,7 @@ void require_same_settings(const Study& earlier, const Study& now) {
     for (const Parameter<Study>& p : study_parameters()) {
         const bool changes_no_row = p.use == Use::results || p.key == "threads";
         if (changes_no_row || p.access.get(earlier) == p.access.get(now)) continue;
-        throw InputError(fmt::format(
-            "{} differs from what it was: give the same settings, or run the study anew", p.key));
+        refuse("{} differs from what it was: give the same settings, or run the study anew", p.key);
     }
 }
 
@@ -92,7 +90,7 @@ StoredResults read_results(const std::filesystem::path& folder, const StudyRows&
     try {
         return results_from(parsed(text), rows);
     } catch (const std::exception& error) {
-        throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+        refuse_at(file, "{}", error.what());
     }
 }
 
@@ -101,17 +99,17 @@ std::vector<Row> rows_to_go_on_from(const StoredResults& earlier, const Study& s
     require_same_settings(earlier.study, study);
     for (std::size_t i = 0; i < earlier.rows.size(); ++i) {
         if (i < cases.size() && is_outcome_of(earlier.rows[i], cases[i])) continue;
-        throw InputError(fmt::format(
+        refuse(
             "row {} is {}, which is no case {} of this study: give the study that was interrupted",
-            i + 1, structure_label(earlier.rows[i].setting), i + 1));
+            i + 1, structure_label(earlier.rows[i].setting), i + 1);
     }
     if (earlier.complete && earlier.rows.size() < cases.size()) {
-        throw InputError(fmt::format(
+        refuse(
             "these results are complete with {} cases, and this study has {}: run it anew, or the "
             "others alone",
-            earlier.rows.size(), cases.size()));
+            earlier.rows.size(), cases.size());
     }
-    if (earlier.complete) throw InputError("these results are complete: nothing is left to run");
+    if (earlier.complete) refuse("these results are complete: nothing is left to run");
     require_same_program(earlier.provenance, now);
     return earlier.rows;
 }

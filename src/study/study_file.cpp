@@ -8,6 +8,7 @@
 #include "controlspace/error.h"
 #include "controlspace/study/study.h"
 #include "files/text_file.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -17,7 +18,7 @@ namespace {
     // The parser names a character that it did not expect, which may be the end of the line.
     std::ranges::replace_if(
         what, [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-    throw InputError(fmt::format("{}:{}: {}", place.string(), source.begin.line, what));
+    refuse("{}:{}: {}", place.string(), source.begin.line, what);
 }
 
 /// The keys and values of one table of the file.
@@ -69,8 +70,7 @@ private:
         for (const CaseParameter& other : parameters) {
             const bool related = other.key == one.same_as || other.same_as == one.same_as;
             if (related && other.key != one.key && table_.contains(other.key)) {
-                throw InputError(
-                    fmt::format("{} is the same setting: give one of them", other.key));
+                refuse("{} is the same setting: give one of them", other.key);
             }
         }
     }

@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <functional>
@@ -6,6 +5,7 @@
 #include "controlspace/geometry/extent.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/study/study.h"
+#include "refuse.h"
 #include "study/file_endings.h"
 #include "study/member_of.h"
 #include "study/sources_access.h"
@@ -38,7 +38,7 @@ Access<Study> numbers(std::size_t count, const char* what, const Set& set, const
     return {.at_most = count,
             .set =
                 [=](Study& s, const Values& v) {
-                    if (v.size() != count) throw InputError(fmt::format("give {}", what));
+                    if (v.size() != count) refuse("give {}", what);
                     set(s, [&](std::size_t i) { return v[i].number(); });
                 },
             .get = get};
@@ -50,8 +50,7 @@ Access<Study> name() {
         const std::string& name = v.front().text();
         const auto unfit = [](char c) { return c == '/' || (c >= 0 && c < ' ') || c == 127; };
         if (name.empty() || std::any_of(name.begin(), name.end(), unfit)) {
-            throw InputError(fmt::format(
-                "'{}' cannot name a folder: leave out '/' and control characters", name));
+            refuse("'{}' cannot name a folder: leave out '/' and control characters", name);
         }
         s.name = name;
     };
@@ -166,7 +165,7 @@ std::vector<Parameter<Study>> table() {
          "segment:x0,y0,z0,x1,y1,z1,h=H, surface:FILE,h=H: the length is H on them and inside, and "
          "H + (g - 1) d at the distance d, by g_r or with g=G by G",
          sources_access()},
-        {"h_min", length, "Smallest length: what is requested to be shorter, is this long",
+        {"h_min", length, "Smallest length: shorter requests are raised to it",
          length_or_none(of(sources, &Sources::h_min))},
         {"h_max", length,
          "Largest length anywhere (between the nodes of K_Li and K_oLi some per cent more); left "
@@ -178,7 +177,7 @@ std::vector<Parameter<Study>> table() {
          number<Study>(of(sources, &Sources::radius), positive), making, sphere, paper},
         {"slope", "", "Slope a of the second plane (u, -0.2 + a u, v)",
          number<Study>(of(sources, &Sources::slope)), making, planes, paper},
-        {"h", length, "Length that the sampling of a surface starts from",
+        {"h", length, "Base length of a sampled surface: the unit of rho and s_a",
          number<Study>(of(sources, &Sources::h), positive), making, sampled, paper},
         {"domain", length,
          "x0 x1 y0 y1 z0 z1; left out: where the field is defined; -1 1 along each axis for other "
@@ -309,8 +308,7 @@ void require_applicable(const Study& study) {
     for (const Parameter<Study>& parameter : study_parameters()) {
         if (parameter.applies(study)) continue;
         if (parameter.access.get(study) == parameter.access.get(defaults)) continue;
-        throw InputError(
-            fmt::format("{} is for {}: leave it out", parameter.key, parameter.applies_to.what));
+        refuse("{} is for {}: leave it out", parameter.key, parameter.applies_to.what);
     }
 }
 

@@ -7,21 +7,20 @@
 #include <string>
 #include <utility>
 
-#include "controlspace/error.h"
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/fields/mixture.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/space/control_space.h"
+#include "refuse.h"
 #include "study/file_endings.h"
 
 namespace controlspace {
 namespace {
 
 [[noreturn]] void fail_without_reader(const std::filesystem::path& file) {
-    throw InputError(
-        fmt::format("{}: this program is built without the library that reads {} files",
-                    file.string(), lower_case_extension(file)));
+    refuse_at(file, "this program is built without the library that reads {} files",
+              lower_case_extension(file));
 }
 
 /// Formats that other libraries read.
@@ -118,8 +117,8 @@ void require_inside(const SourcesChoice& choice, const std::vector<DistanceField
             (box.high.array() >= domain.low.array()).all()) {
             continue;
         }
-        throw InputError(fmt::format("{} lies outside the domain {}: enlarge the domain or drop it",
-                                     to_string(choice.primitives[i]), to_string(domain)));
+        refuse("{} lies outside the domain {}: enlarge the domain or drop it",
+               to_string(choice.primitives[i]), to_string(domain));
     }
 }
 

@@ -11,6 +11,7 @@
 #include "baselines/peers/gmsh/gmsh_classes.h"
 #include "controlspace/error.h"
 #include "controlspace/sources/riemannian.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -47,7 +48,7 @@ void in_gmsh(const auto& action) {
     } catch (const std::exception&) {
         throw;
     } catch (...) {
-        throw InputError("Gmsh failed");
+        refuse("Gmsh failed");
     }
 }
 
@@ -57,9 +58,8 @@ std::size_t allocated() {
 }
 
 [[noreturn]] void throw_uncovered(const Point& x) {
-    throw InputError(
-        fmt::format("Gmsh's field has no size at ({} {} {}): leave it out of --structures", x.x(),
-                    x.y(), x.z()));
+    refuse("Gmsh's field has no size at ({} {} {}): leave it out of --structures", x.x(), x.y(),
+           x.z());
 }
 
 double length(double size, const Point& x) {
@@ -118,8 +118,7 @@ void GmshSpace::remove() noexcept {
 void GmshSpace::for_each_inside(std::span<const Point> x, const auto& answer) const {
     in_gmsh([&] {
         if (!is_open(model_)) {
-            throw InputError(
-                "Gmsh was closed, by a mesh that it made meanwhile: build the structure anew");
+            refuse("Gmsh was closed, by a mesh that it made meanwhile: build the structure anew");
         }
         for (std::size_t i = 0; i < x.size(); ++i) {
             answer(i, nearest_in(domain_, x[i]));
@@ -160,7 +159,7 @@ void GmshSpace::sample_lengths(std::span<const Point> x, std::span<double> out) 
 }
 
 void GmshSpace::save(StateWriter&) const {
-    throw InputError(
+    refuse(
         "a field of Gmsh is not saved: save tets-linear or uniform-trilinear, or export a .pos or "
         ".structured file");
 }

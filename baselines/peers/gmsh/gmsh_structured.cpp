@@ -5,17 +5,16 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "baselines/lattice/grid_row.h"
 #include "baselines/lattice/lattice_data.h"
 #include "baselines/peers/gmsh/gmsh_space.h"
-#include "controlspace/error.h"
 #include "controlspace/space/detail/shared_builder.h"
+#include "files/output_file.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -23,7 +22,7 @@ namespace {
 
 Metric only_isotropic(const Metric& m) {
     if (is_isotropic(m)) return m;
-    throw InputError(
+    refuse(
         "Gmsh's field Structured holds one length at a place, no tensor: give isotropic sources, "
         "or leave gmsh-structured out of --structures");
 }
@@ -32,7 +31,7 @@ class ScratchFile {
 public:
     ScratchFile() : path_(std::filesystem::temp_directory_path() / "controlspace-XXXXXX") {
         const int file = ::mkstemp(path_.data());
-        if (file < 0) throw InputError(path_ + ": cannot be made: set TMPDIR to a writable folder");
+        if (file < 0) refuse_at(path_, "cannot be made: set TMPDIR to a writable folder");
         ::close(file);
     }
     ~ScratchFile() { ::unlink(path_.c_str()); }
@@ -53,30 +52,22 @@ void write(const LatticeData& data, const std::string& path) {
         counts[a] = static_cast<int>(std::max(2u, lattice.nodes[a]));
         if (lattice.nodes[a] == 1) spacing[static_cast<Axis>(a)] = 1;
     }
-    std::ofstream file(path, std::ios::binary);
-    const auto put = [&](const auto* values, std::size_t count) {
-        file.write(reinterpret_cast<const char*>(values),
-                   static_cast<std::streamsize>(count * sizeof *values));
-    };
-    put(lattice.origin.data(), 3);
-    put(spacing.data(), 3);
-    put(counts.data(), 3);
-    std::vector<double> column;
+    OutputFile file(path);
+    file.write_raw(lattice.origin.data(), 3);
+    file.write_raw(spacing.data(), 3);
+    file.write_raw(counts.data(), 3);
     const auto node = [&](int i, std::size_t axis) {
         return std::min(static_cast<std::uint32_t>(i), lattice.nodes[axis] - 1);
     };
     for (int i = 0; i < counts[0]; ++i) {
         for (int j = 0; j < counts[1]; ++j) {
-            column.clear();
             for (int k = 0; k < counts[2]; ++k) {
                 const Metric& m = data.field()[lattice.index(node(i, 0), node(j, 1), node(k, 2))];
-                column.push_back(only_isotropic(m).xx);
+                file.write_raw(only_isotropic(m).xx);
             }
-            put(column.data(), column.size());
         }
     }
-    file.close();
-    if (!file) throw InputError(path + ": cannot be written: free space there");
+    file.commit();
 }
 
 /// The nodes of `uniform-trilinear` as Gmsh's field Structured, which reads a file.

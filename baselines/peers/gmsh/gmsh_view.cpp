@@ -1,7 +1,6 @@
 #include <gmsh.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "baselines/peers/gmsh/gmsh_space.h"
 #include "baselines/peers/tets/background_tets.h"

@@ -4,7 +4,6 @@
 #include <nanovdb/util/OpenToNanoVDB.h>
 #include <openvdb/Grid.h>
 
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <utility>

@@ -16,6 +16,7 @@
 #include "baselines/peers/converted_builder.h"
 #include "controlspace/geometry/extent.h"
 #include "controlspace/geometry/subdivision.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -29,7 +30,7 @@ public:
     explicit Forest(const ControlSpace& octree) : octree_(&octree), domain_(octree.domain()) {
         footprint_.depth = octree.footprint().depth;
         if (footprint_.depth > P8EST_QMAXLEVEL) {
-            throw InputError("p4est holds 18 levels: lower --max-depth, or leave p4est-octree out");
+            refuse("p4est holds 18 levels: lower --max-depth, or leave p4est-octree out");
         }
         Vector cubes = Vector::Ones();  // along each axis
         for (; long_levels_ < footprint_.depth; ++long_levels_) {

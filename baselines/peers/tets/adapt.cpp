@@ -40,9 +40,7 @@ AdaptationReport BackgroundTets::adapt(const AdaptationGoal& goal) {
     is_isotropic_ = blend_ == TetBlend::view && wanted.has_ranges();
     clear(largest_metric(options_));
     const std::vector<Point> corners = positions(control_nodes(Neighbourhood::faces).graph);
-    std::vector<Metric> at_corners(corners.size());
-    wanted.sample(corners, at_corners);
-    assign(at_corners);
+    assign(sample_parallel(wanted, corners));
 
     std::vector<Point> places(goal.places.begin(), goal.places.end());
     for (const PointSource& source : goal.sources) places.push_back(source.position);
@@ -68,8 +66,7 @@ AdaptationReport BackgroundTets::adapt(const AdaptationGoal& goal) {
 void BackgroundTets::ask(std::span<Comparison> places, const ControlSpace& goal) {
     std::vector<Point> x;
     for (const Comparison& place : places) x.push_back(place.x);
-    std::vector<Metric> wanted(x.size());
-    sample_parallel(goal, x, wanted);
+    const std::vector<Metric> wanted = sample_parallel(goal, x);
     for (std::size_t i = 0; i < x.size(); ++i) places[i].wanted = wanted[i];
 }
 

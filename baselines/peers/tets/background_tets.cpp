@@ -14,6 +14,7 @@
 #include "controlspace/metric/intersection.h"
 #include "controlspace/sources/riemannian.h"
 #include "controlspace/trees/detail/adjacency.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -36,7 +37,7 @@ BackgroundTets::BackgroundTets(const SpaceOptions& options, TetBlend blend)
     : options_(options), blend_(blend) {
     require_valid(options);
     if (options.takes_later_sources) {
-        throw InputError("a background mesh cannot be extended: give all sources at once");
+        refuse("a background mesh cannot be extended: give all sources at once");
     }
     clear(largest_metric(options));
 }

@@ -1,14 +1,13 @@
 #include "io/netcdf/write_netcdf.h"
 
-#include <fmt/format.h>
 #include <netcdf.h>
 
 #include <array>
 #include <string>
 #include <vector>
 
-#include "controlspace/error.h"
 #include "files/output_file.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -30,7 +29,7 @@ public:
     int id() const { return id_; }
     void require(int status) const {
         if (status == NC_NOERR) return;
-        throw InputError(fmt::format("cannot write {}: {}", target_.string(), nc_strerror(status)));
+        refuse("cannot write {}: {}", target_.string(), nc_strerror(status));
     }
     void close() {
         is_closed_ = true;

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <utility>
 
-#include "controlspace/error.h"
 #include "controlspace/io/metric_grids.h"
 #include "controlspace/io/read_vdb.h"
 #include "controlspace/metric/blend.h"
 #include "controlspace/sources/point_source.h"
 #include "io/openvdb/vdb_file.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -136,14 +136,14 @@ AnalyticField field_of(Grids grids, double elsewhere, double finest) {
 AnalyticField tensor_field(const VdbFile& file) {
     for (const std::string_view name : {diagonal_grid, off_diagonal_grid}) {
         if (file.has(name)) continue;
-        file.fail(fmt::format("has no grid '{}'; it holds {}: name a grid of lengths or densities",
-                              name, file.listing()));
+        file.fail("has no grid '{}'; it holds {}: name a grid of lengths or densities", name,
+                  file.listing());
     }
     const auto diagonal = file.read_as<openvdb::Vec3SGrid>(diagonal_grid);
     const auto off_diagonal = file.read_as<openvdb::Vec3SGrid>(off_diagonal_grid);
     if (diagonal->transform() != off_diagonal->transform()) {
-        file.fail(fmt::format("grids '{}' and '{}' have different transforms: write both alike",
-                              diagonal_grid, off_diagonal_grid));
+        file.fail("grids '{}' and '{}' have different transforms: write both alike", diagonal_grid,
+                  off_diagonal_grid);
     }
     double finest = largest_magnitude;
     double coarsest = 0;
@@ -173,9 +173,9 @@ AnalyticField tensor_field(const VdbFile& file) {
     }
     if (bad > 0) {
         file.fail(
-            fmt::format("{} of {} tensors are not positive definite, first at voxel {}: are "
-                        "they of lengths, xx yy zz and xy xz yz?",
-                        bad, all, name_of(first_bad)));
+            "{} of {} tensors are not positive definite, first at voxel {}: are "
+            "they of lengths, xx yy zz and xy xz yz?",
+            bad, all, name_of(first_bad));
     }
     return field_of({nullptr, diagonal, off_diagonal}, coarsest, finest);
 }
@@ -187,15 +187,15 @@ AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
     for (auto value = grid->beginValueOn(); value; ++value) {
         const double given = *value;
         if (!std::isfinite(given)) {
-            file.fail(fmt::format("grid '{}' holds {} at voxel {}: give finite numbers", what.grid,
-                                  given, name_of(value.getCoord())));
+            file.fail("grid '{}' holds {} at voxel {}: give finite numbers", what.grid, given,
+                      name_of(value.getCoord()));
         }
         const double h =
             what.density ? length_of_density(given, what.density->finest, what.density->coarsest)
                          : given;
         if (!is_length(h)) {
-            file.fail(fmt::format("grid '{}' holds {} at voxel {}: lengths must be positive",
-                                  what.grid, given, name_of(value.getCoord())));
+            file.fail("grid '{}' holds {} at voxel {}: lengths must be positive", what.grid, given,
+                      name_of(value.getCoord()));
         }
         if (what.density) value.setValue(static_cast<float>(h));
         finest = std::min(finest, h);
@@ -209,12 +209,12 @@ AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
 
 AnalyticField read_vdb_field(const std::filesystem::path& path, const VdbLengths& what) {
     if (what.density && !(is_length(what.density->finest) && is_length(what.density->coarsest))) {
-        throw InputError(fmt::format("lengths {} and {} for densities 1 and 0: give positive ones",
-                                     what.density->finest, what.density->coarsest));
+        refuse("lengths {} and {} for densities 1 and 0: give positive ones", what.density->finest,
+               what.density->coarsest);
     }
     const VdbFile file(path);
     if (!what.grid.empty()) return length_field(file, what);
-    if (what.density) file.fail("name the grid of densities: it holds " + file.listing());
+    if (what.density) file.fail("name the grid of densities: it holds {}", file.listing());
     return tensor_field(file);
 }
 

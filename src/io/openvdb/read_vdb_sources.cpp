@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/VolumeToMesh.h>
@@ -7,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "controlspace/error.h"
 #include "controlspace/io/read_vdb.h"
 #include "io/openvdb/vdb_file.h"
 
@@ -55,7 +53,7 @@ double largest_curvature(const Sampler& grid, const Point& x, double step) {
 
 std::string grid_of(const VdbFile& file, const VdbSurface& surface) {
     if (!surface.grid.empty()) return surface.grid;
-    if (file.grids().size() > 1) file.fail("name one of its grids: it holds " + file.listing());
+    if (file.grids().size() > 1) file.fail("name one of its grids: it holds {}", file.listing());
     return file.grids().front();
 }
 
@@ -67,8 +65,7 @@ double isovalue_of(const VdbFile& file, const openvdb::FloatGrid& grid, const Vd
         case openvdb::GRID_FOG_VOLUME:
             return 0.5;
         default:
-            file.fail(fmt::format("grid '{}' is neither level set nor fog: give the isovalue",
-                                  grid.getName()));
+            file.fail("grid '{}' is neither level set nor fog: give the isovalue", grid.getName());
     }
 }
 
@@ -76,8 +73,8 @@ void require_finite(const VdbFile& file, const openvdb::FloatGrid& grid) {
     for (auto value = grid.cbeginValueOn(); value; ++value) {
         if (std::isfinite(*value)) continue;
         const openvdb::Coord voxel = value.getCoord();
-        file.fail(fmt::format("grid '{}' holds {} at voxel ({}, {}, {}): give finite numbers",
-                              grid.getName(), *value, voxel.x(), voxel.y(), voxel.z()));
+        file.fail("grid '{}' holds {} at voxel ({}, {}, {}): give finite numbers", grid.getName(),
+                  *value, voxel.x(), voxel.y(), voxel.z());
     }
 }
 
@@ -102,8 +99,8 @@ std::vector<PointSource> read_vdb_sources(const std::filesystem::path& path,
     std::vector<openvdb::Vec4I> quads;
     openvdb::tools::volumeToMesh(*grid, vertices, quads, isovalue);
     if (vertices.empty()) {
-        file.fail(fmt::format("grid '{}' has no surface at {}: give another isovalue",
-                              grid->getName(), isovalue));
+        file.fail("grid '{}' has no surface at {}: give another isovalue", grid->getName(),
+                  isovalue);
     }
     const openvdb::Vec3d edges = grid->voxelSize();
     const double voxel = std::min({edges.x(), edges.y(), edges.z()});

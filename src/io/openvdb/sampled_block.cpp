@@ -1,13 +1,11 @@
 #include "io/openvdb/sampled_block.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "controlspace/error.h"
 #include "controlspace/geometry/extent.h"
 #include "controlspace/metric/intersection.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -86,15 +84,12 @@ VoxelLattice voxel_lattice(const Box& domain, double voxel) {
     constexpr double most = 4294967296.0;
     const double longest = require_extent(domain).edges().maxCoeff();
     if (voxel == 0) voxel = longest / default_count;
-    if (!std::isfinite(voxel) || voxel < 0) {
-        throw InputError(fmt::format("a voxel of {}: give a positive edge", voxel));
-    }
+    if (!std::isfinite(voxel) || voxel < 0) refuse("a voxel of {}: give a positive edge", voxel);
     // 2 / 0.02 voxels should be 100, whichever way the quotient is rounded.
     const Vector counts = (domain.edges().array() / voxel * (1 - 1e-12)).ceil().max(1);
     if (!(counts.prod() <= most) || counts.maxCoeff() > most / 4) {
-        throw InputError(fmt::format(
-            "voxels of {} are more than 2^32 in the domain {}: give larger ones (--voxel)", voxel,
-            to_string(domain)));
+        refuse("voxels of {} are more than 2^32 in the domain {}: give larger ones (--voxel)",
+               voxel, to_string(domain));
     }
     VoxelLattice lattice{domain, voxel, {}};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -117,10 +112,10 @@ void sample_block(const ControlSpace& field, const VoxelLattice& lattice,
     for (std::size_t v = 0; v < SampledBlock::size; ++v) {
         if (is_positive_definite(block.metrics[v])) continue;
         const Point& x = points[v];
-        throw InputError(
-            fmt::format("the field at ({}, {}, {}) is {}, which is not positive definite: export "
-                        "another structure",
-                        x.x(), x.y(), x.z(), to_string(block.metrics[v])));
+        refuse(
+            "the field at ({}, {}, {}) is {}, which is not positive definite: export "
+            "another structure",
+            x.x(), x.y(), x.z(), to_string(block.metrics[v]));
     }
     settle(block, whole, 1 + tolerance);
 }

@@ -14,25 +14,22 @@
 
 #include "controlspace/error.h"
 #include "files/output_file.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
 
-// openvdb::io::File writes to a stream of its own and does not look whether the disk took it.
+// openvdb::io::File writes to a stream of its own and does not check for errors such as a full
+// disk.
 class CheckedArchive : public openvdb::io::Archive {
 public:
     explicit CheckedArchive(VdbCompression compression) {
-        switch (compression) {
-            case VdbCompression::blosc:
-                setCompression(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
-                break;
-            case VdbCompression::zip:
-                setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
-                break;
-            case VdbCompression::none:
-                setCompression(openvdb::io::COMPRESS_NONE);
-                break;
-        }
+        namespace io = openvdb::io;
+        const bool is_blosc = compression == VdbCompression::blosc;
+        setCompression(compression == VdbCompression::none
+                           ? io::COMPRESS_NONE
+                           : io::COMPRESS_ACTIVE_MASK |
+                                 (is_blosc ? io::COMPRESS_BLOSC : io::COMPRESS_ZIP));
     }
     void write_to(std::ostream& stream, const openvdb::GridCPtrVec& grids) const {
         write(stream, grids, /*seekable=*/true);
@@ -47,14 +44,13 @@ std::string value_type(openvdb::io::File& file, const std::string& grid) {
     }
 }
 
-/// Names of grids, and what libraries say, may hold anything.
+}  // namespace
+
 std::string one_line(std::string text) {
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c >= '\0' && c < ' '; }, ' ');
+    std::ranges::replace_if(
+        text, [](char c) { return c >= '\0' && c < ' '; }, ' ');
     return text;
 }
-
-}  // namespace
 
 std::uintmax_t write_vdb_file(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
                               VdbCompression compression) {
@@ -70,8 +66,8 @@ std::uintmax_t write_vdb_file(const std::filesystem::path& path, const openvdb::
         bytes = static_cast<std::uintmax_t>(stream.tellp());
         stream.close();
     } catch (const std::ios::failure&) {
-        throw InputError(fmt::format("cannot write {}: {}", path.string(),
-                                     errno != 0 ? std::strerror(errno) : "name a file on a disk"));
+        refuse("cannot write {}: {}", path.string(),
+               errno != 0 ? std::strerror(errno) : "name a file on a disk");
     }
     file.commit();
     return bytes;
@@ -81,7 +77,7 @@ VdbFile::VdbFile(const std::filesystem::path& path) : path_(path) {
     openvdb::initialize();
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) fail("is a directory: name a file");
-    if (!std::ifstream(path)) fail("cannot be read: " + std::string(std::strerror(errno)));
+    if (!std::ifstream(path)) fail("cannot be read: {}", std::strerror(errno));
     try {
         openvdb::io::File file(path.string());
         file.open(/*delayLoad=*/false);
@@ -90,7 +86,7 @@ VdbFile::VdbFile(const std::filesystem::path& path) : path_(path) {
             types_.push_back(value_type(file, *name));
         }
     } catch (const std::exception& error) {
-        fail(fmt::format("is no .vdb file that can be read ({})", error.what()));
+        fail("is no .vdb file that can be read ({})", error.what());
     }
     if (names_.empty()) fail("holds no grid: name another file");
 }
@@ -108,14 +104,14 @@ std::string VdbFile::listing() const {
 }
 
 openvdb::GridBase::Ptr VdbFile::read(std::string_view grid) const {
-    if (!has(grid)) fail(fmt::format("has no grid '{}': it holds {}", grid, listing()));
+    if (!has(grid)) fail("has no grid '{}': it holds {}", grid, listing());
     openvdb::GridBase::Ptr read;
     try {
         openvdb::io::File file(path_.string());
         file.open(/*delayLoad=*/false);
         read = file.readGrid(std::string(grid));
     } catch (const std::exception& error) {
-        fail(fmt::format("grid '{}' cannot be read ({})", grid, error.what()));
+        fail("grid '{}' cannot be read ({})", grid, error.what());
     }
     require_usable(*read);
     return read;
@@ -123,27 +119,23 @@ openvdb::GridBase::Ptr VdbFile::read(std::string_view grid) const {
 
 void VdbFile::require_usable(const openvdb::GridBase& grid) const {
     if (!grid.transform().isLinear()) {
-        fail(fmt::format("grid '{}' has a transform that is not linear ({}): resample it",
-                         grid.getName(), grid.transform().mapType()));
+        fail("grid '{}' has a transform that is not linear ({}): resample it", grid.getName(),
+             grid.transform().mapType());
     }
     const double volume = std::abs(grid.transform().voxelVolume());
     if (!(volume > 0 && std::isfinite(volume))) {
-        fail(fmt::format("grid '{}' has a transform whose voxels have the volume {}: resample it",
-                         grid.getName(), volume));
+        fail("grid '{}' has a transform whose voxels have the volume {}: resample it",
+             grid.getName(), volume);
     }
     if (grid.activeVoxelCount() == 0) {
-        fail(fmt::format("grid '{}' is empty: it has no active voxel", grid.getName()));
+        fail("grid '{}' is empty: it has no active voxel", grid.getName());
     }
     try {
         require_volume(active_box(grid));
     } catch (const InputError& error) {
-        fail(fmt::format("grid '{}' lies where nothing can be computed ({}): resample it",
-                         grid.getName(), error.what()));
+        fail("grid '{}' lies where nothing can be computed ({}): resample it", grid.getName(),
+             error.what());
     }
-}
-
-void VdbFile::fail(const std::string& what) const {
-    throw InputError(fmt::format("{}: {}", path_.string(), one_line(what)));
 }
 
 Box active_box(const openvdb::GridBase& grid) {

@@ -12,6 +12,7 @@
 
 #include "controlspace/geometry/box.h"
 #include "controlspace/io/write_vdb.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -20,7 +21,10 @@ namespace controlspace {
 std::uintmax_t write_vdb_file(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
                               VdbCompression compression);
 
-/// A .vdb file of anybody's. All errors are InputError and name the file.
+/// `text` without control characters, which names of grids and messages of libraries may contain.
+std::string one_line(std::string text);
+
+/// A .vdb file of any program. All errors are InputError and name the file.
 class VdbFile {
 public:
     /// Throws for what cannot be read as .vdb, or holds no grid.
@@ -35,8 +39,8 @@ public:
     typename Grid::Ptr read_as(std::string_view name) const {
         const auto grid = openvdb::gridPtrCast<Grid>(read(name));
         if (!grid) {
-            fail(fmt::format("grid '{}' is not of type {}: it holds {}", name,
-                             openvdb::typeNameAsString<typename Grid::ValueType>(), listing()));
+            fail("grid '{}' is not of type {}: it holds {}", name,
+                 openvdb::typeNameAsString<typename Grid::ValueType>(), listing());
         }
         return grid;
     }
@@ -44,7 +48,10 @@ public:
     std::string listing() const;
     const std::vector<std::string>& grids() const { return names_; }
 
-    [[noreturn]] void fail(const std::string& what) const;
+    template <class... Args>
+    [[noreturn]] void fail(fmt::format_string<Args...> text, Args&&... args) const {
+        refuse_at(path_, "{}", one_line(fmt::format(text, std::forward<Args>(args)...)));
+    }
 
 private:
     /// A grid must have active voxels, and a transform that is linear.

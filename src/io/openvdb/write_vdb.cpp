@@ -19,6 +19,7 @@
 #include "controlspace/input_errors.h"
 #include "io/openvdb/vdb_builder.h"
 #include "io/openvdb/vdb_file.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -36,7 +37,7 @@ std::vector<MetricGrid> chosen_grids(const std::vector<std::string>& names) {
         if (grid == known.end()) {
             std::vector<std::string_view> all;
             for (const MetricGrid& g : known) all.push_back(g.name);
-            throw InputError(fmt::format("unknown grid '{}': give {}", name, fmt::join(all, ", ")));
+            refuse("unknown grid '{}': give {}", name, fmt::join(all, ", "));
         }
         if (std::none_of(chosen.begin(), chosen.end(), named)) chosen.push_back(*grid);
     }
@@ -118,11 +119,11 @@ void require_numbers_hold(const Extremes& lengths, bool half) {
     const double most = half ? 65504 : static_cast<double>(std::numeric_limits<float>::max());
     const double least = half ? 6.2e-5 : static_cast<double>(std::numeric_limits<float>::min());
     if (lengths.finest < least || lengths.longest > most) {
-        throw InputError(
-            fmt::format("lengths from {:.3g} to {:.3g} do not fit the file's numbers, from {:.3g} "
-                        "to {:.3g}: {}",
-                        lengths.finest, lengths.longest, least, most,
-                        half ? "leave out --half" : "use another unit of length"));
+        refuse(
+            "lengths from {:.3g} to {:.3g} do not fit the file's numbers, from {:.3g} "
+            "to {:.3g}: {}",
+            lengths.finest, lengths.longest, least, most,
+            half ? "leave out --half" : "use another unit of length");
     }
 }
 
@@ -184,8 +185,7 @@ void share_trees(const std::vector<MetricGrid>& kinds, const openvdb::GridPtrVec
 VdbReport write_vdb(const std::filesystem::path& path, const ControlSpace& field, const Box& domain,
                     const VdbOptions& options) {
     if (!std::isfinite(options.tolerance) || options.tolerance < 0) {
-        throw InputError(
-            fmt::format("a tolerance of {}: give a finite one, 0 or more", options.tolerance));
+        refuse("a tolerance of {}: give a finite one, 0 or more", options.tolerance);
     }
     const std::vector<MetricGrid> kinds = chosen_grids(options.grids);
     const VoxelLattice lattice = voxel_lattice(domain, options.voxel);

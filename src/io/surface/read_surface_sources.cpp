@@ -1,20 +1,20 @@
 #include "controlspace/io/read_surface_sources.h"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 #include <utility>
 
-#include "controlspace/error.h"
 #include "controlspace/metric/blend.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/order_free_intersection.h"
 #include "io/surface/curvature.h"
 #include "io/surface/facing_walls.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -28,11 +28,10 @@ struct Bounds {
 void require_valid(const CurvatureSizes& sizes) {
     for (const auto& [name, angle] : {std::pair("an", sizes.angle), {"a crease", sizes.crease}}) {
         if (angle > 0 && angle <= 180) continue;
-        throw InputError(fmt::format("{} angle of {}: give one above 0, up to 180", name, angle));
+        refuse("{} angle of {}: give one above 0, up to 180", name, angle);
     }
     if (!is_length(sizes.elements_across)) {
-        throw InputError(fmt::format("{} elements across walls and gaps: give a positive number",
-                                     sizes.elements_across));
+        refuse("{} elements across walls and gaps: give a positive number", sizes.elements_across);
     }
 }
 
@@ -42,9 +41,9 @@ Bounds bounds_of(const std::filesystem::path& path, const CurvatureSizes& sizes,
     constexpr double most_anisotropic = 1e7;  // of metrics that can be intersected
     if (!is_length(bounds.h_min) || !is_length(bounds.h_max) || bounds.h_min > bounds.h_max ||
         bounds.h_max > most_anisotropic * bounds.h_min) {
-        throw InputError(fmt::format(
-            "{}: lengths from {} to {}: give other bounds (--surface-h-min, --surface-h-max)",
-            path.string(), bounds.h_min, bounds.h_max));
+        refuse_at(path,
+                  "lengths from {} to {}: give other bounds (--surface-h-min, --surface-h-max)",
+                  bounds.h_min, bounds.h_max);
     }
     return bounds;
 }
@@ -54,13 +53,7 @@ double shortest(const Metric& m) { return eigen_frame(m).lengths[0]; }
 /// `work` for each number below `count`, in parallel.
 template <class Work>
 void for_each(std::size_t count, const Work& work) {
-    constexpr std::size_t per_task = 64;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, per_task),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                              work(static_cast<std::uint32_t>(i));
-                          }
-                      });
+    tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(count), work);
 }
 
 /// Part of a triangle. Metrics inside are blended linearly, as lengths on a cone are linear.
@@ -135,14 +128,12 @@ private:
 
     /// By the curvatures of its faces, of which all count, or by that which is fitted.
     Metric metric_of_fan(std::uint32_t i) {
-        std::vector<std::uint32_t> faces;
+        std::set<std::uint32_t> faces;
         for (const std::uint32_t t : patches_.fans[i].triangles) {
             for (std::size_t k = 0; k < 3; ++k) {
-                if (patches_.fan_of[t][k] == i) faces.push_back(exact_at(t, k));
+                if (patches_.fan_of[t][k] == i) faces.insert(exact_at(t, k));
             }
         }
-        std::sort(faces.begin(), faces.end());
-        faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
         std::vector<Metric> metrics;
         for (const std::uint32_t face : faces) {
             fitted_[i] = face == SurfaceMesh::unknown;
@@ -236,19 +227,12 @@ private:
             if (!metrics[v].empty()) result.sources.push_back(sources[v]);
         }
         result.skipped = sources.size() - result.sources.size();
-        result.fitted = fitted_vertices();
-        return result;
-    }
-
-    /// Vertices with a fan whose curvature is fitted.
-    std::size_t fitted_vertices() const {
-        std::vector<std::uint32_t> vertices;
+        std::set<std::uint32_t> fitted;
         for (std::size_t i = 0; i < fitted_.size(); ++i) {
-            if (fitted_[i]) vertices.push_back(patches_.fans[i].vertex);
+            if (fitted_[i]) fitted.insert(patches_.fans[i].vertex);
         }
-        std::sort(vertices.begin(), vertices.end());
-        return static_cast<std::size_t>(std::unique(vertices.begin(), vertices.end()) -
-                                        vertices.begin());
+        result.fitted = fitted.size();
+        return result;
     }
 
     const SurfaceMesh& mesh_;

@@ -2,20 +2,19 @@
 
 #include <CGAL/IO/polygon_soup_io.h>
 #include <CGAL/Simple_cartesian.h>
-#include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <exception>
-#include <string>
+#include <set>
 #include <utility>
 
-#include "controlspace/error.h"
-#include "controlspace/geometry/box.h"
 #include "files/text_file.h"
+#include "geometry/extent_of.h"
 #include "geometry/point_order.h"
 #include "io/text/metric_rows.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -26,10 +25,6 @@ struct Soup {
     std::vector<Kernel::Point_3> points;
     std::vector<std::vector<std::size_t>> polygons;
 };
-
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
-    throw InputError(fmt::format("{}: {}", path.string(), what));
-}
 
 Point point(const Soup& soup, std::size_t i) {
     const Kernel::Point_3& p = soup.points[i];
@@ -45,16 +40,16 @@ Soup read_soup(const std::filesystem::path& path) {
                                            CGAL::parameters::verbose(false));
     } catch (const std::exception&) {  // what it says is of CGAL's source
     }
-    if (!read) fail(path, "no surface that can be read: is it cut off, or of another format?");
-    if (soup.polygons.empty()) fail(path, "no polygons: nothing to read");
+    if (!read) refuse_at(path, "no surface that can be read: is it cut off, or of another format?");
+    if (soup.polygons.empty()) refuse_at(path, "no polygons: nothing to read");
     for (std::size_t i = 0; i < soup.points.size(); ++i) {
         require_coordinates(point(soup, i), "vertex", i + 1, [&] { return path.string(); });
     }
     for (std::size_t i = 0; i < soup.polygons.size(); ++i) {
         for (const std::size_t corner : soup.polygons[i]) {
             if (corner < soup.points.size()) continue;
-            fail(path, fmt::format("polygon {} has a corner that is none of the {} vertices", i + 1,
-                                   soup.points.size()));
+            refuse_at(path, "polygon {} has a corner that is none of the {} vertices", i + 1,
+                      soup.points.size());
         }
     }
     return soup;
@@ -79,19 +74,11 @@ double height(const Point& a, const Point& b, const Point& c) {
 
 /// Leaves out later triangles with the vertices of an earlier one.
 void remove_copies(std::vector<std::array<std::uint32_t, 3>>& triangles) {
-    using Key = std::pair<std::array<std::uint32_t, 3>, std::size_t>;
-    std::vector<Key> keys;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        keys.emplace_back(triangles[t], t);
-        std::sort(keys.back().first.begin(), keys.back().first.end());
-    }
-    std::sort(keys.begin(), keys.end());
-    const auto same = [](const Key& a, const Key& b) { return a.first == b.first; };
-    keys.erase(std::unique(keys.begin(), keys.end(), same), keys.end());
-    std::sort(keys.begin(), keys.end(),
-              [](const Key& a, const Key& b) { return a.second < b.second; });
-    for (std::size_t i = 0; i < keys.size(); ++i) triangles[i] = triangles[keys[i].second];
-    triangles.resize(keys.size());
+    std::set<std::array<std::uint32_t, 3>> seen;
+    std::erase_if(triangles, [&](std::array<std::uint32_t, 3> triangle) {
+        std::ranges::sort(triangle);
+        return !seen.insert(triangle).second;
+    });
 }
 
 }  // namespace
@@ -99,12 +86,8 @@ void remove_copies(std::vector<std::array<std::uint32_t, 3>>& triangles) {
 SurfaceMesh read_surface_mesh(const std::filesystem::path& path) {
     const Soup soup = read_soup(path);
     SurfaceMesh mesh{.vertices = places_of(soup), .triangles = {}};
-    if (mesh.vertices.empty()) fail(path, "polygons without corners: nothing to read");
-    Box extent{mesh.vertices.front(), mesh.vertices.front()};
-    for (const Point& p : mesh.vertices) {
-        extent = {extent.low.cwiseMin(p), extent.high.cwiseMax(p)};
-    }
-    mesh.diagonal = extent.edges().norm();
+    if (mesh.vertices.empty()) refuse_at(path, "polygons without corners: nothing to read");
+    mesh.diagonal = extent_of(mesh.vertices).edges().norm();
     const auto vertex = [&](std::size_t corner) {
         const auto place = std::lower_bound(mesh.vertices.begin(), mesh.vertices.end(),
                                             point(soup, corner), precedes);
@@ -120,7 +103,7 @@ SurfaceMesh read_surface_mesh(const std::filesystem::path& path) {
             mesh.triangles.push_back({a, b, c});
         }
     }
-    if (mesh.triangles.empty()) fail(path, "no triangle has an area: nothing to read");
+    if (mesh.triangles.empty()) refuse_at(path, "no triangle has an area: nothing to read");
     remove_copies(mesh.triangles);
     return mesh;
 }

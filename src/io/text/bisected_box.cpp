@@ -1,12 +1,11 @@
 #include "io/text/bisected_box.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "controlspace/error.h"
+#include "geometry/extent_of.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -128,21 +127,17 @@ void BisectedBox::refine_to(const Box& cell, const Point& x) {
     constexpr double rounding = 1 + 1e-9;
     Place place = place_of(x);
     const auto is_large = [&] {
-        const Corners& c = all_[place.tetrahedron].corners;
-        Point low = points_[c[0]], high = low;
-        for (const std::uint32_t i : c) {
-            low = low.cwiseMin(points_[i]);
-            high = high.cwiseMax(points_[i]);
-        }
-        return ((high - low).array() > rounding * cell.edges().array()).any();
+        const Box box =
+            extent_of(all_[place.tetrahedron].corners, [&](std::uint32_t i) { return points_[i]; });
+        return (box.edges().array() > rounding * cell.edges().array()).any();
     };
     constexpr std::size_t most_points = 20'000'000;
     while (is_large()) {
         if (points_.size() >= most_points) {
-            throw InputError(
-                fmt::format("a mesh of tetrahedra as small as the cells has more than {} points: "
-                            "give a coarser structure, or another format",
-                            most_points));
+            refuse(
+                "a mesh of tetrahedra as small as the cells has more than {} points: "
+                "give a coarser structure, or another format",
+                most_points);
         }
         bisect(place.tetrahedron);
         descend(place);

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "controlspace/error.h"
 #include "controlspace/geometry/extent.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -34,7 +34,7 @@ bool cut_by_face(const Box& region, const Box& element, Box& low, Box& high) {
 
 Box cell_of(const ControlSpace& space, const Point& x) {
     const auto cell = space.cell_at(x);
-    if (!cell) throw InputError("this field has no cells: write a slice of it");
+    if (!cell) refuse("this field has no cells: write a slice of it");
     return *cell;
 }
 

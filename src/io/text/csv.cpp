@@ -9,12 +9,12 @@
 #include <optional>
 #include <string>
 
-#include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
 #include "files/output_file.h"
 #include "files/text_file.h"
 #include "io/text/metric_rows.h"
 #include "io/text/scanner.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -43,12 +43,8 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::vector<std::string_view> fields_of(std::string_view line) {
-    std::vector<std::string_view> fields;
-    for (std::size_t begin = 0; begin <= line.size();) {
-        const std::size_t end = std::min(line.find(',', begin), line.size());
-        fields.push_back(trimmed(line.substr(begin, end - begin)));
-        begin = end + 1;
-    }
+    std::vector<std::string_view> fields = split(line, ',');
+    for (std::string_view& field : fields) field = trimmed(field);
     return fields;
 }
 
@@ -65,7 +61,10 @@ public:
 
     const Columns& form() const { return form_; }
     std::string where() const { return text_.where(); }
-    [[noreturn]] void fail(const std::string& what) const { text_.fail(what); }
+    template <class... Args>
+    [[noreturn]] void fail(fmt::format_string<Args...> text, Args&&... args) const {
+        text_.fail(text, std::forward<Args>(args)...);
+    }
 
     /// The next row; none at the end.
     const Values* next() {
@@ -73,17 +72,17 @@ public:
         if (!line) return nullptr;
         const std::vector<std::string_view> fields = fields_of(*line);
         if (fields.size() != name_of_column_.size()) {
-            fail(fmt::format("{} columns instead of {}", fields.size(), name_of_column_.size()));
+            fail("{} columns instead of {}", fields.size(), name_of_column_.size());
         }
         for (std::size_t column = 0; column < fields.size(); ++column) {
             const std::size_t name = name_of_column_[column];
             if (name == absent) continue;
             if (!parse_number(fields[column], values_[name])) {
-                fail(fmt::format("{} = {} is not a number", names[name], quote(fields[column])));
+                fail("{} = {} is not a number", names[name], quote(fields[column]));
             }
             if (!is_coordinate(values_[name])) {
-                fail(fmt::format("{} = {}: give a finite number, of at most {:.0e}", names[name],
-                                 values_[name], largest_magnitude));
+                fail("{} = {}: give a finite number, of at most {:.0e}", names[name], values_[name],
+                     largest_magnitude);
             }
         }
         return &values_;
@@ -109,10 +108,10 @@ private:
             name_of_column_.push_back(ignored ? absent : index);
             if (ignored) continue;
             if (index == absent) {
-                fail(fmt::format("column {} is none of {}: name the columns in the first line",
-                                 quote(name), fmt::join(names, " ")));
+                fail("column {} is none of {}: name the columns in the first line", quote(name),
+                     fmt::join(names, " "));
             }
-            if (present[index]) fail(fmt::format("column '{}' is there twice: drop one", name));
+            if (present[index]) fail("column '{}' is there twice: drop one", name);
             present[index] = true;
         }
         for (const Columns& c : {position, size, tensor, frame}) {
@@ -120,10 +119,10 @@ private:
             const auto end = begin + static_cast<std::ptrdiff_t>(c.count);
             if (c != position && std::find(begin, end, true) == end) continue;
             if (const auto missing = std::find(begin, end, false); missing != end) {
-                fail(fmt::format("column '{}' is missing{}",
-                                 names[static_cast<std::size_t>(missing - present.begin())],
-                                 c == position ? ": name the columns in the first line"
-                                               : " beside the others of its kind"));
+                fail("column '{}' is missing{}",
+                     names[static_cast<std::size_t>(missing - present.begin())],
+                     c == position ? ": name the columns in the first line"
+                                   : " beside the others of its kind");
             }
             if (c == position) continue;
             if (form_.count > 0) {
@@ -151,8 +150,8 @@ Metric metric_in_frame(std::span<const double> v, const Table& table) {
         table.fail("direction e1 or e2 is zero: give two directions");
     }
     if (std::abs(e1.dot(given)) > orthogonal) {
-        table.fail(fmt::format("e1 and e2 are not orthogonal: the cosine of their angle is {:.3g}",
-                               e1.dot(given)));
+        table.fail("e1 and e2 are not orthogonal: the cosine of their angle is {:.3g}",
+                   e1.dot(given));
     }
     const Vector e2 = (given - e1.dot(given) * e1).normalized();
     Eigen::Matrix3d directions;
@@ -163,7 +162,7 @@ Metric metric_in_frame(std::span<const double> v, const Table& table) {
 }
 
 [[noreturn]] void fail_empty(const std::filesystem::path& path, std::string_view what) {
-    throw InputError(fmt::format("{} holds no {}: add some lines", path.string(), what));
+    refuse("{} holds no {}: add some lines", path.string(), what);
 }
 
 }  // namespace
@@ -179,15 +178,12 @@ std::vector<PointSource> parse_csv_sources(std::string_view text,
         PointSource& source = sources.emplace_back();
         source.position = Point(row->data());
         source.growth = (*row)[growth];
-        if (!is_source_growth(source.growth)) {
-            table.fail(fmt::format("g = {}: {}", source.growth, growth_rule));
-        }
+        if (!is_source_growth(source.growth)) table.fail("g = {}: {}", source.growth, growth_rule);
         std::span<const double> v = std::span(*row).subspan(table.form().first);
         const std::size_t lengths = table.form() == size ? 1 : table.form() == frame ? 3 : 0;
         for (std::size_t i = 0; i < lengths; ++i) {
             if (is_length(v[i])) continue;
-            table.fail(
-                fmt::format("{} = {}: {}", names[table.form().first + i], v[i], length_rule));
+            table.fail("{} = {}: {}", names[table.form().first + i], v[i], length_rule);
         }
         if (table.form() == size) {
             source.metric = Metric::isotropic(v[0]);

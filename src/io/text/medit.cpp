@@ -1,15 +1,13 @@
 #include "io/text/medit.h"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <string>
 #include <vector>
 
-#include "controlspace/error.h"
 #include "files/text_file.h"
 #include "io/text/medit_file.h"
 #include "io/text/metric_rows.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -45,11 +43,11 @@ std::vector<Metric> parse_medit_metrics(std::string_view bytes, const std::files
     MeditReader file(bytes, path);
     const std::size_t rows = file.find(medit_solution, 1, 0);
     const std::int64_t fields = file.integer("SolAtVertices");
-    if (fields != one_field) file.fail(fmt::format("{} fields: give a file with one", fields));
+    if (fields != one_field) file.fail("{} fields: give a file with one", fields);
     const std::int64_t type = file.integer("the number of fields");
     if (type != scalar && type != symmetric_tensor) {
-        file.fail(fmt::format(
-            "field of type {}: give scalars (1), which are sizes, or symmetric tensors (3)", type));
+        file.fail("field of type {}: give scalars (1), which are sizes, or symmetric tensors (3)",
+                  type);
     }
     const char* const what = type == scalar ? "size" : "tensor";
     std::vector<double> numbers(type == scalar ? 1 : medit_tensor.numbers);
@@ -70,10 +68,10 @@ std::vector<PointSource> read_medit_sources(const std::filesystem::path& mesh,
     const std::vector<Point> vertices = read_medit_vertices(mesh);
     const std::vector<Metric> metrics = parse_medit_metrics(read_binary_file(solution), solution);
     if (vertices.size() != metrics.size()) {
-        throw InputError(
-            fmt::format("{} has {} vertices, and {} has sizes for {}: give two files "
-                        "that belong together",
-                        mesh.string(), vertices.size(), solution.string(), metrics.size()));
+        refuse(
+            "{} has {} vertices, and {} has sizes for {}: give two files "
+            "that belong together",
+            mesh.string(), vertices.size(), solution.string(), metrics.size());
     }
     return sources_from(vertices, metrics);
 }
@@ -94,9 +92,7 @@ std::vector<PointSource> read_medit_required_edges(const std::filesystem::path& 
             static_cast<std::size_t>(required.integer({"required edge", i}, most)) - 1;
         const auto [from, to] = edges[edge];
         const double length = (vertices[to] - vertices[from]).norm();
-        if (!is_length(length)) {
-            required.fail(fmt::format("edge {} has the length {}", edge + 1, length));
-        }
+        if (!is_length(length)) required.fail("edge {} has the length {}", edge + 1, length);
         for (const std::size_t end : {from, to}) {
             at[end].sum += length;
             ++at[end].count;

@@ -1,12 +1,10 @@
 #include "io/text/medit_file.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <limits>
 
-#include "controlspace/error.h"
 #include "files/text_file.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -37,9 +35,7 @@ MeditReader::MeditReader(std::string_view bytes, const std::filesystem::path& pa
         fail("does not start with MeshVersionFormatted: give a Medit file");
     }
     version_ = integer(false, "the version");
-    if (version_ < 1 || version_ > 4) {
-        fail(fmt::format("the version is {}: only 1 to 4 can be read", version_));
-    }
+    if (version_ < 1 || version_ > 4) fail("the version is {}: only 1 to 4 can be read", version_);
 }
 
 bool MeditReader::next_block() {
@@ -54,8 +50,8 @@ bool MeditReader::next_block() {
     const std::int64_t next = integer(version_ >= 3, "the place of the next keyword");
     if (next != 0 && (next < 0 || static_cast<std::uint64_t>(next) < data_.at() ||
                       static_cast<std::uint64_t>(next) > bytes_.size())) {
-        fail(fmt::format("the next keyword is said to be at byte {} of {}: is it cut off?", next,
-                         bytes_.size()));
+        fail("the next keyword is said to be at byte {} of {}: is it cut off?", next,
+             bytes_.size());
     }
     next_ = static_cast<std::size_t>(next);
     if (next_ != 0) data_.set_end(next_);
@@ -72,13 +68,13 @@ std::size_t MeditReader::find(const MeditKeyword& keyword, std::size_t reals,
     while (next_block()) {
         if (is_at(dimension)) {
             const std::int64_t n = integer(false, "Dimension");
-            if (n != 3) fail(fmt::format("Dimension is {}: only 3 can be read", n));
+            if (n != 3) fail("Dimension is {}: only 3 can be read", n);
             is_3d = true;
         }
         if (!is_at(keyword)) continue;
-        if (!is_3d) fail(fmt::format("no Dimension before {}: add 'Dimension 3'", keyword.word));
+        if (!is_3d) fail("no Dimension before {}: add 'Dimension 3'", keyword.word);
         const std::int64_t rows = integer(version_ >= 4, keyword.word);
-        if (rows <= 0) fail(fmt::format("{} {}: nothing to read", keyword.word, rows));
+        if (rows <= 0) fail("{} {}: nothing to read", keyword.word, rows);
         const std::size_t row_bytes =
             data_.is_binary() ? reals * (version_ == 1 ? sizeof(float) : sizeof(double)) +
                                     integers * (version_ >= 4 ? 8 : 4)
@@ -86,8 +82,7 @@ std::size_t MeditReader::find(const MeditKeyword& keyword, std::size_t reals,
         data_.require_room(keyword.word, static_cast<std::uint64_t>(rows), row_bytes);
         return static_cast<std::size_t>(rows);
     }
-    throw InputError(
-        fmt::format("{} has no {}: give a file that has", data_.path().string(), keyword.word));
+    refuse("{} has no {}: give a file that has", data_.path().string(), keyword.word);
 }
 
 std::int64_t MeditReader::integer(bool wide, const Part& part) {
@@ -99,15 +94,13 @@ double MeditReader::number(const Part& part) {
     const double x = data_.is_binary() && version_ == 1
                          ? static_cast<double>(data_.number<float>(part))
                          : data_.number<double>(part);
-    if (!std::isfinite(x)) fail(fmt::format("{} has {}, not finite", part.text(), x));
+    if (!std::isfinite(x)) fail("{} has {}, not finite", part.text(), x);
     return x;
 }
 
 std::int64_t MeditReader::integer(const Part& part, std::int64_t most) {
     const std::int64_t n = integer(version_ >= 4, part);
-    if (n < 1 || n > most) {
-        fail(fmt::format("{}: {} is not one of 1 to {}", part.text(), n, most));
-    }
+    if (n < 1 || n > most) fail("{}: {} is not one of 1 to {}", part.text(), n, most);
     return n;
 }
 

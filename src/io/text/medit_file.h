@@ -50,7 +50,10 @@ public:
     void skip_reference(const Part& part);
 
     std::string where() const { return data_.where(); }
-    [[noreturn]] void fail(std::string_view what) const { data_.fail(what); }
+    template <class... Args>
+    [[noreturn]] void fail(fmt::format_string<Args...> text, Args&&... args) const {
+        data_.fail(text, std::forward<Args>(args)...);
+    }
 
 private:
     /// Reads the head of the next block: whether it is that of `keyword`, of the dimension or
@@ -73,7 +76,7 @@ std::vector<std::array<std::uint32_t, n>> read_medit_elements(std::string_view b
                                                               const std::filesystem::path& path,
                                                               const MeditKeyword& keyword,
                                                               std::size_t vertices) {
-    // Elements stand in any order in the file: each kind is searched for from its beginning.
+    // Blocks of elements may be in any order: each kind is searched for from the beginning.
     MeditReader file(bytes, path);
     const auto most = static_cast<std::int64_t>(vertices);
     std::vector<std::array<std::uint32_t, n>> elements(file.find(keyword, 0, n + 1));

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "controlspace/sources/riemannian.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -36,8 +37,7 @@ std::array<double, 9> numbers_of(const Metric& m, const TensorLayout& layout) {
 void MetricRows::add(std::span<const double> numbers) {
     if (numbers.size() == 1) {
         if (!is_length(numbers[0])) {
-            throw InputError(fmt::format("{}: size {} is {}: {}", where_(), count() + 1, numbers[0],
-                                         length_rule));
+            refuse("{}: size {} is {}: {}", where_(), count() + 1, numbers[0], length_rule);
         }
         metrics_.push_back(Metric::isotropic(numbers[0]));
         return;
@@ -48,8 +48,8 @@ void MetricRows::add(std::span<const double> numbers) {
         for (const double x : numbers) largest = std::max(largest, std::abs(x));
         for (const auto& [i, j] : opposite) {
             if (!(std::abs(numbers[i] - numbers[j]) > negligible * largest)) continue;
-            throw InputError(fmt::format("{}: tensor {} is not symmetric: {} and {} differ",
-                                         where_(), count() + 1, numbers[i], numbers[j]));
+            refuse("{}: tensor {} is not symmetric: {} and {} differ", where_(), count() + 1,
+                   numbers[i], numbers[j]);
         }
     }
     const auto entry = [&](std::size_t i) { return numbers[layout_.indices[i]]; };
@@ -77,10 +77,10 @@ void require_coordinates(const Point& x, std::string_view what, std::size_t numb
                          const std::function<std::string()>& where) {
     for (const double c : x) {
         if (is_coordinate(c)) continue;
-        throw InputError(
-            fmt::format("{}: {} {} has a coordinate {}: give finite ones, of at most "
-                        "{:.0e}",
-                        where(), what, number, c, largest_magnitude));
+        refuse(
+            "{}: {} {} has a coordinate {}: give finite ones, of at most "
+            "{:.0e}",
+            where(), what, number, c, largest_magnitude);
     }
 }
 

@@ -1,7 +1,5 @@
 #include "io/text/msh.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -9,10 +7,10 @@
 #include <unordered_map>
 #include <utility>
 
-#include "controlspace/error.h"
 #include "files/text_file.h"
 #include "io/text/metric_rows.h"
 #include "io/text/scanner.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -52,11 +50,8 @@ public:
 
     std::vector<PointSource> sources(const std::string& view) {
         const std::filesystem::path& path = file_.path();
-        const auto fail = [&](const std::string& what) {
-            throw InputError(fmt::format("{}: {}", path.string(), what));
-        };
         if (of_nodes_.empty() && of_elements_.empty()) {
-            fail("no $NodeData or $ElementData: save a view with the mesh");
+            refuse_at(path, "no $NodeData or $ElementData: save a view with the mesh");
         }
         const bool at_nodes = view.empty()
                                   ? !of_nodes_.empty()
@@ -71,10 +66,10 @@ public:
         const std::string& chosen = names[chosen_array(path, "views", names, view)];
         const View& data = (at_nodes ? of_nodes_ : of_elements_).at(chosen);
         if (data.components != 1 && data.components != matrix_rows.numbers) {
-            fail(fmt::format("{} components: give 1 (sizes) or 9 (tensors)", data.components));
+            refuse_at(path, "{} components: give 1 (sizes) or 9 (tensors)", data.components);
         }
         const char* what = at_nodes ? "node" : "element";
-        if (data.rows.empty()) fail(fmt::format("no data at any {}: nothing to read", what));
+        if (data.rows.empty()) refuse_at(path, "no data at any {}: nothing to read", what);
         if (!at_nodes) read_elements(data);
         const auto& places = at_nodes ? nodes_ : centres_;
         const auto where = [&] { return path.string(); };
@@ -83,7 +78,7 @@ public:
         for (const auto& [tag, row] : data.rows) {
             const auto position = places.find(tag);
             if (position == places.end()) {
-                fail(fmt::format("data for {} {}, which is not there", what, tag));
+                refuse_at(path, "data for {} {}, which is not there", what, tag);
             }
             require_coordinates(position->second, what, tag, where);
             positions.push_back(position->second);
@@ -98,8 +93,7 @@ private:
         file_.line();
         const std::string_view version = file_.word(), type = file_.word();
         if (version != "4.1") {
-            file_.fail(
-                fmt::format("format {}: only 4.1 can be read, save it as that", quote(version)));
+            file_.fail("format {}: only 4.1 can be read, save it as that", quote(version));
         }
         if (file_.word() != "8") file_.fail("numbers of another size than 8: save it here");
         if (type != "1") return;
@@ -146,7 +140,7 @@ private:
             file_.number<std::int32_t>("a block");  // the entity
             const bool parametric = file_.number<std::int32_t>("a block") != 0;
             const auto n = count();
-            if (n > left) file_.fail(fmt::format("a block of {}, but {} are left", n, left));
+            if (n > left) file_.fail("a block of {}, but {} are left", n, left);
             left -= n;
             std::vector<std::uint64_t> tags(n);
             for (auto& tag : tags) tag = count();
@@ -157,7 +151,7 @@ private:
                 nodes_.emplace(tag, x);
             }
         }
-        if (left > 0) file_.fail(fmt::format("{} are in no block: {} left", section_, left));
+        if (left > 0) file_.fail("{} are in no block: {} left", section_, left);
     }
 
     /// The centres of the elements that have data: means of their nodes.
@@ -173,8 +167,7 @@ private:
             const auto type = file_.number<std::int32_t>("a block");
             const std::size_t nodes = nodes_of_element(type);
             if (nodes == 0) {
-                file_.fail(
-                    fmt::format("elements of the unknown type {}: save it without them", type));
+                file_.fail("elements of the unknown type {}: save it without them", type);
             }
             const auto n = count();
             file_.require_room(section_, n, least);
@@ -186,7 +179,7 @@ private:
                     const auto node = nodes_.find(count());
                     if (!is_needed) continue;
                     if (node == nodes_.end()) {
-                        file_.fail(fmt::format("element {} has a node that is not there", tag));
+                        file_.fail("element {} has a node that is not there", tag);
                     }
                     sum += node->second;
                 }
@@ -224,7 +217,7 @@ private:
             std::vector<double>& row = view.rows[tag];
             if (!row.empty()) {
                 const char* what = &views == &of_nodes_ ? "node" : "element";
-                file_.fail(fmt::format("{} {} has two values", what, tag));
+                file_.fail("{} {} has two values", what, tag);
             }
             for (std::uint64_t c = 0; c < components; ++c) {
                 row.push_back(file_.number<double>(section_));

@@ -10,9 +10,9 @@
 #include <memory>
 #include <string_view>
 
-#include "controlspace/error.h"
 #include "files/text_file.h"
 #include "io/text/metric_rows.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -24,21 +24,17 @@ static_assert(std::endian::native == std::endian::little, "the files say so");
 // Python.
 constexpr std::string_view magic("\x93NUMPY\x01\x00", 8);
 
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
-    throw InputError(fmt::format("{}: {}", path.string(), what));
-}
-
 /// A file that is read from front to back.
 class Bytes {
 public:
     explicit Bytes(const std::filesystem::path& path)
         : path_(path), file_(std::fopen(path.string().c_str(), "rb"), &std::fclose) {
-        if (!file_) fail(path, fmt::format("cannot read: {}", std::strerror(errno)));
+        if (!file_) refuse_at(path, "cannot read: {}", std::strerror(errno));
     }
     void read(void* to, std::size_t count) {
         if (std::fread(to, 1, count, file_.get()) == count) return;
-        if (std::ferror(file_.get()) != 0) fail(path_, std::strerror(errno));
-        fail(path_, "it is cut off: save it again by numpy.save");
+        if (std::ferror(file_.get()) != 0) refuse_at(path_, "{}", std::strerror(errno));
+        refuse_at(path_, "it is cut off: save it again by numpy.save");
     }
     std::string text(std::size_t count) {
         std::string text(count, ' ');
@@ -69,18 +65,18 @@ Shape read_header(Bytes& bytes, const std::filesystem::path& path) {
     const std::string start = bytes.text(magic.size());
     const auto version = static_cast<unsigned char>(start[6]);
     if (start.substr(0, 6) != magic.substr(0, 6) || version < 1 || version > 3) {
-        fail(path, "it is no array of NumPy: save it by numpy.save");
+        refuse_at(path, "it is no array of NumPy: save it by numpy.save");
     }
     std::uint32_t size = 0;
     bytes.read(&size, version == 1 ? 2 : 4);
     constexpr std::uint32_t most = 1 << 16;
-    if (size > most) fail(path, "its header is damaged: save it again by numpy.save");
+    if (size > most) refuse_at(path, "its header is damaged: save it again by numpy.save");
     const std::string header = bytes.text(size);
     if (value_of(header, "descr", ",") != "'<f8'") {
-        fail(path, "it holds no doubles: save array.astype('<f8')");
+        refuse_at(path, "it holds no doubles: save array.astype('<f8')");
     }
     if (value_of(header, "fortran_order", ",") != "False") {
-        fail(path, "it is stored by columns: save numpy.ascontiguousarray(array)");
+        refuse_at(path, "it is stored by columns: save numpy.ascontiguousarray(array)");
     }
     Shape shape;
     const std::string_view both = value_of(header, "shape", ")");  // "(2, 5"
@@ -89,26 +85,24 @@ Shape read_header(Bytes& bytes, const std::filesystem::path& path) {
                          parse_number(both.substr(1, comma - 1), shape.rows) &&
                          parse_number(both.substr(comma + 2), shape.columns);
     if (!are_two || (shape.columns != 4 && shape.columns != 5) || shape.rows == 0) {
-        fail(path, fmt::format("its shape is {}): give rows x, y, z, h or x, y, z, h, g", both));
+        refuse_at(path, "its shape is {}): give rows x, y, z, h or x, y, z, h, g", both);
     }
     return shape;
 }
 
 PointSource source_of(std::span<const double> row, std::size_t index,
                       const std::filesystem::path& path) {
-    const auto refuse = [&](std::string_view name, double value, std::string_view rule) {
-        throw InputError(
-            fmt::format("{}, row {}: {} = {}: {}", path.string(), index, name, value, rule));
+    const auto require = [&](bool fits, std::string_view name, double value,
+                             std::string_view rule) {
+        if (!fits) refuse("{}, row {}: {} = {}: {}", path.string(), index, name, value, rule);
     };
     for (std::size_t a = 0; a < 3; ++a) {
-        if (!is_coordinate(row[a])) {
-            refuse(std::string_view("xyz").substr(a, 1), row[a],
-                   "give a finite number, of at most 1e+50");
-        }
+        require(is_coordinate(row[a]), std::string_view("xyz").substr(a, 1), row[a],
+                "give a finite number, of at most 1e+50");
     }
-    if (!is_length(row[3])) refuse("h", row[3], length_rule);
+    require(is_length(row[3]), "h", row[3], length_rule);
     const double growth = row.size() > 4 ? row[4] : 0;
-    if (!is_source_growth(growth)) refuse("g", growth, growth_rule);
+    require(is_source_growth(growth), "g", growth, growth_rule);
     return {Point(row.data()), Metric::isotropic(row[3]), growth};
 }
 
@@ -133,8 +127,8 @@ std::vector<PointSource> read_npy_sources(const std::filesystem::path& path) {
     const std::uintmax_t numbers =
         (std::filesystem::file_size(path) - bytes.position()) / sizeof(double);
     if (numbers / columns < rows) {
-        fail(path, fmt::format("it has {} of {} rows: save it again by numpy.save",
-                               numbers / columns, rows));
+        refuse_at(path, "it has {} of {} rows: save it again by numpy.save", numbers / columns,
+                  rows);
     }
     std::vector<PointSource> sources;
     sources.reserve(rows);

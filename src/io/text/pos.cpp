@@ -6,11 +6,11 @@
 #include <array>
 #include <set>
 
-#include "controlspace/error.h"
 #include "files/output_file.h"
 #include "files/text_file.h"
 #include "io/text/metric_rows.h"
 #include "io/text/scanner.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -37,8 +37,7 @@ public:
         }
         if (names_.empty()) text_.fail("no View: give a list view of Gmsh");
         chosen_array(text_.path(), "views", names_, view_);
-        if (places_.empty())
-            throw InputError(text_.path().string() + " holds no sources: add some");
+        if (places_.empty()) refuse("{} holds no sources: add some", text_.path().string());
         return sources_from(places_, metrics_.take());
     }
 
@@ -59,8 +58,8 @@ private:
         const bool is_scalar = word.starts_with('S');
         const std::size_t corners = word.size() == 2 ? corners_of(word[1]) : 0;
         if ((!is_scalar && !word.starts_with('T')) || corners == 0) {
-            text_.fail(fmt::format(
-                "{} is no element of scalars or tensors (SP, TP, SS, TS and such)", quote(word)));
+            text_.fail("{} is no element of scalars or tensors (SP, TP, SS, TS and such)",
+                       quote(word));
         }
         text_.expect(word);
         const std::size_t numbers = is_scalar ? 1 : matrix_rows.numbers;
@@ -87,9 +86,9 @@ private:
         text_.expect(close);
         if (numbers.size() != count) {
             text_.fail(
-                fmt::format("{} numbers instead of {}: of one step in time, and of first "
-                            "order",
-                            numbers.size(), count));
+                "{} numbers instead of {}: of one step in time, and of first "
+                "order",
+                numbers.size(), count);
         }
     }
 
@@ -110,23 +109,17 @@ private:
     MetricRows metrics_;
 };
 
-/// Without those that repeat an earlier one.
-std::vector<PointSource> without_repeated(const std::vector<PointSource>& sources) {
-    std::set<std::array<double, 9>> seen;
-    std::vector<PointSource> kept;
-    for (const auto& [p, m, growth] : sources) {
-        if (seen.insert({p.x(), p.y(), p.z(), m.xx, m.yy, m.zz, m.xy, m.xz, m.yz}).second) {
-            kept.push_back({p, m});
-        }
-    }
-    return kept;
-}
-
 }  // namespace
 
 std::vector<PointSource> parse_pos_sources(std::string_view text, const std::filesystem::path& path,
                                            const std::string& view) {
-    return without_repeated(Parser(text, path, view).sources());
+    std::vector<PointSource> sources = Parser(text, path, view).sources();
+    std::set<std::array<double, 9>> seen;
+    std::erase_if(sources, [&](const PointSource& source) {
+        const auto& [p, m, growth] = source;
+        return !seen.insert({p.x(), p.y(), p.z(), m.xx, m.yy, m.zz, m.xy, m.xz, m.yz}).second;
+    });
+    return sources;
 }
 
 std::vector<PointSource> read_pos_sources(const std::filesystem::path& path,

@@ -53,9 +53,7 @@ std::vector<Metric> at_places(const ControlSpace& space, std::span<const Box> bo
             x.push_back(place + inside * (box.centre() - place));
         }
     }
-    std::vector<Metric> metrics(x.size());
-    sample_parallel(space, x, metrics);
-    return metrics;
+    return sample_parallel(space, x);
 }
 
 /// The cells of a view of a structure. Those where the view is off are halved.

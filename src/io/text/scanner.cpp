@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "controlspace/error.h"
-
 namespace controlspace {
 
 void Scanner::skip_blanks() {
@@ -44,15 +42,13 @@ bool Scanner::accept(std::string_view what) {
 void Scanner::expect(std::string_view what) {
     if (accept(what)) return;
     const std::string_view found = rest().substr(0, 12);
-    fail(fmt::format("'{}' expected, {} found", what,
-                     found.empty() ? "the end of the file" : quote(found)));
+    fail("'{}' expected, {} found", what, found.empty() ? "the end of the file" : quote(found));
 }
 
 void Scanner::require_room(std::string_view what, std::uint64_t count, std::size_t bytes) const {
     const std::size_t most = rest().size() / bytes;
     if (count <= most) return;
-    fail(fmt::format("{} {}, but the file can hold {} there at most: is it cut off?", what, count,
-                     most));
+    fail("{} {}, but the file can hold {} there at most: is it cut off?", what, count, most);
 }
 
 std::string Scanner::where() const {
@@ -62,22 +58,18 @@ std::string Scanner::where() const {
                  1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')));
 }
 
-void Scanner::fail(std::string_view what) const {
-    throw InputError(fmt::format("{}: {}", where(), what));
-}
-
 std::string Part::text() const {
     return row ? fmt::format("{} {}", name, *row + 1) : std::string(name);
 }
 
 void Scanner::fail_end_within(const Part& part) const {
-    fail(fmt::format("the data end within {}: is it cut off?", part.text()));
+    fail("the data end within {}: is it cut off?", part.text());
 }
 
 void Scanner::fail_number(const Part& part, std::string_view word, bool is_integral) const {
     if (rest().empty() && word.empty()) fail_end_within(part);
-    fail(fmt::format("{}: {} {}", part.text(), quote(word),
-                     is_integral ? "instead of a count" : "is not a number"));
+    fail("{}: {} {}", part.text(), quote(word),
+         is_integral ? "instead of a count" : "is not a number");
 }
 
 }  // namespace controlspace

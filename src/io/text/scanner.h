@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "files/text_file.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -91,7 +92,10 @@ public:
 
     /// "name:line" or "name, byte n".
     std::string where() const;
-    [[noreturn]] void fail(std::string_view what) const;
+    template <class... Args>
+    [[noreturn]] void fail(fmt::format_string<Args...> text, Args&&... args) const {
+        refuse_at(where(), text, std::forward<Args>(args)...);
+    }
 
 private:
     [[noreturn]] void fail_end_within(const Part& part) const;

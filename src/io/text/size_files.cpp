@@ -1,21 +1,19 @@
 // Lengths on regular grids (Gmsh's Structured, JIGSAW's EUCLIDEAN-GRID), and at points (Netgen).
 #include "io/text/size_files.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "controlspace/error.h"
 #include "controlspace/geometry/extent.h"
 #include "controlspace/geometry/subdivision.h"
 #include "controlspace/metric/blend.h"
 #include "files/output_file.h"
 #include "io/text/cells.h"
 #include "io/text/lengths_at.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -23,30 +21,24 @@ namespace {
 struct Grid {
     Point low;
     Vector spacing;
-    std::array<int, 3> counts;
+    Eigen::Array3i counts;
     std::vector<double> lengths;  ///< z fastest, x slowest
     bool has_tensors = false;
 
     double coordinate(Axis a, int i) const { return low[a] + spacing[a] * i; }
-    std::size_t index(int i, int j, int k) const {
-        const auto n = [](int x) { return static_cast<std::size_t>(x); };
-        return (n(i) * n(counts[1]) + n(j)) * n(counts[2]) + n(k);
+    std::size_t index(const Eigen::Array3i& node) const {
+        const Eigen::Array<std::size_t, 3, 1> n = node.cast<std::size_t>(),
+                                              of = counts.cast<std::size_t>();
+        return (n[0] * of[1] + n[1]) * of[2] + n[2];
     }
     double trilinear(const Point& x) const {
-        std::array<int, 3> cell{};
-        Vector t;
-        for (Axis a = 0; a < 3; ++a) {
-            const double steps = (x[a] - low[a]) / spacing[a];
-            const int last = counts[static_cast<std::size_t>(a)] - 2;
-            int& i = cell[static_cast<std::size_t>(a)];
-            i = std::clamp(static_cast<int>(steps), 0, last);
-            t[a] = std::clamp(steps - i, 0.0, 1.0);
-        }
+        const Eigen::Array3d steps = (x - low).cwiseQuotient(spacing);
+        const Eigen::Array3i cell = steps.cast<int>().max(0).min(counts - 2);
+        const auto weights = corner_weights((steps - cell.cast<double>()).max(0).min(1).matrix());
         double length = 0;
-        const auto weights = corner_weights(t);
         for (int c = 0; c < 8; ++c) {
             length += weights[static_cast<std::size_t>(c)] *
-                      lengths[index(cell[0] + (c & 1), cell[1] + (c >> 1 & 1), cell[2] + (c >> 2))];
+                      lengths[index(cell + Eigen::Array3i(c & 1, c >> 1 & 1, c >> 2))];
         }
         return length;
     }
@@ -55,14 +47,14 @@ struct Grid {
 Grid sampled(const ControlSpace& space, int samples) {
     require_grid_samples(samples);
     const Box domain = space.domain();
-    const Vector edges = domain.edges();
-    Grid grid{domain.low, {}, {}, {}};
-    for (Axis a = 0; a < 3; ++a) {
-        const double steps = std::max(1.0, std::round(edges[a] / edges.maxCoeff() * (samples - 1)));
-        grid.counts[static_cast<std::size_t>(a)] = static_cast<int>(steps) + 1;
-        // Across a plane two layers, as far apart as the nodes are along it.
-        grid.spacing[a] = (edges[a] > 0 ? edges[a] : edges.maxCoeff() / (samples - 1)) / steps;
-    }
+    const Eigen::Array3d edges = domain.edges();
+    const double longest = edges.maxCoeff();
+    const Eigen::Array3d steps = (edges / longest * (samples - 1)).round().max(1);
+    // Across a plane two layers, as far apart as the nodes are along it.
+    Grid grid{domain.low,
+              (edges > 0).select(edges, longest / (samples - 1)) / steps,
+              steps.cast<int>() + 1,
+              {}};
     std::vector<Point> plane;
     for (int i = 0; i < grid.counts[0]; ++i) {
         plane.clear();
@@ -89,8 +81,7 @@ SizeFile summary(const Grid& grid, const ControlSpace& space) {
 void require_grid_samples(int samples) {
     constexpr int fewest = 2, most = 512;
     if (samples >= fewest && samples <= most) return;
-    throw InputError(
-        fmt::format("{} samples along the longest edge: give {} to {}", samples, fewest, most));
+    refuse("{} samples along the longest edge: give {} to {}", samples, fewest, most);
 }
 
 SizeFile write_gmsh_structured(const std::filesystem::path& path, const ControlSpace& space,
@@ -109,9 +100,9 @@ SizeFile write_jigsaw_grid(const std::filesystem::path& path, const ControlSpace
                            int samples) {
     const std::optional<Axis> flat = flat_axis(space.domain());
     if (flat && *flat != 2) {
-        throw InputError(fmt::format(
-            "{}: JIGSAW's planes lie across z, and the domain {} does not: write another format",
-            path.string(), to_string(space.domain())));
+        refuse_at(path,
+                  "JIGSAW's planes lie across z, and the domain {} does not: write another format",
+                  to_string(space.domain()));
     }
     const int dimensions = flat ? 2 : 3;
     const Grid grid = sampled(space, samples);
@@ -119,7 +110,7 @@ SizeFile write_jigsaw_grid(const std::filesystem::path& path, const ControlSpace
     file.write("# Lengths for JIGSAW: hfun_file, with hfun_scal = absolute\n");
     file.print("MSHID=3;EUCLIDEAN-GRID\nNDIMS={}\n", dimensions);
     for (Axis a = 0; a < dimensions; ++a) {
-        const int count = grid.counts[static_cast<std::size_t>(a)];
+        const int count = grid.counts[a];
         file.print("COORD={};{}\n", a + 1, count);
         for (int i = 0; i < count; ++i) file.print("{}\n", grid.coordinate(a, i));
     }
@@ -128,7 +119,7 @@ SizeFile write_jigsaw_grid(const std::filesystem::path& path, const ControlSpace
     for (int k = 0; k < layers; ++k) {  // y fastest, z slowest
         for (int i = 0; i < grid.counts[0]; ++i) {
             for (int j = 0; j < grid.counts[1]; ++j) {
-                file.print("{}\n", static_cast<float>(grid.lengths[grid.index(i, j, k)]));
+                file.print("{}\n", static_cast<float>(grid.lengths[grid.index({i, j, k})]));
             }
         }
     }
@@ -163,7 +154,7 @@ SizeFile write_netgen_sizes(const std::filesystem::path& path, const ControlSpac
             }
         }
         if (points.size() + parts.size() > most_points) {
-            throw InputError(
+            refuse(
                 "the field requests more than 20 million points, too many for Netgen: give "
                 "larger lengths, or a smaller --domain");
         }

@@ -11,6 +11,7 @@
 #include "io/text/msh.h"
 #include "io/text/npy.h"
 #include "io/text/pos.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -31,9 +32,8 @@ std::optional<std::filesystem::path> file_beside(const std::filesystem::path& pa
 std::filesystem::path mesh_of(const std::filesystem::path& path, const char* likely,
                               const char* possible) {
     if (const auto mesh = file_beside(path, likely, possible)) return *mesh;
-    throw InputError(fmt::format("{} is missing: {} needs it beside it",
-                                 std::filesystem::path(path).replace_extension(likely).string(),
-                                 path.string()));
+    refuse("{} is missing: {} needs it beside it",
+           std::filesystem::path(path).replace_extension(likely).string(), path.string());
 }
 
 // Sources at all vertices of a mesh that has a solution, or those of its required edges.
@@ -45,9 +45,8 @@ std::vector<PointSource> read_medit_mesh(const std::filesystem::path& mesh, cons
     try {
         return read_medit_required_edges(mesh);
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{} is missing, and the mesh has no lengths of its own: {}",
-                                     std::filesystem::path(mesh).replace_extension(likely).string(),
-                                     error.what()));
+        refuse("{} is missing, and the mesh has no lengths of its own: {}",
+               std::filesystem::path(mesh).replace_extension(likely).string(), error.what());
     }
 }
 
@@ -64,11 +63,9 @@ std::string lower_case_extension(const std::filesystem::path& path) {
 
 std::vector<PointSource> read_sources(const std::filesystem::path& path, const std::string& array) {
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) {
-        throw InputError(fmt::format("{}: no such file", path.string()));
-    }
+    if (!std::filesystem::exists(path, ignored)) refuse_at(path, "no such file");
     if (std::filesystem::is_directory(path, ignored)) {
-        throw InputError(fmt::format("{} is a directory: name a file", path.string()));
+        refuse("{} is a directory: name a file", path.string());
     }
     const std::string extension = lower_case_extension(path);
     if (extension == ".csv") return read_csv_sources(path);
@@ -83,8 +80,7 @@ std::vector<PointSource> read_sources(const std::filesystem::path& path, const s
     if (path == "/dev/stdin" || !std::filesystem::is_regular_file(path, ignored)) {
         return read_csv_sources(path);
     }
-    throw InputError(fmt::format("{}: name a .csv, a .npy, a .mesh beside a .sol, a .pos or a .msh",
-                                 path.string()));
+    refuse_at(path, "name a .csv, a .npy, a .mesh beside a .sol, a .pos or a .msh");
 }
 
 std::string place_of_source(const std::filesystem::path& path, std::size_t index) {
@@ -100,8 +96,7 @@ void write_sources(const std::filesystem::path& path, std::span<const PointSourc
     if (extension == ".csv" || path == "/dev/stdout") return write_csv_sources(path, sources);
     const auto grows_alone = [](const PointSource& source) { return source.growth != 0; };
     if (std::ranges::any_of(sources, grows_alone)) {
-        throw InputError(fmt::format("{}: only a .csv holds gradation ratios of sources: name one",
-                                     path.string()));
+        refuse_at(path, "only a .csv holds gradation ratios of sources: name one");
     }
     if (extension == ".pos") return write_pos_sources(path, sources);
     if (extension == ".vtu" || extension == ".vtp") return write_vtk_sources(path, sources);
@@ -109,8 +104,7 @@ void write_sources(const std::filesystem::path& path, std::span<const PointSourc
         extension == ".solb") {
         return write_medit_sources(path, sources);
     }
-    throw InputError(fmt::format(
-        "{}: name a .csv, .mesh, .sol, .meshb, .solb, .pos, .vtu or .vtp to write", path.string()));
+    refuse_at(path, "name a .csv, .mesh, .sol, .meshb, .solb, .pos, .vtu or .vtp to write");
 }
 
 }  // namespace controlspace

@@ -1,16 +1,15 @@
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "controlspace/error.h"
 #include "controlspace/geometry/extent.h"
 #include "files/output_file.h"
 #include "io/text/bisected_box.h"
 #include "io/text/cells.h"
 #include "io/text/lengths_at.h"
 #include "io/text/size_files.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -66,10 +65,10 @@ SizeFile write_tetgen_background(const std::filesystem::path& base, const Contro
     constexpr double tolerances[] = {0.02, 0.02, 0.02, 0.05, 0.05, 0.05};
     constexpr std::size_t enough = 2'000'000;  // points
     if (flat_axis(space.domain())) {
-        throw InputError(fmt::format(
-            "{}: TetGen's background mesh fills a volume, and the domain {} is a plane: "
-            "write another format",
-            base.string(), to_string(space.domain())));
+        refuse_at(base,
+                  "TetGen's background mesh fills a volume, and the domain {} is a plane: "
+                  "write another format",
+                  to_string(space.domain()));
     }
     BisectedBox mesh(space.domain());
     for (const Box& cell : elements_of(space)) mesh.refine_to(cell, cell.centre());

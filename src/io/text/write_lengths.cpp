@@ -8,11 +8,11 @@
 #include <cmath>
 #include <vector>
 
-#include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
 #include "files/output_file.h"
 #include "io/text/npy.h"
 #include "io/text/vtk_xml.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -39,17 +39,6 @@ void sample_tile(const ControlSpace& space, const Raster& raster, std::size_t fi
     }
 }
 
-/// What comes before and after the numbers.
-struct Frame {
-    std::string before, after;
-};
-
-Frame vti_frame(const Raster& raster) {
-    auto [before, after] = vtk_image_frame(raster.origin, raster.spacing, raster.counts, "h",
-                                           raster.size() * sizeof(double));
-    return {std::move(before), std::move(after)};
-}
-
 }  // namespace
 
 Point Raster::at(std::size_t column, std::size_t row) const {
@@ -62,11 +51,11 @@ Point Raster::at(std::size_t column, std::size_t row) const {
 Raster raster_of(const Box& domain, const Slice& slice) {
     constexpr int most = 1 << 17;
     if (slice.samples < 2 || slice.samples > most) {
-        throw InputError(fmt::format("{} samples: give 2 to {}", slice.samples, most));
+        refuse("{} samples: give 2 to {}", slice.samples, most);
     }
     if (!(slice.at >= domain.low[slice.axis] && slice.at <= domain.high[slice.axis])) {
-        throw InputError(fmt::format("a slice at {} = {} is outside the domain {}",
-                                     "xyz"[slice.axis], slice.at, to_string(domain)));
+        refuse("a slice at {} = {} is outside the domain {}", "xyz"[slice.axis], slice.at,
+               to_string(domain));
     }
     Vector edges = domain.edges();
     edges[slice.axis] = 0;
@@ -103,8 +92,10 @@ void write_lengths(const std::filesystem::path& path, const ControlSpace& space,
     require_room(path, raster.size() * sizeof(double));
     const auto [before, after] =
         lower_case_extension(path) == ".npy"
-            ? Frame{npy_header(fmt::format("{}, {}", raster.rows(), raster.columns())), ""}
-            : vti_frame(raster);
+            ? std::pair(npy_header(fmt::format("{}, {}", raster.rows(), raster.columns())),
+                        std::string())
+            : vtk_image_frame(raster.origin, raster.spacing, raster.counts, "h",
+                              raster.size() * sizeof(double));
     OutputFile file(path);
     file.write(before);
     std::size_t done = 0;

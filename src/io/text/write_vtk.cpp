@@ -1,14 +1,11 @@
 #include "controlspace/io/write_vtk.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <numeric>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "controlspace/error.h"
 #include "controlspace/geometry/subdivision.h"
 #include "controlspace/io/write_lengths.h"
 #include "controlspace/space/control_nodes.h"
@@ -16,6 +13,7 @@
 #include "geometry/point_order.h"
 #include "io/text/cells.h"
 #include "io/text/vtk_xml.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
@@ -54,10 +52,10 @@ std::vector<Box> octree_roots(const Box& domain, std::array<int, 3>& counts) {
             for (int c = 0; c < cut.children(); ++c) parts.push_back(cut.child(c));
         }
         if (parts.size() > most) {
-            throw InputError(fmt::format(
+            refuse(
                 "the domain {} is too oblong for .htg, which takes more than {} octrees: name a "
                 ".vtu",
-                to_string(domain), most));
+                to_string(domain), most);
         }
         for (std::size_t a = 0; a < 3; ++a) counts[a] *= axes[a] ? 2 : 1;
         roots = std::move(parts);
@@ -88,17 +86,14 @@ VtkTree tree_below(const ControlSpace& space, const Box& root) {
             const Subdivision subdivision = octants(box);
             const bool is_inside = box.contains(leaf.low) && box.contains(leaf.high);
             if (!is_inside || !subdivision.is_proper()) {
-                throw InputError(
-                    "only an octree can be written as .htg: choose one, or name a .vtu");
+                refuse("only an octree can be written as .htg: choose one, or name a .vtu");
             }
             for (int c = 0; c < subdivision.children(); ++c) {
                 boxes.push_back(subdivision.child(c));
             }
         }
     }
-    std::vector<Metric> metrics(centres.size());
-    space.sample(centres, metrics);
-    tree.cell_data = metric_arrays(metrics);
+    tree.cell_data = metric_arrays(sample_parallel(space, centres));
     return tree;
 }
 
@@ -123,9 +118,7 @@ void write_leaves(const std::filesystem::path& path, const ControlSpace& space,
             cells.points.push_back(place - corners.begin());
         }
     }
-    std::vector<Metric> metrics(centres.size());
-    space.sample(centres, metrics);
-    write_vtk_grid(path, corners, cells, {}, metric_arrays(metrics));
+    write_vtk_grid(path, corners, cells, {}, metric_arrays(sample_parallel(space, centres)));
 }
 
 void write_leaf_pieces(const std::filesystem::path& path,
@@ -135,7 +128,7 @@ void write_leaf_pieces(const std::filesystem::path& path,
 
 void write_nodes(const std::filesystem::path& path, const ControlSpace& space) {
     const auto nodes = control_nodes(space, Neighbourhood::faces);
-    if (!nodes) throw InputError("this field has no control nodes: write a slice of it");
+    if (!nodes) refuse("this field has no control nodes: write a slice of it");
     write_points(path, positions(nodes->graph), nodes->metrics);
 }
 
@@ -150,7 +143,7 @@ void write_octree(const std::filesystem::path& path, const ControlSpace& space) 
 
 void require_slice_samples(int samples) {
     if (samples >= 2 && samples <= 8192) return;
-    throw InputError(fmt::format("{} samples: give 2 to 8192", samples));
+    refuse("{} samples: give 2 to 8192", samples);
 }
 
 void write_slice(const std::filesystem::path& path, const ControlSpace& field, const Box& domain,
@@ -161,9 +154,8 @@ void write_slice(const std::filesystem::path& path, const ControlSpace& field, c
     for (std::size_t j = 0; j < raster.rows(); ++j) {
         for (std::size_t i = 0; i < raster.columns(); ++i) places.push_back(raster.at(i, j));
     }
-    std::vector<Metric> metrics(places.size());
-    sample_parallel(field, places, metrics);
-    write_vtk_image(path, raster.origin, raster.spacing, raster.counts, metric_arrays(metrics));
+    write_vtk_image(path, raster.origin, raster.spacing, raster.counts,
+                    metric_arrays(sample_parallel(field, places)));
 }
 
 void write_vtk_sources(const std::filesystem::path& path, std::span<const PointSource> sources) {

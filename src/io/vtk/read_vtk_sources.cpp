@@ -29,17 +29,13 @@
 #include <string_view>
 #include <utility>
 
-#include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
 #include "files/text_file.h"
 #include "io/text/metric_rows.h"
+#include "refuse.h"
 
 namespace controlspace {
 namespace {
-
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what) {
-    throw InputError(fmt::format("{}: {}", path.string(), what));
-}
 
 /// Keeps the first error that VTK's readers report. What they and their helpers say is not printed
 /// meanwhile.
@@ -88,9 +84,9 @@ vtkSmartPointer<vtkDataSet> read_data_set(const std::filesystem::path& path) {
     try {
         reader->Update();
     } catch (const std::bad_alloc&) {
-        fail(path, "an array is said to hold more than memory does: is it cut off?");
+        refuse_at(path, "an array is said to hold more than memory does: is it cut off?");
     }
-    if (!errors.first().empty()) fail(path, "VTK cannot read it: " + errors.first());
+    if (!errors.first().empty()) refuse_at(path, "VTK cannot read it: {}", errors.first());
     return reader->GetOutput();
 }
 
@@ -122,15 +118,15 @@ Values array_named(const std::filesystem::path& path, vtkDataSet& grid, const st
             names.push_back(quote(its_name));
         }
         if (names.size() > 1) {
-            fail(path, fmt::format("{} of its arrays of {} can be meant: name one of {} ({})",
-                                   names.size(), at_points ? "points" : "cells",
-                                   fmt::join(names, ", "), option));
+            refuse_at(path, "{} of its arrays of {} can be meant: name one of {} ({})",
+                      names.size(), at_points ? "points" : "cells", fmt::join(names, ", "), option);
         }
         if (found != nullptr) return {found, at_points};
     }
-    if (all.empty()) fail(path, "it has no arrays: give sizes or metrics at points or of cells");
-    fail(path, fmt::format("no array is named {}, there are {}: name one ({})",
-                           name.empty() ? ":metric" : quote(name), all, option));
+    if (all.empty())
+        refuse_at(path, "it has no arrays: give sizes or metrics at points or of cells");
+    refuse_at(path, "no array is named {}, there are {}: name one ({})",
+              name.empty() ? ":metric" : quote(name), all, option);
 }
 
 /// The mean of a cell's points.
@@ -138,7 +134,7 @@ Point centre_of(const std::filesystem::path& path, vtkDataSet& grid, vtkIdType c
     vtkNew<vtkIdList> points;
     grid.GetCellPoints(cell, points);
     const vtkIdType n = points->GetNumberOfIds();
-    if (n == 0) fail(path, fmt::format("cell {} has no points: leave it out", cell + 1));
+    if (n == 0) refuse_at(path, "cell {} has no points: leave it out", cell + 1);
     Point sum = Point::Zero();
     for (vtkIdType k = 0; k < n; ++k) {
         Point x;
@@ -159,7 +155,7 @@ struct VtkMetrics {
 VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& name,
                         const char* option) {
     if (read_binary_file(path).find("<VTKFile") == std::string::npos) {
-        fail(path, "no VTKFile element: give a file in VTK's XML format");
+        refuse_at(path, "no VTKFile element: give a file in VTK's XML format");
     }
     const std::string ending = lower_case_extension(path);
     const auto grid = ending == ".vtp"   ? read_data_set<vtkXMLPolyDataReader>(path)
@@ -169,15 +165,15 @@ VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& na
     vtkDataArray& values = *array;
     const vtkIdType count = at_points ? grid->GetNumberOfPoints() : grid->GetNumberOfCells();
     const char* what = at_points ? "point" : "cell";
-    if (count == 0) fail(path, fmt::format("no {}s: nothing to read", what));
+    if (count == 0) refuse_at(path, "no {}s: nothing to read", what);
     if (values.GetNumberOfTuples() != count) {
-        fail(path, fmt::format("{} {}s, but {} values in {}: is it cut off?", count, what,
-                               values.GetNumberOfTuples(), quote(values.GetName())));
+        refuse_at(path, "{} {}s, but {} values in {}: is it cut off?", count, what,
+                  values.GetNumberOfTuples(), quote(values.GetName()));
     }
     const auto components = static_cast<std::size_t>(values.GetNumberOfComponents());
     if (components != 1 && components != vtk_tensor.numbers && components != matrix_rows.numbers) {
-        fail(path, fmt::format("array {} has {} components: give 1 (sizes), 6 or 9 (tensors)",
-                               quote(values.GetName()), components));
+        refuse_at(path, "array {} has {} components: give 1 (sizes), 6 or 9 (tensors)",
+                  quote(values.GetName()), components);
     }
     const auto where = [&] { return path.string(); };
     MetricRows metrics(where, components == vtk_tensor.numbers ? vtk_tensor : matrix_rows);
@@ -262,11 +258,12 @@ AnalyticField read_vtk_field(const std::filesystem::path& path, const std::strin
     VtkMetrics data = read_metrics(path, name, "--field-grid");
     for (vtkIdType i = 0; i < data.grid->GetNumberOfCells(); ++i) {
         if (data.grid->GetCell(i)->GetCellDimension() == 3) continue;
-        fail(path, fmt::format("cell {} has no volume, so that nothing is between points: leave "
-                               "such cells out, or read points as sources (--sources)",
-                               i + 1));
+        refuse_at(path,
+                  "cell {} has no volume, so that nothing is between points: leave "
+                  "such cells out, or read points as sources (--sources)",
+                  i + 1);
     }
-    if (data.grid->GetNumberOfCells() == 0) fail(path, "no cells: nothing to read");
+    if (data.grid->GetNumberOfCells() == 0) refuse_at(path, "no cells: nothing to read");
     double finest = largest_magnitude;
     for (const Metric& m : data.metrics) finest = std::min(finest, eigen_frame(m).lengths[0]);
     std::vector<Point> places = data.positions;

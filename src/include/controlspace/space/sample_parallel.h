@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "controlspace/space/control_space.h"
 
@@ -10,5 +11,8 @@ namespace controlspace {
 /// whose answers share no cache line. Smaller batches stay on the calling thread. Exceptions of
 /// space.sample pass through.
 void sample_parallel(const ControlSpace& space, std::span<const Point> x, std::span<Metric> out);
+
+/// The same, as a new vector.
+std::vector<Metric> sample_parallel(const ControlSpace& space, std::span<const Point> x);
 
 }  // namespace controlspace
