@@ -1,11 +1,13 @@
 #include "controlspace/sources/scattered_surfaces.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <optional>
+#include <unordered_map>
 
 #include "geometry/random_fractions.h"
-#include "sources/spaced_places.h"
 
 namespace controlspace {
 
@@ -106,13 +108,49 @@ std::vector<SurfacePlace> draw_clustered(const Surface& surface, std::size_t cou
     return places;
 }
 
+// Points of which no two are nearer to each other than `spacing`, by cubes of that edge.
+// Coordinates must be less than 2^53 spacings from the origin.
+class SpacedPlaces {
+public:
+    explicit SpacedPlaces(double spacing) : spacing_(spacing) {}
+
+    // Adds `p`, unless a point is nearer to it than the spacing; returns whether it did.
+    bool add(const Point& p) {
+        const auto is_near = [&](const Point& other) { return (other - p).norm() < spacing_; };
+        const Point cube = (p / spacing_).array().floor();
+        std::vector<Point>& own = points_[key(cube)];
+        if (std::ranges::any_of(own, is_near)) return false;  // most likely
+        for (int i = 0; i < 27; ++i) {
+            const Vector step(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1);
+            const auto beside = points_.find(key(cube + step));
+            if (beside == points_.end()) continue;
+            if (std::ranges::any_of(beside->second, is_near)) return false;
+        }
+        own.push_back(p);
+        return true;
+    }
+
+private:
+    // Cubes of the same key share their points.
+    static std::size_t key(const Point& cube) {
+        std::size_t key = 0;
+        for (const double i : cube) {
+            key = (key ^ static_cast<std::size_t>(std::int64_t(i))) * 0x9e3779b97f4a7c15;
+        }
+        return key;
+    }
+
+    double spacing_;
+    std::unordered_map<std::size_t, std::vector<Point>> points_;
+};
+
 // Throws darts, `count` being how many squares of edge `spacing` the surface has.
 template <class Surface>
 std::vector<SurfacePlace> draw_spaced(const Surface& surface, std::size_t count, double spacing,
                                       RandomFractions& fraction) {
     // Darts for each square: 0.60 of them stick; 0.70 would if one threw for ever.
     constexpr std::size_t darts = 16;
-    SpacedPlaces spaced(spacing, count);
+    SpacedPlaces spaced(spacing);
     std::vector<SurfacePlace> places;
     for (std::size_t i = 0; i < darts * count; ++i) {
         const SurfacePlace place = surface.draw(fraction);
