@@ -1,6 +1,6 @@
 // Access time of a batch, on one thread: every structure on the paper's sphere, in several orders
 // of places, beside that of lengths place by place, and the limit of a batch: a gather of the same
-// metrics by numbers known beforehand, or of eight that are blended.
+// metrics with precomputed indices, or of eight that are blended.
 //
 // Names: access/STRUCTURE/WORK/ORDER, and so with length and limit. STRUCTURE is a row of the
 // catalogue, -s_G with that split, -frozen and -floats in the forms that are only read, -fine a
@@ -166,7 +166,7 @@ private:
 template <class Answer>
 void time_batch(benchmark::State& state, std::size_t n, Answer&& answer) {
     std::vector<Metric> out(n);
-    answer(out);  // so that caches hold what is asked for, whatever was timed before
+    answer(out);  // so that caches contain the data, whatever was timed before
     for (auto _ : state) {
         answer(out);
         benchmark::DoNotOptimize(out.data());

@@ -1,6 +1,6 @@
 // Batches of queries on many threads, and single queries from many threads. Names:
 //   parallel/STRUCTURE/batch:N/T-threads    one batch of N random places by sample_parallel
-//   parallel/STRUCTURE/points/T-threads     T threads that each ask for place after place
+//   parallel/STRUCTURE/points/T-threads     T threads that each query place after place
 // By the wall clock; T is 1 and all processors.
 #include <benchmark/benchmark.h>
 #include <tbb/info.h>
@@ -20,7 +20,7 @@ using namespace controlspace;
 
 namespace {
 
-// Made by the first benchmark that asks.
+// Made by the first benchmark that uses it.
 const ControlSpace& space_of(const CatalogueEntry& entry) {
     static std::map<std::string, std::unique_ptr<ControlSpace>> made;
     auto& space = made[entry.id];
@@ -41,7 +41,7 @@ void batch(benchmark::State& state, const CatalogueEntry& entry, std::size_t n, 
     count_queries(state, n);
 }
 
-// The threads share the places evenly, and ask for them one by one.
+// The threads share the places evenly, and query them one by one.
 void points(benchmark::State& state, const CatalogueEntry& entry, int threads) {
     constexpr std::size_t n = 200'000;
     const ControlSpace& space = space_of(entry);

@@ -38,7 +38,7 @@ inline void count_queries(benchmark::State& state, std::size_t n) {
 std::unique_ptr<ControlSpaceBuilder> graded(const CatalogueEntry& entry, const Work& work,
                                             SplitRule split = SplitRule::middle, double voxel = 0);
 
-/// Orders in which places are asked for: uniformly random; those of a grid; where elements are
+/// Orders in which places are queried: uniformly random; those of a grid; where elements are
 /// (drawn with density 1 / det M), random or along a Morton curve; walks of half an element's
 /// length a step.
 enum class Order { random, grid, elements, morton, walk };

@@ -48,7 +48,8 @@ std::unique_ptr<ControlSpace> load_saved(const std::filesystem::path& input);
 /// saved.
 void require_no_settings(const std::filesystem::path& space, const GivenSettings& given);
 
-/// Loads and starts the library that a structure stands on, if any, before its creation is timed.
+/// Loads and initializes the library that a structure depends on, if any, before its creation is
+/// timed.
 void start_library_of(const std::string& structure);
 
 /// The one structure of the job's input (see study_of_input) and settings, made and graded; or

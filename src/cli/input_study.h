@@ -41,9 +41,9 @@ public:
     bool set(Case& c, const Workload& workload) const;
 
 private:
-    bool is_free_;  ///< whether nobody asks for a target
+    bool is_free_;  ///< whether no target is given
     bool applies_;
-    std::optional<std::size_t> max_leaves_;  ///< that are asked for, without a target; 0: no limit
+    std::optional<std::size_t> max_leaves_;  ///< given without a target; 0: no limit
 };
 
 /// The one case of a study that makes one structure. Throws InputError where it has more.

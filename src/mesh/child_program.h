@@ -18,8 +18,8 @@ struct ChildOutcome {
     bool succeeded() const { return !timed_out && signal == 0 && status == 0; }
 };
 
-/// Runs the program `arguments[0]` in `folder`, with nothing to read and its output, errors too, in
-/// the file `log`, and waits for it. It is killed after `time_limit_s`, with what it started
+/// Runs the program `arguments[0]` in `folder`, with empty input and its output and errors in the
+/// file `log`, and waits for it. It is killed after `time_limit_s`, with what it started
 /// itself, and when the calling thread ends. Throws InputError if it cannot be started.
 ChildOutcome run_child(const std::vector<std::string>& arguments,
                        const std::filesystem::path& folder, const std::filesystem::path& log,
@@ -28,8 +28,8 @@ ChildOutcome run_child(const std::vector<std::string>& arguments,
 /// The last lines of a text file that are not blank, joined by " | ", for messages.
 std::string last_lines(const std::filesystem::path& file, std::size_t count);
 
-/// `program` as it is found by the shell: with a slash in its name as it stands, else in PATH;
-/// empty if it is no executable file.
+/// The path of `program` as a shell finds it: a name with a slash as it is, others in PATH; empty
+/// if there is no such executable file.
 std::filesystem::path find_program(const std::string& program);
 
 }  // namespace controlspace

@@ -5,8 +5,8 @@
 
 namespace controlspace {
 
-/// Number of tetrahedra of the lengths that `field` asks for in `domain`, roughly: places between
-/// the samples may ask for more.
+/// Estimated number of tetrahedra of the lengths that `field` requests in `domain`, from samples:
+/// shorter lengths between them are missed.
 double estimated_tets(const Box& domain, const ControlSpace& field);
 
 /// Throws InputError if that is more than `most`.

@@ -7,7 +7,7 @@
 
 namespace controlspace {
 
-/// MMG makes edges a little longer than it is asked to: what lengths are multiplied by, the same
+/// MMG makes edges slightly longer than requested: the factor of lengths to compensate, the same
 /// for every field, for a mean metric length of 1. On a thin layer around a sphere (0.015 across,
 /// 0.06 along, 200,000 tetrahedra), L_R is 0.755 in three rounds without it and 0.772 with it.
 constexpr double mmg_factor = 0.96;
@@ -30,7 +30,7 @@ std::filesystem::path find_mmg();
 /// The program that `options` name, or find_mmg. Throws InputError if it cannot be run.
 std::filesystem::path require_mmg(const MmgOptions& options);
 
-/// Remeshes `start` to the metric that `field` asks for, by the program MMG3D. Each round takes the
+/// Remeshes `start` to the metric that `field` requests, by the program MMG3D. Each round takes the
 /// field at the vertices of the mesh that the one before made, and MMG interpolates between them;
 /// it does no gradation of its own.
 ///

@@ -40,11 +40,10 @@ inline bool lengths_differ(const std::array<double, 3>& lengths) {
 /// Throws InputError unless `m`, a field's answer at `p`, is positive definite.
 void require_metric(const Metric& m, const Point& p);
 
-/// Answers a mesher's question for the size at a place, in a frame: the smallest length that a
-/// field asks for there, times a factor. It may be asked by several threads, and never throws, as
-/// meshers do not expect that: the first exception, that of the field or InputError where the field
-/// is not positive definite, is kept for later. From then on all sizes are large, so that the
-/// mesher is done soon.
+/// The size function of a mesher, in a frame: the smallest length that a field requests at a place,
+/// times a factor. Several threads may call it, and it never throws, as meshers do not expect that:
+/// the first exception, that of the field or InputError where the field is not positive definite,
+/// is kept for later. From then on all sizes are large, so that the mesher is done soon.
 class SizeQuery {
 public:
     /// The field must outlive this.

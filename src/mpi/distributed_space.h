@@ -69,7 +69,7 @@ public:
     int owner_of(const Point& x) const;
 
     /// Collective: the field in `box`, each rank's own, where it answers as the whole would. It
-    /// needs nobody afterwards.
+    /// needs no communication afterwards.
     std::unique_ptr<ControlSpace> field_for(const Box& box) const;
 
     /// Collective: metrics at places of this rank, anywhere, by the ranks that own them.

@@ -18,7 +18,7 @@
 namespace controlspace {
 
 /// The ranks of a communicator, and what this one has sent: to each other rank one message a
-/// collective call, as if nobody passed on what others sent.
+/// collective call, as if no rank forwarded messages of others.
 class Ranks {
 public:
     explicit Ranks(MPI_Comm comm) : comm_(comm) {
@@ -159,7 +159,7 @@ private:
             return MPI_INT;
         }
     }
-    // More would need the large counts of MPI 4. Nobody can be told any more.
+    // More would need the large counts of MPI 4. Other ranks cannot be notified any more.
     int count_of(std::size_t n) const {
         if (n <= static_cast<std::size_t>(std::numeric_limits<int>::max())) return int(n);
         fmt::print(stderr, "rank {} would send {} records at once: give more ranks\n", rank_, n);

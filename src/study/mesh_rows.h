@@ -17,7 +17,7 @@
 
 namespace controlspace {
 
-/// What came of meshing one field; nothing is measured where there is an error.
+/// The outcome of meshing one field; nothing is measured where there is an error.
 struct MeshRow {
     Case setting = {};   ///< of the exact field: of the first structure that it is compared with
     bool exact = false;  ///< the reference itself was meshed, by no structure
@@ -32,7 +32,8 @@ struct MeshRow {
     std::optional<double> beside_exact = {};  ///< L_R less that of the mesh of the exact field
 };
 
-/// All tables: the measures and the histogram for each setting, with how L_R goes with δ_R.
+/// All tables: the measures and the histogram for each setting, with the rank correlation of L_R
+/// and δ_R.
 std::string mesh_tables(std::span<const MeshRow> rows, TableStyle style);
 
 /// meshes.json: provenance, settings of the study (but its runs) and of the meshing, and rows.

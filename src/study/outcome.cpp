@@ -36,7 +36,7 @@ bool shows_tensors(const Row* row) {
     return factor_of(*row) > largest_factor_within(delta_of(*row)) * (1 + 1e-4);
 }
 
-/// What a structure is asked for: lengths within a factor, and δ.
+/// A requested accuracy: lengths within a factor, and δ.
 struct Asked {
     double factor = Outcome{}.factor;
     double delta = std::numeric_limits<double>::infinity();

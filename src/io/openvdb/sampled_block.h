@@ -11,7 +11,7 @@
 namespace controlspace {
 
 /// Cubic voxels that cover a box from its low corner on, a flat one in a single layer. The last
-/// ones may stand out of it: their places are taken as the nearest point of the box.
+/// ones may extend beyond it: their centres are moved to the nearest point of the box.
 struct VoxelLattice {
     Box domain;
     double voxel = 0;                      ///< edge
@@ -37,7 +37,7 @@ struct SampledBlock {
     static constexpr std::size_t size = 512;
 
     std::array<Metric, size> metrics;
-    /// For each voxel the first one that has the same metric because one stands for both.
+    /// For each voxel the first one of the cube whose metric it shares; itself if it shares none.
     std::array<std::uint16_t, size> same_as;
 
     static std::size_t index(std::int32_t i, std::int32_t j, std::int32_t k) {

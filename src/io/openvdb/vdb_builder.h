@@ -13,7 +13,7 @@
 
 namespace controlspace {
 
-/// One grid of a file in the making. Blocks may be added by several threads and in any order.
+/// One grid under construction. Blocks may be added by several threads and in any order.
 class VdbBuilder {
 public:
     virtual ~VdbBuilder() = default;

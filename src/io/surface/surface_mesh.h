@@ -30,7 +30,7 @@ struct SurfaceMesh {
     static constexpr std::uint32_t unknown = ~std::uint32_t{};
 };
 
-/// Longest distance that is taken for rounding: coordinates of .stl files have 24 bits.
+/// Largest distance that counts as round-off: coordinates of .stl files have 24 bits.
 inline double rounding(const SurfaceMesh& mesh) { return 0x1p-23 * mesh.diagonal; }
 
 /// Reads a surface of polygons (.stl, .obj, .ply, .off), which are cut into triangles; vertices at

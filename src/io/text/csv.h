@@ -22,14 +22,14 @@ namespace controlspace {
 /// CRLF. Throws InputError "name:line: what is wrong".
 std::vector<PointSource> read_csv_sources(const std::filesystem::path& path);
 
-/// The same for a text at hand; `path` is for messages.
+/// The same from `text`; `path` is used in messages.
 std::vector<PointSource> parse_csv_sources(std::string_view text,
                                            const std::filesystem::path& path);
 
-/// The line, from 1, of the source of that number, from 0, in a file that was read.
+/// The line (from 1) of the source of index `index` (from 0) in a file that was read.
 std::string csv_line_of(const std::filesystem::path& path, std::size_t index);
 
-/// Places as a table of the same kind: columns x, y and z; others are passed over.
+/// Points from a table of the same kind: columns x, y and z; other columns are ignored.
 std::vector<Point> read_csv_points(const std::filesystem::path& path);
 
 /// Writes sources that read back to the last bit, with column h where all are isotropic and as

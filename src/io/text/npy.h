@@ -12,7 +12,7 @@ namespace controlspace {
 
 // Arrays of NumPy (.npy): doubles of this machine's byte order, by rows.
 
-/// What stands before the numbers of an array, with its shape as in Python: "3, 4".
+/// The header of an array; `shape` is written as in Python: "3, 4".
 std::string npy_header(std::string_view shape);
 
 /// Sources from an array of two axes, as rows x, y, z, h or x, y, z, h, g, as in a table (csv.h).

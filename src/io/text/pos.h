@@ -21,7 +21,7 @@ namespace controlspace {
 std::vector<PointSource> read_pos_sources(const std::filesystem::path& path,
                                           const std::string& view = {});
 
-/// The same for a text at hand; `path` is for messages.
+/// The same from `text`; `path` is used in messages.
 std::vector<PointSource> parse_pos_sources(std::string_view text, const std::filesystem::path& path,
                                            const std::string& view = {});
 
@@ -29,17 +29,17 @@ std::vector<PointSource> parse_pos_sources(std::string_view text, const std::fil
 /// otherwise. Throws InputError if that fails; no part of a file is left.
 void write_pos_sources(const std::filesystem::path& path, std::span<const PointSource> sources);
 
-/// What a view of cells consists of.
+/// Summary of a view of cells.
 struct PosCells {
     std::size_t count;
     bool has_tensors;
-    /// The share of the domain's volume, and of the elements that it asks for, together, where
+    /// The share of the domain's volume, and of the elements that it requests, together, where
     /// lengths that are interpolated in the cells differ from the structure's by more than 1 %.
     double off;
 };
 
 /// Writes a field as such a view: a hexahedron for each cell of the structure, with the values at
-/// its corners, so that Gmsh answers inside of it as the structure does. Cells where it does not
+/// its corners, so that Gmsh interpolates in it as the structure does. Cells where it does not
 /// are halved until `off` is at most 0.01; a view that gets 1 000 000 cells by that, or 200 000
 /// with tensors, remains further off. Throws InputError for a field without cells, or if writing
 /// fails; no part of a file is left.

@@ -8,12 +8,13 @@
 
 namespace controlspace {
 
-// A field as meshers read it that take one length a place: the smallest in any direction.
+// Size fields in the formats of meshers that take one length per point: the smallest in any
+// direction.
 
-/// What such a file holds.
+/// Summary of a file that was written.
 struct SizeFile {
     std::size_t count;         ///< nodes of a grid or mesh, or points
-    bool has_tensors = false;  ///< of which directions are lost
+    bool has_tensors = false;  ///< in the field, whose directions are lost
     /// Largest factor between the lengths that the mesher interpolates and those of the field, at
     /// 99 % of 1000 random places. None where it does not interpolate.
     std::optional<double> within = std::nullopt;
@@ -23,7 +24,7 @@ struct SizeFile {
 void require_grid_samples(int samples);
 
 /// The grid of Gmsh's field Structured, binary (TextFormat = 0): 2 to 512 nodes along the longest
-/// edge of the domain, as many at the same distance or nearly along the others. Gmsh is trilinear
+/// edge of the domain, and nearly the same spacing along the others. Gmsh is trilinear
 /// between them, and constant beyond with SetOutsideValue = 0, which 4.8.4 does not set by itself.
 /// Throws InputError for a number of samples out of range, or if writing fails; no part of a file
 /// is left. So do all others here.

@@ -21,7 +21,7 @@ std::string head_of(std::string_view type) {
         type);
 }
 
-/// A file in the making: the XML, and the arrays that are appended to it.
+/// A file under construction: the XML, and the arrays that are appended to it.
 class Xml {
 public:
     explicit Xml(std::string_view type) : type_(type), text_(head_of(type)) {}

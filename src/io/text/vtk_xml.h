@@ -28,7 +28,7 @@ struct VtkArray {
     std::vector<double> values;
 };
 
-/// What is shown of `metrics`, in their order: vtk_metric_array, the Riemannian metric M^-2 by
+/// The arrays that are written for `metrics`: vtk_metric_array, the Riemannian metric M^-2 by
 /// rows, 9 components; h_min, h_max and h_mean, the smallest, largest and mean length; and
 /// anisotropy, the ratio of the largest to the smallest.
 std::vector<VtkArray> metric_arrays(std::span<const Metric> metrics);
@@ -57,8 +57,8 @@ void write_vtk_pieces(const std::filesystem::path& path,
 void write_vtk_image(const std::filesystem::path& path, const Point& origin, const Vector& spacing,
                      const std::array<int, 3>& counts, std::span<const VtkArray> point_data);
 
-/// What comes before and after the `bytes` of the only array of such an image, of doubles, which
-/// are written in between: for images that are larger than memory.
+/// The parts of a file before and after the `bytes` of the only array of such an image, of doubles,
+/// which the caller writes in between: for images that are larger than memory.
 std::pair<std::string, std::string> vtk_image_frame(const Point& origin, const Vector& spacing,
                                                     const std::array<int, 3>& counts,
                                                     std::string_view array, std::uint64_t bytes);

@@ -8,16 +8,16 @@
 
 namespace controlspace {
 
-/// What the three numbers of a grid are, for programs that transform them with the grid.
+/// The type of a grid's values, for programs that transform them with the grid.
 enum class GridKind {
     fog,        ///< one number from 0 to 1
     number,     ///< one number
-    tuple,      ///< three numbers that do not turn with the grid
-    direction,  ///< a vector that does
+    tuple,      ///< three numbers, not rotated with the grid
+    direction,  ///< a vector, rotated with the grid
 };
 
-/// A grid of an exported .vdb file, and how its values follow from a metric. Only one number or
-/// three a voxel, since other programs read nothing else.
+/// A grid of an exported .vdb file, and the function from a metric to its values: one number or
+/// three per voxel, since other programs read nothing else.
 struct MetricGrid {
     std::string_view name;
     GridKind kind;
@@ -28,11 +28,11 @@ struct MetricGrid {
     std::string_view isotropic_twin = {};
 };
 
-/// All of them. `density`, which Blender shows unasked, comes first; its value here is the smallest
-/// length, which the whole file's lengths turn into density_of.
+/// All of them. `density`, which Blender displays by default, comes first; its value here is the
+/// smallest length, which is mapped by density_of once the range of the file is known.
 std::span<const MetricGrid> metric_grids();
 
-/// Names of the two grids that hold a metric whole.
+/// Names of the two grids that together store complete metrics.
 inline constexpr std::string_view diagonal_grid = "metric_diag";
 inline constexpr std::string_view off_diagonal_grid = "metric_off";
 /// Name of the grid of points.
@@ -42,7 +42,7 @@ inline constexpr std::string_view sources_grid = "sources";
 /// scale: 1 for the finest, 0 for the coarsest; 1 where all are the same.
 double density_of(double h, double finest, double coarsest);
 
-/// The way back: finest^d coarsest^(1-d), for d from 0 to 1; beyond them as at the nearer one.
+/// The inverse: finest^d coarsest^(1-d), with d clamped to [0, 1].
 double length_of_density(double density, double finest, double coarsest);
 
 }  // namespace controlspace

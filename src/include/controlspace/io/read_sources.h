@@ -27,11 +27,11 @@ namespace controlspace {
 std::vector<PointSource> read_sources(const std::filesystem::path& path,
                                       const std::string& array = {});
 
-/// Where the source of that number, from 0, stands in its file, for messages: "line 19" of a .csv,
-/// "number 18" of others and of pipes.
+/// The position of the source of that index (from 0) in its file, for messages: "line 19" of a
+/// .csv, "number 18" of others and of pipes.
 std::string place_of_source(const std::filesystem::path& path, std::size_t index);
 
-/// Writes `sources` in the format that the name's ending says: .csv, .pos, .vtu, .vtp, or .mesh,
+/// Writes `sources` in the format given by the file's extension: .csv, .pos, .vtu, .vtp, or .mesh,
 /// .sol, .meshb or .solb, which makes a mesh and a solution. read_sources, and read_vtk_sources for
 /// .vtu and .vtp, read them again: the same to the last bit from .csv and where all are isotropic.
 /// Throws InputError for another ending, and if writing fails, of which nothing is left.
@@ -39,7 +39,7 @@ void write_sources(const std::filesystem::path& path, std::span<const PointSourc
 
 /// `text` with small letters in place of capital ones (ASCII).
 std::string lower_case(std::string text);
-/// The extension of a file's name, which tells its format, in small letters: ".csv".
+/// The extension of a file name in lower case, which selects its format: ".csv".
 std::string lower_case_extension(const std::filesystem::path& path);
 
 }  // namespace controlspace

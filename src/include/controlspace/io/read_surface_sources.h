@@ -43,7 +43,7 @@ struct SurfaceSources {
 /// Throws InputError that names the file for what cannot be read, where no triangle has an area,
 /// and for angles, elements or bounds out of range.
 ///
-/// CGAL trusts what a file says: a damaged one may crash it, or take all memory. For files of
+/// CGAL does not validate files: a damaged one may crash it or exhaust memory. For files of
 /// unknown origin call require_readable first (controlspace/io/require_readable.h).
 SurfaceSources read_surface_sources(const std::filesystem::path& path,
                                     const CurvatureSizes& sizes = {});

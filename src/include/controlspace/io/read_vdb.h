@@ -16,7 +16,7 @@ namespace controlspace {
 // missing (with a list of what is there), of another type, empty, or under a transform that is not
 // linear; and for voxels whose values cannot be used.
 //
-// OpenVDB trusts what a file says: a damaged one may crash it, or take all memory. For files of
+// OpenVDB does not validate files: a damaged one may crash it or exhaust memory. For files of
 // unknown origin call require_readable first (controlspace/io/require_readable.h).
 
 /// How a surface in a .vdb file becomes sources. Exactly one of `h` and `per_radius` is given.
@@ -45,7 +45,7 @@ struct DensitySizes {
     bool operator==(const DensitySizes&) const = default;
 };
 
-/// Which grids of a .vdb file are a field, and what their numbers are.
+/// The grids of a .vdb file that define a field, and the meaning of their values.
 struct VdbLengths {
     /// A grid of one number a voxel; empty: metric_diag (xx yy zz) and metric_off (xy xz yz), the
     /// tensor M of lengths, not M^-2.

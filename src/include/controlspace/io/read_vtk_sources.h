@@ -19,7 +19,7 @@ namespace controlspace {
 /// the file has room for; for an array that is missing, or of another number of components; and for
 /// points and metrics that cannot be sources, by their number.
 ///
-/// VTK trusts what a file says: a damaged one may crash it, or take all memory. For files of
+/// VTK does not validate files: a damaged one may crash it or exhaust memory. For files of
 /// unknown origin call require_readable first (controlspace/io/require_readable.h).
 std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
                                           const std::string& array = {});

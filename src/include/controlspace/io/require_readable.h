@@ -5,9 +5,8 @@
 
 namespace controlspace {
 
-/// Calls `read`, which reads `file`, in a child process first. OpenVDB, VTK, CGAL and Gmsh trust
-/// what a file says: a damaged one may crash them or take all memory. So, for files of unknown
-/// origin:
+/// Calls `read`, which reads `file`, in a child process first. OpenVDB, VTK, CGAL and Gmsh do
+/// not validate files: a damaged one may crash them or exhaust memory. For files of unknown origin:
 ///
 ///     const auto read = [&] { return read_vdb_sources(file, surface); };
 ///     require_readable(file, read);

@@ -42,7 +42,7 @@ Raster raster_of(const Box& domain, const Slice& slice);
 void for_each_band(const ControlSpace& space, const Raster& raster,
                    const std::function<void(std::span<const double>)>& use);
 
-/// Is told how many points are written.
+/// Called with the number of points written so far.
 using RasterProgress = std::function<void(std::size_t)>;
 
 /// Writes the smallest lengths at the points of a raster, in double precision, band by band:

@@ -19,7 +19,7 @@ namespace controlspace {
 
 enum class VdbCompression { blosc, zip, none };
 
-/// Kept with each grid: a name and a number or a text.
+/// Metadata of each grid: a name and a number or a text.
 using VdbNote = std::pair<std::string, std::variant<double, std::string>>;
 
 struct VdbOptions {
@@ -45,24 +45,24 @@ struct VdbReport {
     double voxel = 0;                      ///< edge [length]
     std::array<std::int32_t, 3> counts{};  ///< voxels along x, y, z
     double finest = 0, coarsest = 0;       ///< of the smallest length
-    double kept = 0;                       ///< share of voxels that no tile of 8^3 stands for
-    std::size_t memory = 0;                ///< bytes of all grids
-    std::uintmax_t file = 0;               ///< bytes
+    double kept = 0;          ///< share of voxels stored in leaves rather than in tiles of 8^3
+    std::size_t memory = 0;   ///< bytes of all grids
+    std::uintmax_t file = 0;  ///< bytes
 };
 
 /// Samples `field` over `domain` at the centres of cubic voxels and writes metric_grids() to the
 /// .vdb file `path`, in the units of the domain; tensors are M, whose eigenvalues are lengths.
 /// The lengths of every active voxel are those of the field at its centre within a factor of
-/// 1 + tolerance; 8^3 voxels that share a
-/// metric become a tile. Runs on all of TBB's threads, with the same grids whatever their number.
+/// 1 + tolerance; 8^3 voxels that share a metric become a tile. Runs on all of TBB's threads; the
+/// grids do not depend on their number.
 ///
-/// Throws InputError for options out of range, names of grids that are not known, a field that is
+/// Throws InputError for options out of range, unknown names of grids, a field that is
 /// no metric somewhere, lengths that the file's numbers cannot hold, grids beyond the cap, and a
 /// file that cannot be written, of which nothing is left.
 VdbReport write_vdb(const std::filesystem::path& path, const ControlSpace& field, const Box& domain,
                     const VdbOptions& options);
 
-/// The same for what `space` answers in its domain.
+/// The same for `space` over its own domain.
 VdbReport write_vdb(const std::filesystem::path& path, const ControlSpace& space,
                     const VdbOptions& options);
 

@@ -10,7 +10,7 @@ namespace controlspace {
 ///     Mesh_criteria criteria(CGAL::parameters::facet_size = CgalSizing(field, CgalSizing::facets),
 ///                            CGAL::parameters::cell_size = CgalSizing(field, CgalSizing::cells));
 ///
-/// Mesh_3 does not ask for lengths of edges but for upper bounds of radii: `factor` times the
+/// Mesh_3 takes upper bounds of radii rather than lengths of edges: `factor` times the
 /// smallest length that the metric requests at a point. Keeps a reference to `field`, and is
 /// thread-safe as that is. Needs none of CGAL's headers.
 class CgalSizing {

@@ -15,7 +15,7 @@ inline constexpr std::array<double, 10> length_bounds{0.5, 0.6,  0.7071067811865
                                                       1.1, 1.25, 1.4142135623730951, 2};
 
 /// How well a mesh meets the metric field that it was to be made for: lengths are metric lengths,
-/// and 1 is what is asked for.
+/// and 1 is the requested length.
 struct Conformity {
     std::size_t nodes = 0;
     std::size_t edges = 0;

@@ -27,7 +27,7 @@ struct MeshCost {
 struct MeshRun {
     TetMesh mesh;
     MeshCost cost;
-    /// The field asked for different lengths in different directions, of which Gmsh was given the
+    /// The field requested different lengths in different directions, of which Gmsh was given the
     /// smallest.
     bool anisotropic = false;
 };
