@@ -104,16 +104,6 @@ private:
     std::array<std::uint32_t, 3> high_corner_;  // 0 where the domain is flat
 };
 
-/// Weights of a cell's corners for a place that is by `high`, 0 to 1 along each axis, off the low
-/// one. Corner numbers as in geometry/box.h: bit 0 is the high side in x, bit 1 in y, bit 2 in z.
-inline std::array<double, 8> trilinear_weights(const std::array<double, 3>& high) {
-    const std::array<double, 3> low{1 - high[0], 1 - high[1], 1 - high[2]};
-    const std::array<double, 4> xy{low[0] * low[1], high[0] * low[1], low[0] * high[1],
-                                   high[0] * high[1]};
-    return {xy[0] * low[2],  xy[1] * low[2],  xy[2] * low[2],  xy[3] * low[2],
-            xy[0] * high[2], xy[1] * high[2], xy[2] * high[2], xy[3] * high[2]};
-}
-
 /// Which nodes of a grid answer for a point, and how. Nearest: nodes stand at the cells' centres,
 /// and the cell's own answers; on the face of two cells the high one. Trilinear: nodes stand at the
 /// cells' vertices, and the eight of the cell are blended, linear in M.
@@ -185,7 +175,7 @@ public:
 private:
     static std::array<double, 8> weights(const CellBatch& batch, std::size_t i) {
         const auto high = [&](std::size_t a) { return batch.t[a][i] - batch.cell[a][i]; };
-        return trilinear_weights({high(0), high(1), high(2)});
+        return corner_weights({high(0), high(1), high(2)});
     }
     template <class Visit>
     decltype(auto) at_corner(const CellBatch& batch, std::size_t corner, Visit&& visit) const {
