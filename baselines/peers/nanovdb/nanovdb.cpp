@@ -1,8 +1,6 @@
 // The grids of `openvdb-vec3s`, two of vectors of floats, as NanoVDB: one block of memory each,
 // which is only read; what renderers and GPUs take.
 #include <nanovdb/NanoVDB.h>
-#include <nanovdb/util/OpenToNanoVDB.h>
-#include <openvdb/Grid.h>
 
 #include <array>
 #include <memory>
@@ -11,8 +9,8 @@
 
 #include "baselines/lattice/grid_row.h"
 #include "baselines/lattice/grid_space.h"
-#include "baselines/openvdb/dense_tree.h"
 #include "baselines/openvdb/vec3s_value.h"
+#include "baselines/peers/nanovdb/dense_grid.h"
 
 namespace controlspace {
 
@@ -24,25 +22,15 @@ using Leaf = nanovdb::NanoLeaf<nanovdb::Vec3f>;
 
 nanovdb::Coord coord(const Cell& cell) { return {cell[0], cell[1], cell[2]}; }
 
-template <auto value_of>
-Handle converted(const LatticeData& data) {
-    using OpenGrid = openvdb::Vec3SGrid;
-    const auto grid = OpenGrid::create(value_of(largest_metric(data.options())));
-    fill_densely(grid->tree(), data, value_of);
-    return nanovdb::openToNanoVDB<nanovdb::HostBuffer, OpenGrid::TreeType>(
-        *grid, nanovdb::StatsMode::Disable, nanovdb::ChecksumMode::Disable);
-}
-
 class NanoPair {
 public:
     static constexpr bool shares_field = false;
 
     explicit NanoPair(const std::shared_ptr<const LatticeData>& data)
-        : diagonals_(converted<diagonal>(*data)), off_diagonals_(converted<off_diagonal>(*data)) {}
+        : diagonals_(dense_nano_grid(*data, diagonal)),
+          off_diagonals_(dense_nano_grid(*data, off_diagonal)) {}
 
-    static double bytes_for(const Vector& nodes) {
-        return 2 * dense_bytes<openvdb::Vec3STree>(nodes);
-    }
+    static double bytes_for(const Vector& nodes) { return 2 * dense_vec3s_bytes(nodes); }
     static Metric stored(const Metric& m) { return in_floats(m); }
 
     /// Two accessors of one thread. A cell's corners lie in one leaf as a rule.
@@ -80,9 +68,9 @@ public:
             constexpr auto side = static_cast<int>(Leaf::DIM);
             Values<corners> found;
             for (std::size_t corner = 0; corner < corners; ++corner) {
-                const openvdb::Coord step = corner_step(corner);
-                const nanovdb::Coord ijk(cell[0] + step.x(), cell[1] + step.y(),
-                                         cell[2] + step.z());
+                const auto bits = static_cast<int>(corner);
+                const nanovdb::Coord ijk(cell[0] + (bits & 1), cell[1] + (bits >> 1 & 1),
+                                         cell[2] + (bits >> 2));
                 if (((ijk[0] ^ cell[0]) | (ijk[1] ^ cell[1]) | (ijk[2] ^ cell[2])) >= side) {
                     const Leaf* beside = accessor.probeLeaf(ijk);
                     // Beyond the last node, where its weight is 0.
