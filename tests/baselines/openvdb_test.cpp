@@ -1,10 +1,6 @@
-#include <openvdb/tools/Interpolation.h>
-
 #include <catch2/catch.hpp>
 
 #include "baselines/fixtures.h"
-#include "baselines/openvdb/openvdb_value.h"
-#include "baselines/openvdb/prune.h"
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
@@ -30,29 +26,6 @@ TEST_CASE("OpenVDB and the uniform grid agree to the bit") {
     gradation.law = GradationLaw::mean_length;
     CHECK(uniform->grade(gradation).operations == vdb->grade(gradation).operations);
     CHECK(sample(*uniform, points) == sample(*vdb, points));
-}
-
-TEST_CASE("the trilinear grids answer as OpenVDB's own BoxSampler does") {
-    const SpaceOptions options = small_grid();
-    const auto grid = make_structure("openvdb-uniform-trilinear", options);
-    grid->insert(random_sources(3000, options));
-    const ControlNodes nodes = grid->control_nodes(Neighbourhood::faces);
-    const auto& lattice = std::get<Lattice>(nodes.graph);
-    VdbMetricTree tree;
-    for (NodeIndex n = 0; n < lattice.size(); ++n) {
-        const auto [i, j, k] = lattice.coordinates(n);
-        tree.setValue(openvdb::Coord(static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)),
-                      VdbMetric(nodes.metrics[n]));
-    }
-
-    std::mt19937_64 random(13);
-    for (int i = 0; i < 5000; ++i) {
-        const Point x = random_point(random, options.domain);
-        const Vector place = (x - lattice.origin).cwiseQuotient(lattice.spacing);
-        const VdbMetric expected = openvdb::tools::BoxSampler::sample(
-            tree, openvdb::Vec3R(place.x(), place.y(), place.z()));
-        REQUIRE(difference(sample_at(*grid, x), expected.metric) <= 1e-13);
-    }
 }
 
 TEST_CASE("two Vec3S trees answer as the grid of doubles does, up to the rounding of floats") {
@@ -168,45 +141,6 @@ TEST_CASE("pruning never makes a metric larger, nor smaller by more than its tol
     for (std::size_t i = 0; i < uneven.size(); i += 2) uneven[i] = 2 * uneven[i];
     pruned->assign(uneven);
     CHECK(at_nodes(*pruned) == uneven);
-}
-
-TEST_CASE("leaves that are alike become tiles of the metric that all of them allow") {
-    openvdb::tree::Tree4<VdbMetric, 3, 3, 2>::Type tree(VdbMetric(0));
-    const Metric a{0.2, 0.3, 0.25, 0.01, -0.02, 0.03};
-    const auto put = [&](const openvdb::Coord& low, const Metric& m) {
-        for (int i = 0; i < 64; ++i) {
-            tree.setValue(low + openvdb::Coord(i & 3, i >> 2 & 3, i >> 4), VdbMetric(m));
-        }
-    };
-    for (const int x : {0, 4, 8}) put({x, 0, 0}, a);
-    // Differ in the last entry alone, and along different directions.
-    const Metric b{0.2, 0.3, 0.25, 0.01, -0.02, 0.035};
-    const Metric c{0.22, 0.28, 0.25, 0.01, -0.02, 0.03};
-    tree.setValue({1, 2, 3}, VdbMetric(b));
-    tree.setValue({2, 2, 3}, VdbMetric(c));
-    tree.setValue({5, 1, 1}, VdbMetric(0.5 * a));     // far off
-    tree.setValueOff({9, 1, 1}, VdbMetric(0.5 * a));  // does not count
-    prune_metrics(tree, 0.1);
-    CHECK(tree.leafCount() == 1);
-    for (const Metric& m : {a, b, c}) {
-        const Metric tile = tree.getValue({3, 3, 3}).metric;
-        CHECK(is_within(tile, 1 + 1e-12, m));
-        CHECK(nonconformity(tile, m) <= 0.1);
-    }
-    CHECK(tree.isValueOn({3, 3, 3}));
-    CHECK(tree.getValue({5, 1, 1}).metric == 0.5 * a);
-    CHECK(tree.getValue({9, 1, 1}).metric == a);
-}
-
-TEST_CASE("the arithmetic of OpenVDB's values is entry by entry") {
-    const VdbMetric a(Metric{1, 2, 3, 4, 5, 6});
-    CHECK(VdbMetric(0) + a == a);
-    CHECK((a - a) == VdbMetric(0));
-    CHECK(-a == VdbMetric(Metric{-1, -2, -3, -4, -5, -6}));
-    CHECK(Abs(-a) == a);
-    CHECK(a * 2 == a + a);
-    CHECK(VdbMetric(Metric{1, 2, 3, 4, 5, 5}) < a);
-    CHECK(a > VdbMetric(1));
 }
 
 }  // namespace controlspace
