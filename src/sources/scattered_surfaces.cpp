@@ -121,8 +121,8 @@ public:
         std::vector<Point>& own = points_[key(cube)];
         if (std::ranges::any_of(own, is_near)) return false;  // most likely
         for (int i = 0; i < 27; ++i) {
-            const Vector step(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1);
-            const auto beside = points_.find(key(cube + step));
+            const Eigen::Vector3i step(i / 9 - 1, i / 3 % 3 - 1, i % 3 - 1);
+            const auto beside = points_.find(key(cube + step.cast<double>()));
             if (beside == points_.end()) continue;
             if (std::ranges::any_of(beside->second, is_near)) return false;
         }

@@ -1,5 +1,7 @@
 #include "study/text_table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace controlspace {
@@ -7,9 +9,8 @@ namespace {
 
 /// Number of characters: bytes that do not continue one.
 std::size_t width(const std::string& text) {
-    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-        return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
-    }));
+    return static_cast<std::size_t>(
+        std::ranges::count_if(text, [](char c) { return (c & '\xc0') != '\x80'; }));
 }
 
 /// `text` as it may stand in a cell: on one line and, in Markdown, without column marks.
@@ -20,11 +21,6 @@ std::string cell_text(const std::string& text, TableStyle style) {
         cell += c == '\n' || c == '\r' ? ' ' : c;
     }
     return cell;
-}
-
-std::string padded(const std::string& text, std::size_t to, Align align) {
-    const std::string blanks(to - std::min(to, width(text)), ' ');
-    return align == Align::left ? text + blanks : blanks + text;
 }
 
 /// Without blanks at the end of the line.
@@ -56,7 +52,9 @@ std::string render(const TextTable& table, TableStyle style) {
     const auto joined = [&](const std::vector<std::string>& cells) {
         std::string text = markdown ? "|" : "";
         for (std::size_t i = 0; i < cells.size(); ++i) {
-            const std::string cell = padded(cells[i], widths[i], table.columns[i].align);
+            const bool is_left = table.columns[i].align == Align::left;
+            const std::string cell =
+                fmt::format(fmt::runtime(is_left ? "{:<{}}" : "{:>{}}"), cells[i], widths[i]);
             text += markdown ? " " + cell + " |" : cell + "  ";
         }
         return line_of(std::move(text));

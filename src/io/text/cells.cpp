@@ -68,8 +68,7 @@ std::vector<Box> elements_of(const ControlSpace& space, std::span<const Box> wit
         }
     }
     // A plane may have cut an element that lies elsewhere.
-    std::sort(elements.begin(), elements.end(),
-              [](const Box& a, const Box& b) { return key(a) < key(b); });
+    std::ranges::sort(elements, {}, key);
     elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
     return elements;
 }

@@ -92,8 +92,7 @@ std::vector<PointSource> sources_from(std::span<const Point> positions,
 }
 
 bool all_isotropic(std::span<const PointSource> sources) {
-    return std::all_of(sources.begin(), sources.end(),
-                       [](const PointSource& s) { return is_isotropic(s.metric); });
+    return std::ranges::all_of(sources, is_isotropic, &PointSource::metric);
 }
 
 }  // namespace controlspace

@@ -60,9 +60,8 @@ std::vector<Box> octree_roots(const Box& domain, std::array<int, 3>& counts) {
         for (std::size_t a = 0; a < 3; ++a) counts[a] *= axes[a] ? 2 : 1;
         roots = std::move(parts);
     }
-    std::ranges::sort(roots, [](const Box& a, const Box& b) {
-        return std::tuple(a.low.z(), a.low.y(), a.low.x()) <
-               std::tuple(b.low.z(), b.low.y(), b.low.x());
+    std::ranges::sort(roots, {}, [](const Box& root) {
+        return std::tuple(root.low.z(), root.low.y(), root.low.x());
     });
     return roots;
 }
@@ -113,8 +112,7 @@ void write_leaves(const std::filesystem::path& path, const ControlSpace& space,
     for (const Box& box : leaves) {
         centres.push_back(box.centre());
         for (const int i : order) {
-            const auto place =
-                std::lower_bound(corners.begin(), corners.end(), corner(box, i), precedes);
+            const auto place = std::ranges::lower_bound(corners, corner(box, i), precedes);
             cells.points.push_back(place - corners.begin());
         }
     }
