@@ -29,8 +29,8 @@ public:
 
     void enter(const Cone& cone) {
         constexpr double like = 0.75;
-        // Of dense sources thousands may be nearly as bad.
-        const double share = std::min(0.7 + 0.01 * entered_++, 0.98);
+        // Of dense sources thousands may be nearly as bad: after a few, only worse ones enter.
+        const double share = std::min(0.9 + 0.02 * entered_++, 1.0);
         limit_ = std::max(limit_, 1 + share * (cone.growth - 1));
         const auto end = cones_.begin() + static_cast<std::ptrdiff_t>(count_);
         auto place = std::find_if(cones_.begin(), end, [&](const Cone& other) {

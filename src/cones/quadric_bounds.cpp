@@ -40,19 +40,35 @@ public:
         }
         const EigenFrame frame = eigen_frame(Metric::from_matrix(covariance));
         constexpr double flat = 1e-10;
-        for (int k = 0; k < 2; ++k) {
-            if (!(frame.lengths[static_cast<std::size_t>(2 - k)] > flat * frame.lengths[2])) break;
-            const Vector direction = frame.directions.col(2 - k);
-            double low = 0;
-            double high = 0;
+        if (!(frame.lengths[2] > 0)) return;
+        const bool is_line = !(frame.lengths[1] > flat * frame.lengths[2]);
+        // The smallest rectangle that holds all: covariance does not tell the sides of a square.
+        constexpr int most_turns = 8;
+        constexpr double right_angle = 1.5707963267948966;
+        double least = std::numeric_limits<double>::infinity();
+        for (int turn = 0; turn < (is_line ? 1 : most_turns); ++turn) {
+            const double angle = right_angle / most_turns * turn;
+            Eigen::Matrix<double, 3, 2> turned;
+            turned.col(0) = std::cos(angle) * frame.directions.col(2) +
+                            std::sin(angle) * frame.directions.col(1);
+            turned.col(1) = std::cos(angle) * frame.directions.col(1) -
+                            std::sin(angle) * frame.directions.col(2);
+            Eigen::Vector2d low = Eigen::Vector2d::Zero();
+            Eigen::Vector2d high = low;
             for (const ConeTreeItem& item : items) {
-                const double x = direction.dot(item.position() - centre);
-                low = std::min(low, x);
-                high = std::max(high, x);
+                const Eigen::Vector2d x = turned.transpose() * (item.position() - centre);
+                low = low.cwiseMin(x);
+                high = high.cwiseMax(x);
             }
-            if (!(high > low)) break;
-            directions_.col(k) = 2 / (high - low) * direction;
-            offsets_[k] = -(high + low) / (high - low) - directions_.col(k).dot(centre);
+            const double size = (high - low).squaredNorm();
+            if (!(size < least)) continue;
+            least = size;
+            for (int k = 0; k < (is_line ? 1 : 2); ++k) {
+                if (!(high[k] > low[k])) continue;
+                directions_.col(k) = 2 / (high[k] - low[k]) * turned.col(k);
+                offsets_[k] =
+                    -(high[k] + low[k]) / (high[k] - low[k]) - directions_.col(k).dot(centre);
+            }
         }
     }
     Basis basis(const Point& place) const {
