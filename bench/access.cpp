@@ -1,9 +1,9 @@
 // Access time of a batch, on one thread: every structure on the paper's sphere, in several orders
-// of places, beside that of lengths place by place, and the limit of a batch: a gather of the same
-// metrics with precomputed indices, or of eight that are blended.
+// of places, beside that of lengths place by place, alone and by a cursor, and the limit of a
+// batch: a gather of the same metrics with precomputed indices, or of eight that are blended.
 //
-// Names: access/STRUCTURE/WORK/ORDER, and so with length and limit. STRUCTURE is a row of the
-// catalogue, -s_G with that split, -frozen and -floats in the forms that are only read, -fine a
+// Names: access/STRUCTURE/WORK/ORDER, and so with length, cursor and limit. STRUCTURE is a row of
+// the catalogue, -s_G with that split, -frozen and -floats in the forms that are only read, -fine a
 // grid whose voxels are as small as the octree's smallest leaf. Counters: bytes for a leaf (for a
 // cell of a grid). One WORK at a time (--benchmark_filter) keeps memory low.
 #include <benchmark/benchmark.h>
@@ -192,6 +192,14 @@ void length(benchmark::State& state, const ControlSpace& space, const std::vecto
     count_queries(state, x.size());
 }
 
+void cursor(benchmark::State& state, const ControlSpace& space, const std::vector<Point>& x) {
+    const std::unique_ptr<Cursor> cursor = space.cursor();
+    for (auto _ : state) {
+        for (const Point& p : x) benchmark::DoNotOptimize(cursor->length_at(p));
+    }
+    count_queries(state, x.size());
+}
+
 void limit(benchmark::State& state, const std::vector<Metric>& metrics, const Governing& found) {
     if (!found.one.empty()) {
         time_batch(state, found.one.size(), [&](std::vector<Metric>& out) {
@@ -222,6 +230,10 @@ void add(const Work& work) {
             benchmark::RegisterBenchmark(("length/" + name).c_str(), [=](benchmark::State& state) {
                 prepared->make();
                 length(state, prepared->space(id), prepared->places_in(order));
+            });
+            benchmark::RegisterBenchmark(("cursor/" + name).c_str(), [=](benchmark::State& state) {
+                prepared->make();
+                cursor(state, prepared->space(id), prepared->places_in(order));
             });
             if (!row.has_limit) continue;
             benchmark::RegisterBenchmark(("limit/" + name).c_str(), [=](benchmark::State& state) {

@@ -129,6 +129,24 @@ def access_targets(report):
                  ["structure", "against", "ratio", "target", ""], rows)
 
 
+def one_by_one(report):
+    for work in WORKS:
+        rows = []
+        for name in report.structures("length", work):
+            random = report.ns(name, work, "random", "length")
+            others = [report.ns(name, work, order, kind) for kind, order in
+                      (("length", "walk"), ("cursor", "random"), ("cursor", "walk"))]
+            if None in (random, *others):
+                continue
+            ratio = over(others[-1], random)
+            rows.append([name, *map(number, (random, *others, ratio)),
+                         *aimed(ratio, 0.5 if name.startswith("K_") else None)])
+        if rows:
+            report.table(f"Lengths one by one, in ns, {work}",
+                         ["structure", "random", "walk", "random, by a cursor",
+                          "walk, by a cursor", "that over random", "target", ""], rows)
+
+
 def memory(report):
     for work in WORKS:
         names = report.structures("access", work)
@@ -254,6 +272,7 @@ def main():
         "trilinear beside K_V and K_oV). *-frozen* and *-floats*: forms that are only read."]
     access_targets(report)
     access_tables(report)
+    one_by_one(report)
     memory(report)
     creation(report)
     parallel(report)

@@ -35,6 +35,7 @@ public:
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         stencil_.sample(x, storage_.reader(), out);
     }
+    std::unique_ptr<Cursor> cursor() const override { return std::make_unique<GridCursor>(*this); }
     Box domain() const override { return stencil_.domain(); }
     std::optional<Box> cell_at(const Point& x) const override { return stencil_.cell_at(x); }
 
@@ -63,6 +64,23 @@ public:
     }
 
 private:
+    /// Keeps one reader, which may remember nodes of a tree.
+    class GridCursor final : public Cursor {
+    public:
+        explicit GridCursor(const GridSpace& grid)
+            : stencil_(grid.stencil_), reader_(grid.storage_.reader()) {}
+
+        Metric metric_at(const Point& x) override {
+            Metric m;
+            stencil_.sample({&x, 1}, reader_, {&m, 1});
+            return m;
+        }
+
+    private:
+        const Stencil<interpolation>& stencil_;
+        const decltype(std::declval<const Storage&>().reader()) reader_;
+    };
+
     std::vector<Metric> metrics() const {
         const auto& read = storage_.reader();
         const auto [nx, ny, nz] = stencil_.lattice().nodes;

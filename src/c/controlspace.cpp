@@ -35,14 +35,15 @@ void change(cspace* handle, Edit&& edit) {
     if (!handle->builder) {
         refuse("a compact form is only read: insert, grade and adapt before it is made");
     }
+    handle->cursor.reset();
     handle->space.reset();  // so that nothing has to be copied
     try {
         edit(*handle->builder);
     } catch (...) {
-        handle->space = handle->builder->build();
+        handle->hold(handle->builder->build());
         throw;
     }
-    handle->space = handle->builder->build();
+    handle->hold(handle->builder->build());
 }
 
 // A ratio of 0 is that of creation.
@@ -146,7 +147,7 @@ cspace_status cspace_create(const char* structure, const double* domain, const c
                                                      options == nullptr ? "" : options);
         auto builder = entry_named(structures(), structure).make(given);
         auto built = builder->build();
-        *space = new cspace{std::move(builder), std::move(built), given.ratio};
+        *space = new cspace(std::move(builder), std::move(built), given.ratio);
     });
 }
 
@@ -168,7 +169,7 @@ cspace_status cspace_build(const char* structure, const double* domain,
         auto builder =
             make_filled_builder(entry_named(structures(), structure), all, making, target, &report);
         auto built = builder->build();
-        *space = new cspace{std::move(builder), std::move(built), making.ratio};
+        *space = new cspace(std::move(builder), std::move(built), making.ratio);
         if (reached != nullptr) {
             *reached = target ? report.reached : std::numeric_limits<double>::quiet_NaN();
         }
@@ -253,8 +254,8 @@ cspace_status cspace_load(const char* file, cspace** space) {
         *space = nullptr;
         require(file, "file");
         SavedControlSpace saved = open_control_space(file, structures());
-        *space = new cspace{std::move(saved.builder), std::move(saved.space),
-                            saved.recipe.options.ratio};
+        *space = new cspace(std::move(saved.builder), std::move(saved.space),
+                            saved.recipe.options.ratio);
     });
 }
 
@@ -265,6 +266,7 @@ cspace_status cspace_load_pieces(const char* index, const double* region, cspace
         require(index, "index");
         const Box box =
             region == nullptr ? Box::everywhere() : Box{point_at(region, 0), point_at(region, 1)};
-        *space = new cspace{nullptr, load_octree_pieces(index, structures(), box)};
+        *space =
+            new cspace(nullptr, load_octree_pieces(index, structures(), box), SpaceOptions().ratio);
     });
 }

@@ -3,6 +3,8 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <optional>
+#include <utility>
 
 #include "controlspace/controlspace.h"
 #include "controlspace/input_errors.h"
@@ -10,9 +12,20 @@
 #include "controlspace/space/control_space_builder.h"
 
 struct cspace {
+    cspace(std::unique_ptr<controlspace::ControlSpaceBuilder> from,
+           std::unique_ptr<controlspace::ControlSpace> built, double g_r)
+        : builder(std::move(from)), ratio(g_r) {
+        hold(std::move(built));
+    }
+    void hold(std::unique_ptr<controlspace::ControlSpace> built) {
+        space = std::move(built);
+        cursor.emplace(*space);
+    }
+
     std::unique_ptr<controlspace::ControlSpaceBuilder> builder;  // none of a compact form
     std::unique_ptr<controlspace::ControlSpace> space;           // what it has built last
-    double ratio = 1.25;                                         // g_r that it was created with
+    std::optional<controlspace::ThreadCursor> cursor;            // of that
+    double ratio;                                                // g_r that it was created with
 };
 
 namespace controlspace {

@@ -65,10 +65,10 @@ std::span<const Point> points_in(const double* positions, std::size_t begin, std
 // As cspace_size(): meshers call it for every point, so that no reason of a failure is kept.
 double size_at(const cspace* handle, const Point& p) noexcept {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    if (handle == nullptr || !handle->space) return none;
+    if (handle == nullptr || !handle->cursor) return none;
     if (std::isnan(p.x()) || std::isnan(p.y()) || std::isnan(p.z())) return none;
     try {
-        return handle->space->length_at(p);
+        return handle->cursor->length_at(p);
     } catch (...) {
         return none;
     }

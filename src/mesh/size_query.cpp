@@ -65,7 +65,7 @@ double SizeQuery::scaled_length(double x, double y, double z) noexcept {
 }
 
 double SizeQuery::smallest_length(const Point& p) {
-    const Metric m = sample_at(field_, p);
+    const Metric m = field_.metric_at(p);
     require_metric(m, p);
     if (is_isotropic(m)) return m.xx;
     const auto lengths = eigen_frame(m).lengths;

@@ -64,7 +64,7 @@ private:
     double scaled_length(double x, double y, double z) noexcept;
     double smallest_length(const Point& p);
 
-    const ControlSpace& field_;
+    const ThreadCursor field_;
     const UnitFrame frame_;
     const double factor_;
     const std::int64_t clock_cost_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 
 #include "controlspace/space/control_nodes.h"
 
@@ -12,6 +13,18 @@ namespace {
 double smallest_length(const Metric& m) {
     return is_isotropic(m) ? m.xx : eigen_frame(m).lengths[0];
 }
+
+/// Without memory.
+class PlainCursor final : public Cursor {
+public:
+    explicit PlainCursor(const ControlSpace& space) : space_(space) {}
+
+    Metric metric_at(const Point& x) override { return space_.metric_at(x); }
+    double length_at(const Point& x) override { return space_.length_at(x); }
+
+private:
+    const ControlSpace& space_;
+};
 
 }  // namespace
 
@@ -35,6 +48,35 @@ Metric ControlSpace::metric_at(const Point& x) const {
 }
 
 double ControlSpace::length_at(const Point& x) const { return smallest_length(metric_at(x)); }
+
+std::unique_ptr<Cursor> ControlSpace::cursor() const {
+    return std::make_unique<PlainCursor>(*this);
+}
+
+double Cursor::length_at(const Point& x) { return smallest_length(metric_at(x)); }
+
+ThreadCursor::ThreadCursor(const ControlSpace& space) : space_(&space) {
+    static std::atomic<std::uint64_t> made = 0;
+    number_ = ++made;
+}
+
+Cursor& ThreadCursor::own() const {
+    struct Kept {
+        std::uint64_t number = 0;  // none
+        std::unique_ptr<Cursor> cursor;
+    };
+    static thread_local std::array<Kept, 4> kept;
+    static thread_local std::size_t next = 0;
+    for (const Kept& k : kept) {
+        if (k.number == number_) return *k.cursor;
+    }
+    Kept& oldest = kept[next];
+    oldest.number = 0;  // should making one fail
+    oldest.cursor = space_->cursor();
+    oldest.number = number_;
+    next = (next + 1) % kept.size();
+    return *oldest.cursor;
+}
 
 std::optional<Box> ControlSpace::cell_at(const Point&) const { return std::nullopt; }
 

@@ -385,6 +385,38 @@ TEST_CASE("C: lengths, also as Gmsh asks for them, are the smallest of the metri
     cspace_free(space);
 }
 
+TEST_CASE("C: sizes place by place follow each change, in every thread", "[threads]") {
+    cspace* space = made("K_oV");
+    const std::vector<Point> places = random_points(domain, 4, 2);
+    std::vector<Point> walk{places.front()};
+    for (const Point& step : random_points(domain, 2000, 3)) {
+        walk.push_back(nearest_in(domain, walk.back() + 0.05 * step));
+    }
+    std::vector<double> lengths(walk.size());
+    const auto count_others = [&] {
+        std::size_t others = 0;
+        for (std::size_t k = 0; k < walk.size(); ++k) {
+            const Point& x = walk[k];
+            const double size = cspace_gmsh_size(3, 1, x.x(), x.y(), x.z(), 1e22, space);
+            others += size == lengths[k] ? 0 : 1;
+        }
+        return others;
+    };
+    for (const Point& place_of_source : places) {
+        const double length = 0.05;
+        REQUIRE(cspace_insert_lengths(space, 1, place_of_source.data(), &length) == CSPACE_OK);
+        REQUIRE(cspace_sample_lengths(space, walk.size(), walk.front().data(), lengths.data()) ==
+                CSPACE_OK);
+        std::array<std::size_t, 3> others{1, 1, 1};
+        std::vector<std::thread> threads;
+        for (std::size_t& o : others) threads.emplace_back([&] { o = count_others(); });
+        CHECK(count_others() == 0);
+        for (std::thread& thread : threads) thread.join();
+        CHECK(std::ranges::count(others, 0u) == 3);
+    }
+    cspace_free(space);
+}
+
 TEST_CASE("C: lengths of edges") {
     cspace* space = made("K_oL");
     const double length = 0.1;

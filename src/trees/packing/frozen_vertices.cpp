@@ -3,7 +3,7 @@
 
 #include "trees/packing/frozen_leaves.h"
 #include "trees/packing/frozen_tree.h"
-#include "trees/values/trilinear_in_leaves.h"
+#include "trees/values/trilinear_cursor.h"
 
 namespace controlspace {
 
@@ -38,6 +38,10 @@ public:
     void values_in(const Topology<Node>&, std::span<const LeafIndex> leaves,
                    std::span<const Point> x, std::span<Value> out) const {
         trilinear_in_leaves(*this, leaves, x, out);
+    }
+    template <class Node>
+    std::unique_ptr<Cursor> cursor(const Topology<Node>& tree) const {
+        return std::make_unique<TrilinearCursor<Node, const FrozenVertices&>>(tree, *this);
     }
     const Corners& corners(LeafIndex leaf) const { return leaves_[leaf].corners; }
     std::span<const M> metrics() const { return metrics_; }

@@ -13,13 +13,18 @@
 
 namespace controlspace {
 
+/// From `low` to `high`; in a flat box the least positive number.
+[[gnu::always_inline]] inline double divisible_edge(double low, double high) {
+    constexpr double least = std::numeric_limits<double>::min();
+    const double edge = high - low;
+    return edge > least ? edge : least;
+}
+
 /// Where `x`, or the nearest place between, is from `low` to `high`: 0 to 1, and 0 in a flat box.
 [[gnu::always_inline]] inline double fraction_between(double low, double high, double x) {
-    constexpr double least = std::numeric_limits<double>::min();
     x = x > low ? x : low;
     x = x < high ? x : high;
-    const double edge = high - low;
-    return (x - low) / (edge > least ? edge : least);
+    return (x - low) / divisible_edge(low, high);
 }
 
 /// The weights of the corners of some boxes, for a place in each: `corner_weights` side by side, in

@@ -17,7 +17,7 @@
 #include "controlspace/trees/topology.h"
 #include "trees/packing/frozen_tree.h"
 #include "trees/topology/place_index.h"
-#include "trees/values/trilinear_in_leaves.h"
+#include "trees/values/trilinear_cursor.h"
 
 namespace controlspace {
 
@@ -56,6 +56,13 @@ public:
     const Corners& nodes_of(LeafIndex leaf) const { return corners_[leaf]; }
     std::span<const Corners> corners() const { return corners_; }
     const std::vector<Point>& positions() const { return positions_; }
+
+    /// Lengths, where all metrics are isotropic.
+    template <class Node>
+    std::unique_ptr<Cursor> cursor(const Topology<Node>& tree) const {
+        const Field field{*this, metrics_.field()};
+        return std::make_unique<TrilinearCursor<Node, Field>>(tree, field);
+    }
 
     template <class Node>
     std::unique_ptr<ControlSpace> pack(const Topology<Node>& tree, Precision precision) const {

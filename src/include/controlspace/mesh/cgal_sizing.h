@@ -12,7 +12,7 @@ namespace controlspace {
 ///
 /// Mesh_3 takes upper bounds of radii rather than lengths of edges: `factor` times the
 /// smallest length that the metric requests at a point. Keeps a reference to `field`, and is
-/// thread-safe as that is. Needs none of CGAL's headers.
+/// thread-safe as that is: each thread that asks has a cursor. Needs none of CGAL's headers.
 class CgalSizing {
 public:
     /// Factors with which edges have the lengths that are requested, on average (examples).
@@ -21,15 +21,15 @@ public:
     using FT = double;
 
     explicit CgalSizing(const ControlSpace& field, double factor = 1)
-        : field_(&field), factor_(factor) {}
+        : field_(field), factor_(factor) {}
 
     template <class Point3, class Index>
     double operator()(const Point3& p, int /*dimension*/, const Index&) const {
-        return factor_ * field_->length_at({p.x(), p.y(), p.z()});
+        return factor_ * field_.length_at({p.x(), p.y(), p.z()});
     }
 
 private:
-    const ControlSpace* field_;
+    ThreadCursor field_;
     double factor_;
 };
 

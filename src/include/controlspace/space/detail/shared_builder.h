@@ -46,6 +46,12 @@ public:
         }
         return ControlSpace::length_at(x);
     }
+    std::unique_ptr<Cursor> cursor() const override {
+        if constexpr (requires { data_->length_cursor(); }) {
+            if (has_lengths()) return data_->length_cursor();
+        }
+        return ControlSpace::cursor();
+    }
     Box domain() const override { return data_->domain(); }
     Footprint footprint() const override {
         Footprint footprint = data_->footprint();
@@ -83,10 +89,10 @@ concept HoldsMetrics = requires(Data& data, std::span<const Metric> metrics) {
 
 /// A builder around `Data`, which can be copied, read and changed: sample, domain, footprint,
 /// cell_at, control_nodes, save, for single places metric_at, and, with has_lengths(),
-/// sample_lengths and length_at; insert(sources),
-/// grade(options), adapt, load; for a NodeBuilder assign, options and grade(NodeGradation), and it
-/// may leave out adapt. With pack(precision) it has compact forms; finish() is called before it is
-/// built. With finished(shared data) it is built in another form than SharedSpace.
+/// sample_lengths, length_at and length_cursor; insert(sources), grade(options), adapt, load; for a
+/// NodeBuilder assign, options and grade(NodeGradation), and it may leave out adapt. With
+/// pack(precision) it has compact forms; finish() is called before it is built. With
+/// finished(shared data) it is built in another form than SharedSpace.
 ///
 /// What it builds shares the data, which are copied before the next change as long as they are
 /// shared.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -74,6 +75,15 @@ public:
     }
     double length_at(const Point& x) const requires AnswersLengths<Storage, Node> {
         return value_at<double>(topology_, field_of(storage_), x);
+    }
+
+    std::unique_ptr<Cursor> length_cursor() const requires AnswersLengths<Storage, Node> {
+        if constexpr (requires { storage_.cursor(topology_); }) {
+            return storage_.cursor(topology_);
+        } else {
+            using Field = NodeField<Storage, Metric>;
+            return std::make_unique<LengthCursor<Node, Field>>(topology_, field_of(storage_));
+        }
     }
 
     std::unique_ptr<ControlSpace> pack(Precision precision) const {

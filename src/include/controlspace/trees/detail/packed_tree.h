@@ -113,6 +113,15 @@ public:
             return ControlSpace::length_at(x);
         }
     }
+    std::unique_ptr<Cursor> cursor() const override {
+        if constexpr (!Values::are_lengths) {
+            return ControlSpace::cursor();
+        } else if constexpr (requires { values_.cursor(topology_); }) {
+            return values_.cursor(topology_);
+        } else {
+            return std::make_unique<LengthCursor<Node, const Values&>>(topology_, values_);
+        }
+    }
     ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
         return values_.control_nodes(topology_, neighbourhood);
     }
