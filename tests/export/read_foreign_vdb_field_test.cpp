@@ -3,31 +3,12 @@
 
 #include "controlspace/io/read_vdb.h"
 #include "export/fixtures.h"
+#include "export/made_grids.h"
 #include "fields/values.h"
 
 using namespace controlspace;
 using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
-
-namespace {
-
-openvdb::FloatGrid::Ptr lengths(const std::string& name, float value) {
-    openvdb::initialize();
-    const auto grid = openvdb::FloatGrid::create(0);
-    grid->fill({{0, 0, 0}, {3, 3, 3}}, value);
-    grid->setName(name);
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(0.5));
-    return grid;
-}
-
-openvdb::Vec3SGrid::Ptr tensors(const std::string& name, const openvdb::Vec3s& value) {
-    const auto grid = openvdb::Vec3SGrid::create(openvdb::Vec3s(0));
-    grid->fill({{0, 0, 0}, {3, 3, 3}}, value);
-    grid->setName(name);
-    return grid;
-}
-
-}  // namespace
 
 TEST_CASE("a grid of lengths of somebody else's, under any linear transform") {
     const ScratchDirectory folder;
@@ -109,9 +90,7 @@ TEST_CASE("files that cannot be used are refused in one line") {
     CHECK_THAT(foreign({lengths("a", -1)}, {.grid = "a"}), Contains("must be positive"));
     CHECK_THAT(foreign({lengths("a", std::numeric_limits<float>::infinity())}, {.grid = "a"}),
                Contains("inf"));
-    const auto empty = openvdb::FloatGrid::create(1);
-    empty->setName("a");
-    CHECK_THAT(foreign({empty}, {.grid = "a"}), Contains("'a' is empty"));
+    CHECK_THAT(foreign({no_lengths("a")}, {.grid = "a"}), Contains("'a' is empty"));
 
     const auto bent = lengths("a", 1);
     bent->setTransform(openvdb::math::Transform::createFrustumTransform(
