@@ -78,7 +78,7 @@ public:
     }
 
     std::unique_ptr<Cursor> length_cursor() const requires AnswersLengths<Storage, Node> {
-        if constexpr (requires { storage_.cursor(topology_); }) {
+        if constexpr (HasTrilinearLeaves<Storage> && requires { storage_.cursor(topology_); }) {
             return storage_.cursor(topology_);
         } else {
             using Field = NodeField<Storage, Metric>;
