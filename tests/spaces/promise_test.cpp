@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <random>
 #include <utility>
 #include <vector>
@@ -145,10 +146,10 @@ struct Outcome {
     std::uint64_t worst_scene = 0;
 };
 
-Outcome search(const CatalogueEntry& entry, Scene (*make)(std::uint64_t), std::uint64_t first,
-               std::uint64_t end, std::size_t starts) {
+Outcome search(const CatalogueEntry& entry, Scene (*make)(std::uint64_t),
+               const std::vector<std::uint64_t>& scenes, std::size_t starts) {
     Outcome outcome;
-    for (std::uint64_t k = first; k < end; ++k) {
+    for (const std::uint64_t k : scenes) {
         const Scene scene = make(k);
         const auto space = editable(entry.make({.domain = domain}));
         const AdaptationReport report = space->adapt({scene.sources, nullptr, scene.ratio, target});
@@ -167,6 +168,12 @@ Outcome search(const CatalogueEntry& entry, Scene (*make)(std::uint64_t), std::u
     return outcome;
 }
 
+std::vector<std::uint64_t> first_scenes(std::uint64_t count) {
+    std::vector<std::uint64_t> scenes(count);
+    std::iota(scenes.begin(), scenes.end(), std::uint64_t{0});
+    return scenes;
+}
+
 void print(const CatalogueEntry& entry, const char* sources, const Outcome& outcome) {
     WARN(entry.id << ", " << sources << ": " << outcome.scenes << " scenes, " << outcome.met
                   << " met, " << outcome.broken << " above the target, worst " << outcome.worst
@@ -181,28 +188,43 @@ std::vector<CatalogueEntry> named(std::initializer_list<const char*> ids) {
 
 std::vector<CatalogueEntry> of_isotropic() { return named({"K_L", "K_oL", "K_V", "K_oV", "K_LA"}); }
 // Leaves of one metric would be millions.
-std::vector<CatalogueEntry> of_tensors() { return named({"K_V", "K_oV", "K_LA"}); }
+std::vector<CatalogueEntry> of_tensors() { return named({"K_V", "K_oV"}); }
+std::vector<CatalogueEntry> nearly_of_tensors() { return named({"K_LA"}); }
 
 }  // namespace
 
 CASE_OF_EACH(entry, of_isotropic(), "a promise is kept of isotropic scenes") {
-    const Outcome outcome = search(entry, isotropic_scene, 0, 12, 4000);
+    const Outcome outcome = search(entry, isotropic_scene, first_scenes(12), 4000);
     CHECK(outcome.met >= 8);
     CHECK(outcome.broken == 0);
 }
 
-CASE_OF_EACH(entry, of_tensors(), "a promise is nearly kept of scenes of tensors") {
-    const Outcome outcome = search(entry, tensor_scene, 0, 4, 1000);
+// Scenes in which leaves passed although a search finds 0.104 to 0.134 in them: sources just beyond
+// a face, cones that meet on one, the tip of a cone near a corner.
+CASE_OF_EACH(entry, of_tensors(), "a promise is kept of scenes of tensors") {
+    const Outcome outcome = search(entry, tensor_scene, {24, 29, 50, 73, 85, 91}, 94000);
+    CHECK(outcome.met == outcome.scenes);
+    CHECK(outcome.broken == 0);
+}
+
+CASE_OF_EACH(entry, nearly_of_tensors(), "a promise is nearly kept of scenes of tensors") {
+    const Outcome outcome = search(entry, tensor_scene, first_scenes(4), 1000);
     CHECK(outcome.met >= 2);
     CHECK(outcome.worst <= 2 * target);
 }
 
 CASE_OF_EACH(entry, of_isotropic(), "all scenes of isotropic sources", "[.][promise]") {
-    const Outcome outcome = search(entry, isotropic_scene, 0, 500, 20000);
+    const Outcome outcome = search(entry, isotropic_scene, first_scenes(500), 20000);
     print(entry, "isotropic", outcome);
     CHECK(outcome.broken == 0);
 }
 
 CASE_OF_EACH(entry, of_tensors(), "all scenes of tensors", "[.][promise]") {
-    print(entry, "tensors", search(entry, tensor_scene, 0, 100, 4000));
+    const Outcome outcome = search(entry, tensor_scene, first_scenes(500), 94000);
+    print(entry, "tensors", outcome);
+    CHECK(outcome.broken == 0);
+}
+
+CASE_OF_EACH(entry, nearly_of_tensors(), "many scenes of tensors", "[.][promise]") {
+    print(entry, "tensors", search(entry, tensor_scene, first_scenes(100), 4000));
 }

@@ -128,3 +128,41 @@ TEST_CASE("the nearest place of a box is where the cone is smallest") {
         }
     }
 }
+
+TEST_CASE("places around the tip of a cone are in boxes that are large beside their distance") {
+    const Metric metric = layer_metric(Vector(1, 2, 3).normalized(), 0.01, 0.1);
+    const PointSource source{Point(0.4, 0.6, 1.001), metric};
+    const SingleCones cones({&source, 1}, ratio, target);
+    const Box box{Point(0, 0, 0), Point(1, 1, 1)};
+    std::vector<Point> places;
+    cones.append_around_tips(box, places);
+    CHECK(places.size() >= 12);
+    int on_face = 0, near = 0;
+    for (const Point& x : places) {
+        REQUIRE(box.contains(x));
+        on_face += x.z() == 1 ? 1 : 0;
+        near += metric_length(metric, x - source.position) < 2 ? 1 : 0;
+    }
+    CHECK(on_face > 0);
+    CHECK(on_face < static_cast<int>(places.size()));
+    CHECK(near > 0);
+
+    std::vector<Point> none;
+    cones.append_around_tips({Point(0, 0, -2), Point(1, 1, -1)}, none);
+    cones.append_around_tips({Point(0.39, 0.59, 0.94), Point(0.41, 0.61, 0.96)}, none);
+    CHECK(none.empty());
+}
+
+TEST_CASE("metrics beyond a cone are in contact with it, if only a little") {
+    const PointSource source{Point(0.4, 0.6, 1.1), Metric::isotropic(0.2)};
+    const Box box{Point(0, 0, 0), Point(1, 1, 1)};
+    const SingleCones cones({&source, 1}, ratio, target);
+    const Metric at_nearest = cone_at(source, Point(0.4, 0.6, 1));
+    for (const double factor : {0.98, 1.02}) {
+        std::vector<Point> contacts;
+        const Departure departure = cones.at_nearest_place(
+            0, box, [&](const Point&) { return factor * at_nearest; }, &contacts);
+        CHECK(departure.worst == 0);
+        CHECK(contacts.size() == (factor > 1 ? 1 : 0));
+    }
+}

@@ -177,7 +177,7 @@ double NearbyField::evaluate_roughly(std::span<const Point> x, bool shared, std:
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = at(x[i]);
         return 1;
     }
-    if (field.cones().has_starts()) {
+    if (field.cones().has_starts() && !field.has_few_sources()) {
         search_->by_close_cones(x, out);
         return std::numeric_limits<double>::infinity();
     }

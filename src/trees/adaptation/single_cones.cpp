@@ -67,9 +67,15 @@ SingleCones::SingleCones(std::span<const PointSource> sources, double ratio, dou
 }
 
 Departure SingleCones::at_nearest_place(std::size_t source, const Box& box,
-                                        const MetricAt& metric_at) const {
+                                        const MetricAt& metric_at,
+                                        std::vector<Point>* contacts) const {
     const Point x = nearest_place(source, box);
-    return beyond(source, metric_at(x), of_interest_, x);
+    const Metric own = metric_at(x);
+    if (contacts != nullptr &&
+        !is_within(own, 1, cone_factor(sources_[source], ratio_, x) * sources_[source].metric)) {
+        contacts->push_back(x);
+    }
+    return beyond(source, own, of_interest_, x);
 }
 
 // Of a metric at x that is longer than the cone by more than this factor.
@@ -85,19 +91,52 @@ Departure SingleCones::beyond(std::size_t source, const Metric& own, double most
 }
 
 Departure SingleCones::worst_in(const Box& box, const std::array<Metric, 8>& at_corners,
-                                const MetricAt& metric_at) const {
+                                const MetricAt& metric_at, std::vector<Point>* contacts) const {
     Part leaf{box, {}};
     for (int c = 0; c < 8; ++c) leaf.at.set(c, at_corners[static_cast<std::size_t>(c)]);
     Departure worst;
     for (std::size_t k = 0; k < size(); ++k) {
-        if (doubtful_corners(k, leaf, of_interest_) == 0) continue;
-        Departure departure = at_nearest_place(k, box, metric_at);
+        const double least = contacts != nullptr ? 1 : of_interest_;
+        if (doubtful_corners(k, leaf, least) == 0) continue;
+        Departure departure = at_nearest_place(k, box, metric_at, contacts);
         for (const double most : {most_along_, most_}) {
             if (!(departure.worst > target_)) find_exceeded(k, leaf, most, departure);
         }
         worst.take(departure);
     }
     return worst;
+}
+
+void SingleCones::append_around_tips(const Box& box, std::vector<Point>& places) const {
+    constexpr double near = 0.25;  // as a share of the box
+    for (std::size_t k = 0; k < size(); ++k) {
+        const Metric& metric = sources_[k].metric;
+        const double reach = near * std::ranges::max(metric_edge_lengths(metric, box.edges()));
+        const double gap = (nearest_in(box, position(k)) - position(k)).squaredNorm();
+        const double longest = metric.xx + metric.yy + metric.zz;
+        if (gap > reach * reach * longest * longest) continue;
+        const Point nearest = nearest_place(k, box);
+        const double distance = metric_length(metric, nearest - position(k));
+        if (distance > reach) continue;
+        const EigenFrame frame = eigen_frame(metric);
+        for (const double share : {0.5, 1.5, 4.0}) {
+            const double size = share * std::max(distance, 0.5);
+            if (size > 2 * reach / near) break;
+            // Along the axes of the metric, and between them.
+            for (int way = 0; way < 27; ++way) {
+                const Vector along(way % 3 - 1, way / 3 % 3 - 1, way / 9 - 1);
+                const double steps = along.cwiseAbs().sum();
+                if (steps != 1 && steps != 3) continue;
+                Vector step = Vector::Zero();
+                for (int a = 0; a < 3; ++a) {
+                    step += along[a] * frame.lengths[static_cast<std::size_t>(a)] *
+                            frame.directions.col(a);
+                }
+                const Point x = nearest_in(box, nearest + size / std::sqrt(steps) * step);
+                if (x != nearest) places.push_back(x);
+            }
+        }
+    }
 }
 
 // Bits of corners; if none, trilinear metrics are nowhere in the box longer than the cone by more

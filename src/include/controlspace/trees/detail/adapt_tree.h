@@ -35,6 +35,7 @@ public:
         : tree_(tree),
           storage_(storage),
           field_(field),
+          aim_(field.target()),
           max_leaves_(goal.max_leaves),
           next_to_sources_(tree, storage, field, goal.sources) {
         if (field.has_ranges()) {
@@ -56,11 +57,15 @@ public:
     /// false where the leaf must stay as it is.
     ///
     /// Leaves are sampled in their LeafPlaces; if `proved`, those that pass also at other places.
-    /// Leaves above the target are fitted anew or cut, and sampled again. Returns the largest
-    /// departure that is left; infinite if some leaf was not to be cut, and neither shown to keep
-    /// the target nor found to exceed it.
+    /// Leaves above the target, or just below it where that is affordable, are fitted anew or cut,
+    /// and sampled again. Returns the largest departure that is left; infinite if some leaf was not
+    /// to be cut, and neither shown to keep the target nor found to exceed it.
     template <class Split>
     double run(bool proved, Split&& split) {
+        // A peak is rarely found to its very top.
+        constexpr double share_where_sampled = 0.97;
+        is_thorough_ = proved && !field_.has_ranges() && field_.has_few_sources();
+        if (is_thorough_) aim_ = share_where_sampled * field_.target();
         states_.assign(tree_.leaves(), LeafState::fresh);
         departures_.resize(tree_.leaves());
         while (round(proved, split)) {
@@ -112,7 +117,7 @@ private:
             // It may have been cut to make way for a neighbour.
             if (states_[l.leaf] != LeafState::settled) continue;
             Departure& departure = departures_[l.leaf];
-            if (!(departure.worst > field_.target())) continue;
+            if (!(departure.worst > aim_)) continue;
             if constexpr (requires { storage_.learn(l.leaf, departure.where, field_); }) {
                 if (departure.is_elsewhere && storage_.learn(l.leaf, departure.where, field_)) {
                     states_[l.leaf] = LeafState::changed;
@@ -196,8 +201,9 @@ private:
         constexpr std::uint64_t places = 64;
         NearbyField nearby(field_);
         nearby.enter(leaf.box, true);
-        return LeafJudge<Node, Storage>(tree_, storage_, field_.target())
-            .at_sequence(leaf, nearby, 0, places);
+        Findings found(leaf);
+        LeafJudge<Node, Storage>(tree_, storage_, aim_).at_sequence(leaf, nearby, 0, places, found);
+        return found.departure;
     }
 
     // Those in this state, or in a later one.
@@ -223,7 +229,7 @@ private:
         }
         places_used_ = first.back();
         for (const LeafBox& l : leaves) departures_[l.leaf] = {};
-        const LeafJudge judge(tree_, storage_, field_.target());
+        const LeafJudge judge(tree_, storage_, aim_);
         if constexpr (HasConstantLeaves<Storage>) {
             if (field_.has_ranges()) {
                 fit_to_ranges(leaves, judge);
@@ -231,39 +237,54 @@ private:
             }
         }
         sample_sources();
-        std::vector<Departure> suspected;
-        if (!has_bounds()) {
-            suspected = next_to_sources_.worst(
-                leaves, [&](LeafIndex leaf) { return states_[leaf] != LeafState::settled; });
+        const bool is_sampled = !has_bounds();
+        if (is_sampled) {
+            next_to_sources_.find_beside(
+                [&](LeafIndex leaf) { return states_[leaf] != LeafState::settled; });
         }
         in_parallel(leaves.size(), [&, nearby = NearbyField(field_)](std::size_t i) mutable {
             const LeafBox& l = leaves[i];
             nearby.enter(l.box, true);
-            Departure& departure = departures_[l.leaf];
-            const auto is_bad = [&] { return departure.worst > field_.target(); };
+            Findings found(l);
+            Departure& departure = found.departure;
+            if (departures_[l.leaf].worst > 0) {
+                found.take(departures_[l.leaf].worst, departures_[l.leaf].where);
+            }
+            const auto is_bad = [&] { return departure.worst > aim_; };
             const bool needs_axis = Node::arity == 2;
-            if (!suspected.empty() && !is_bad()) {
-                judge.examine(l, nearby, suspected[l.leaf], departure);
+            if (is_sampled && !is_bad()) {
+                std::vector<Point> further;
+                const Departure estimate = next_to_sources_.worst_in(l, further);
+                judge.examine(l, nearby, estimate, further, found);
             }
             if (states_[l.leaf] == LeafState::fresh && !is_fitted(l.leaf) &&
                 (needs_axis || !is_bad())) {
-                const Departure own = judge.at_places_of(l, nearby);
-                departure.take(own.worst, own.where);
-                departure.along = own.along;
+                judge.at_places_of(l, nearby, found);
             }
-            if (!proved || is_bad()) return;
-            Departure elsewhere;
-            if (has_bounds()) {
+            if (proved && !is_bad()) {
                 if constexpr (HasTrilinearLeaves<Storage>) {
-                    elsewhere = judge.everywhere(l, nearby);
+                    if (!is_sampled) {
+                        const Departure bound = judge.everywhere(l, nearby);
+                        departure.take(bound.worst, bound.where);
+                    }
                 }
-            } else {
-                elsewhere = judge.at_sequence(l, nearby, first[i], first[i + 1]);
+                if (is_sampled) search(l, judge, nearby, first[i], first[i + 1], found);
+                departure.is_elsewhere = is_bad();
             }
-            departure.take(elsewhere.worst, elsewhere.where);
-            if (!has_bounds()) judge.climb(l, nearby, departure);
-            departure.is_elsewhere = is_bad();
+            departures_[l.leaf] = departure;
         });
+    }
+
+    // For the worst place of a leaf that seems to be within the target.
+    void search(const LeafBox& l, const LeafJudge<Node, Storage>& judge, NearbyField& nearby,
+                std::uint64_t first, std::uint64_t end, Findings& found) const {
+        constexpr std::uint64_t more = 32;
+        judge.at_sequence(l, nearby, first, end, found);
+        const double worst = found.departure.worst;
+        if (is_thorough_ && worst > 0.5 * aim_ && !(worst > aim_)) {
+            judge.at_sequence(l, nearby, end, end + more, found);
+        }
+        judge.climb(l, nearby, is_thorough_ ? Peaks::most : 1, found);
     }
 
     // Sets leaves of a constant value to what is between the bounds of the field in them. Bounds
@@ -302,6 +323,8 @@ private:
     const Topology<Node>& tree_;
     Storage& storage_;
     const GoalField& field_;
+    double aim_;  // leaves above it are cut
+    bool is_thorough_ = false;
     const std::size_t max_leaves_;
     std::vector<Point> sources_;
     std::vector<Metric> at_sources_;  // the field there

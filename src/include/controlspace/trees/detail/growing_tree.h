@@ -81,7 +81,9 @@ protected:
         });
         report.met = report.reached <= goal.target;
         report.is_bound = report.met && adaptation.shows_bounds();
-        if (too_many) {
+        if (report.met) {
+            // Leaves that were not cut may be just below the target.
+        } else if (too_many) {
             report.shortfall = leaves_shortfall(goal.max_leaves);
         } else if (too_deep) {
             report.shortfall = depth_shortfall(cuts().max_depth());

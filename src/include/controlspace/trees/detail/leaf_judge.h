@@ -12,10 +12,23 @@
 #include "controlspace/trees/detail/departure.h"
 #include "controlspace/trees/detail/leaf_places.h"
 #include "controlspace/trees/detail/nearby_field.h"
+#include "controlspace/trees/detail/peaks.h"
 #include "controlspace/trees/detail/sample_leaves.h"
 #include "controlspace/trees/topology.h"
 
 namespace controlspace {
+
+/// What is found in a leaf.
+struct Findings {
+    Departure departure;
+    Peaks peaks;
+
+    explicit Findings(const LeafBox& leaf) : departure(), peaks(leaf.box) {}
+    void take(double delta, const Point& x) {
+        departure.take(delta, x);
+        peaks.enter(delta, x);
+    }
+};
 
 /// Compares the leaves of a tree with the field of a goal.
 template <class Node, class Storage>
@@ -26,36 +39,35 @@ public:
 
     /// At the places of the leaf; the others are skipped where some of them show that it has to be
     /// cut, and how.
-    Departure at_places_of(const LeafBox& of, NearbyField& nearby) const {
-        Departure departure;
+    void at_places_of(const LeafBox& of, NearbyField& nearby, Findings& found) const {
         LogRatios log_ratio{};
         for (const Range& range : ranges()) {
-            compare_at(of, nearby, range, departure, log_ratio);
-            if (departure.worst > target_) break;
+            compare_at(of, nearby, range, found, log_ratio);
+            if (found.departure.worst > target_) break;
         }
-        if constexpr (Node::arity == 2) departure.along = sums_along(log_ratio);
-        return departure;
+        if constexpr (Node::arity == 2) found.departure.along = sums_along(log_ratio);
     }
 
     /// How much speaks for a cut across each axis.
     std::array<double, 3> along(const LeafBox& of, NearbyField& nearby) const {
-        Departure departure;
+        Findings found(of);
         LogRatios log_ratio{};
-        compare_at(of, nearby, ranges().front(), departure, log_ratio);
+        compare_at(of, nearby, ranges().front(), found, log_ratio);
         return sums_along(log_ratio);
     }
 
-    /// At places number `first` to `end - 1` of the sequence in the box.
-    Departure at_sequence(const LeafBox& of, NearbyField& nearby, std::uint64_t first,
-                          std::uint64_t end) const {
+    /// At places number `first` to `end - 1` of the sequence in a box that is larger than the leaf:
+    /// those beyond it stand for its faces, edges and corners.
+    void at_sequence(const LeafBox& of, NearbyField& nearby, std::uint64_t first, std::uint64_t end,
+                     Findings& found) const {
         std::array<Point, LeafPlaces::all> x;
-        Departure departure;
+        const Vector beyond = 0.125 * of.box.edges();
+        const Box box{of.box.low - beyond, of.box.high + beyond};
         while (first < end) {
             const std::size_t n = std::min<std::uint64_t>(x.size(), end - first);
-            for (std::size_t i = 0; i < n; ++i) x[i] = place_in(of.box, first++);
-            compare_with(of, nearby, std::span(x).first(n), false, departure, {});
+            for (std::size_t i = 0; i < n; ++i) x[i] = nearest_in(of.box, place_in(box, first++));
+            compare_with(of, nearby, std::span(x).first(n), false, found, {});
         }
-        return departure;
     }
 
     /// Of lengths that are trilinear in the leaf: the target, if bounds show that it is kept
@@ -82,36 +94,51 @@ public:
         return departure;
     }
 
-    /// At a place where the departure is estimated; far above the target the estimate will do.
+    /// At a place where the departure is estimated, and at others; far above the target the
+    /// estimate will do.
     void examine(const LeafBox& of, NearbyField& nearby, const Departure& estimate,
-                 Departure& departure) const {
+                 std::span<const Point> others, Findings& found) const {
         constexpr double far_above = 1.2;
-        if (estimate.worst == 0) return;
-        if (estimate.worst > far_above * target_) {
-            departure.take(estimate.worst, estimate.where);
-        } else {
-            compare_with(of, nearby, {&estimate.where, 1}, false, departure, {});
+        if (estimate.worst > far_above * target_) return found.take(estimate.worst, estimate.where);
+        if (estimate.worst > 0) {
+            compare_with(of, nearby, {&estimate.where, 1}, false, found, {});
+        }
+        while (!others.empty()) {
+            const std::size_t n = std::min<std::size_t>(others.size(), LeafPlaces::all);
+            compare_with(of, nearby, others.first(n), false, found, {});
+            others = others.subspan(n);
         }
     }
 
-    /// Hill climb from the worst place so far, as long as that comes near enough to the target: the
-    /// nearer, the longer it has taken.
-    void climb(const LeafBox& of, NearbyField& nearby, Departure& departure) const {
-        constexpr int rounds = 10;
-        Vector step = 0.2 * of.box.edges();
+    /// Hill climbs from the worst peaks found so far, `most` of them, as long as they come near
+    /// enough to the target: the nearer, the longer they have taken. At places all around: what is
+    /// climbed has creases, where other cones begin to matter.
+    void climb(const LeafBox& of, NearbyField& nearby, std::size_t most, Findings& found) const {
+        constexpr int rounds = 16;
         std::array<Point, 6> x;
-        for (int round = 0; round < rounds && !(departure.worst > target_); ++round) {
-            const double near = 0.5 + 0.04 * round;
-            if (!(departure.worst > near * target_)) return;
-            for (std::size_t i = 0; i < x.size(); ++i) {
-                const auto axis = static_cast<Axis>(i / 2);
-                x[i] = departure.where;
-                x[i][axis] += i % 2 == 0 ? step[axis] : -step[axis];
-                x[i] = nearest_in(of.box, x[i]);
+        std::uint64_t next = 0;
+        Peaks starts = found.peaks;
+        const std::span<const Peaks::Peak> sorted = starts.sorted();
+        for (const Peaks::Peak& start : sorted.first(std::min(most, sorted.size()))) {
+            Findings summit(of);
+            summit.departure.take(start.delta, start.where);
+            Departure& best = summit.departure;
+            Vector reach = 0.25 * of.box.edges();
+            for (int round = 0; round < rounds; ++round) {
+                if (found.departure.worst > target_) return;
+                const double near = 0.5 * (1 + static_cast<double>(round) / rounds);
+                if (!(best.worst > near * target_)) break;
+                // Some much nearer: peaks at sources are far narrower than their leaf.
+                for (std::size_t i = 0; i < x.size(); ++i) {
+                    const Vector side = i % 2 == 0 ? reach : 0.15 * reach;
+                    const Box around{best.where - side, best.where + side};
+                    x[i] = nearest_in(of.box, place_in(around, next++));
+                }
+                const double before = best.worst;
+                compare_with(of, nearby, x, false, summit, {});
+                if (!(best.worst > before)) reach *= 0.6;
+                found.departure.take(best.worst, best.where);
             }
-            const double before = departure.worst;
-            compare_with(of, nearby, x, false, departure, {});
-            if (!(departure.worst > before)) step *= 0.4;
         }
     }
 
@@ -136,24 +163,24 @@ public:
 private:
     using LogRatios = std::array<double, LeafPlaces::all>;
 
-    void compare_at(const LeafBox& of, NearbyField& nearby, const Range& range,
-                    Departure& departure, LogRatios& log_ratio) const {
+    void compare_at(const LeafBox& of, NearbyField& nearby, const Range& range, Findings& found,
+                    LogRatios& log_ratio) const {
         std::array<Point, LeafPlaces::all> x;
         const std::size_t n = range.to - range.from;
         for (std::size_t i = 0; i < n; ++i) x[i] = leaf_places().in(of.box, range.from + i);
         compare_with(
-            of, nearby, std::span(x).first(n), true, departure,
+            of, nearby, std::span(x).first(n), true, found,
             Node::arity == 2 ? std::span(log_ratio).subspan(range.from) : std::span<double>());
     }
 
     // Writes, if there is room, the logarithms of how much longer the leaf's lengths are.
     void compare_with(const LeafBox& of, NearbyField& nearby, std::span<const Point> x, bool shared,
-                      Departure& departure, std::span<double> log_ratio) const {
+                      Findings& found, std::span<double> log_ratio) const {
         std::array<Metric, LeafPlaces::all> own, field;
         values_in(of.leaf, x, own);
         const double factor = nearby.evaluate_roughly(x, shared, std::span(field).first(x.size()));
         for (std::size_t i = 0; i < x.size(); ++i) {
-            compare(own[i], field[i], factor, x[i], nearby, departure);
+            compare(own[i], field[i], factor, x[i], nearby, found);
             if (!log_ratio.empty()) {
                 log_ratio[i] = std::log(mean_length(own[i]) / mean_length(field[i]));
             }
@@ -169,8 +196,8 @@ private:
     // `longest` is the field at x, or longer by less than the factor. What may be near to the
     // target is evaluated exactly.
     void compare(const Metric& own, const Metric& longest, double factor, const Point& x,
-                 NearbyField& nearby, Departure& departure) const {
-        if (factor == 1) return departure.take(directional_nonconformity(own, longest), x);
+                 NearbyField& nearby, Findings& found) const {
+        if (factor == 1) return found.take(directional_nonconformity(own, longest), x);
         if (std::isinf(factor)) {
             Metric exact = longest;
             double delta = directional_nonconformity(own, exact);
@@ -178,19 +205,19 @@ private:
                 nearby.evaluate({&x, 1}, {&exact, 1});
                 delta = directional_nonconformity(own, exact);
             }
-            return departure.take(delta, x);
+            return found.take(delta, x);
         }
         const double from_longest = nonconformity(own, longest);
         const Metric shortest = (1 / factor) * longest;
         const double from_shortest = nonconformity(own, shortest);
         const double most = std::max(from_longest, from_shortest);
-        if (most <= 0.75 * target_) return departure.take(most, x);
+        if (most <= 0.75 * target_) return found.take(most, x);
         const double least = std::min(from_longest, from_shortest);
         const bool is_outside = own.xx > longest.xx || own.xx < shortest.xx;
-        if (is_outside && least > target_) return departure.take(least, x);
+        if (is_outside && least > target_) return found.take(least, x);
         Metric exact;
         nearby.evaluate({&x, 1}, {&exact, 1});
-        departure.take(nonconformity(own, exact), x);
+        found.take(nonconformity(own, exact), x);
     }
 
     static std::array<double, 3> sums_along(const LogRatios& departure) {

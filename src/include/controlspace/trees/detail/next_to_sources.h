@@ -32,19 +32,13 @@ public:
                   std::span<const PointSource> sources)
         : tree_(tree), storage_(storage), field_(field), sources_(sources) {}
 
-    /// Of each leaf, the place where it exceeds a cone most, and an estimate of its departure from
-    /// the field there; nothing if that is far below the target. Few sources are compared with all
-    /// `leaves`, many with those leaves beside their own of which `is_wanted(leaf)` holds.
+    /// Before a round of `worst_in`. Few sources are compared with all leaves there, many, here,
+    /// with those leaves beside their own of which `is_wanted(leaf)` holds.
     template <class IsWanted>
-    std::vector<Departure> worst(std::span<const LeafBox> leaves, const IsWanted& is_wanted) {
-        constexpr std::size_t few = 64;
+    void find_beside(const IsWanted& is_wanted) {
         if (!cones_) cones_.emplace(sources_, field_.ratio(), field_.target());
-        std::vector<Departure> worst(tree_.leaves());
-        if (sources_.size() <= few) {
-            in_parallel(leaves.size(),
-                        [&](std::size_t i) { worst[leaves[i].leaf] = worst_of_all(leaves[i]); });
-            return worst;
-        }
+        if (field_.has_few_sources()) return;
+        beside_.assign(tree_.leaves(), {});
         tbb::enumerable_thread_specific<std::vector<std::pair<LeafIndex, Departure>>> found;
         in_parallel(sources_.size(), [&](std::size_t i) {
             for_each_leaf_beside(sources_[i].position, [&](const LeafPlace& beside) {
@@ -55,7 +49,27 @@ public:
             });
         });
         for (const auto& of_thread : found) {
-            for (const auto& [leaf, departure] : of_thread) worst[leaf].take(departure);
+            for (const auto& [leaf, departure] : of_thread) beside_[leaf].take(departure);
+        }
+    }
+
+    /// The place where the leaf exceeds a single cone most, and an estimate of its departure from
+    /// the field there; nothing if that is far below the target. Of few sources, appends to
+    /// `further` where it exceeds cones, and places around the tips of cones.
+    Departure worst_in(const LeafBox& of, std::vector<Point>& further) const {
+        if (!field_.has_few_sources()) return beside_[of.leaf];
+        cones_->append_around_tips(of.box, further);
+        Departure worst;
+        if constexpr (HasTrilinearLeaves<Storage>) {
+            std::array<Metric, 8> at_corners;
+            const auto metrics = storage_.metrics().field();
+            std::ranges::transform(storage_.nodes_of(of.leaf), at_corners.begin(),
+                                   [&](const auto node) { return metrics[node]; });
+            worst = cones_->worst_in(of.box, at_corners, metric_in(of.leaf), &further);
+        } else {
+            for (std::size_t k = 0; k < sources_.size(); ++k) {
+                worst.take(cones_->at_nearest_place(k, of.box, metric_in(of.leaf), &further));
+            }
         }
         return worst;
     }
@@ -64,22 +78,6 @@ private:
     auto metric_in(LeafIndex leaf) const {
         return
             [this, leaf](const Point& x) { return value_in(tree_, field_of(storage_), leaf, x); };
-    }
-
-    Departure worst_of_all(const LeafBox& of) const {
-        Departure worst;
-        if constexpr (HasTrilinearLeaves<Storage>) {
-            std::array<Metric, 8> at_corners;
-            const auto metrics = storage_.metrics().field();
-            std::ranges::transform(storage_.nodes_of(of.leaf), at_corners.begin(),
-                                   [&](const auto node) { return metrics[node]; });
-            worst = cones_->worst_in(of.box, at_corners, metric_in(of.leaf));
-        } else {
-            for (std::size_t k = 0; k < sources_.size(); ++k) {
-                worst.take(cones_->at_nearest_place(k, of.box, metric_in(of.leaf)));
-            }
-        }
-        return worst;
     }
 
     // Across the nearest faces, edges and corner of the leaf that holds x.
@@ -104,6 +102,7 @@ private:
     const GoalField& field_;
     std::span<const PointSource> sources_;
     std::optional<SingleCones> cones_;  // once they are needed
+    std::vector<Departure> beside_;     // of the leaves, where sources are many
 };
 
 }  // namespace controlspace

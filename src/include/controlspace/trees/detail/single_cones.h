@@ -27,12 +27,19 @@ public:
 
     /// How far the metric is beyond the cone where that is smallest in the box: an estimate of
     /// the departure from the field; nothing if it is far below the target.
-    Departure at_nearest_place(std::size_t source, const Box& box, const MetricAt& metric_at) const;
+    Departure at_nearest_place(std::size_t source, const Box& box, const MetricAt& metric_at,
+                               std::vector<Point>* contacts = nullptr) const;
 
     /// The worst for all cones, of metrics that are trilinear in the box between these corners: at
     /// the nearest places, and elsewhere where a cone is exceeded by more than the target allows.
+    /// Appends to `contacts` the nearest places at which the metric is beyond the cone: there
+    /// several cones together may make the field shorter than each of them.
     Departure worst_in(const Box& box, const std::array<Metric, 8>& at_corners,
-                       const MetricAt& metric_at) const;
+                       const MetricAt& metric_at, std::vector<Point>* contacts = nullptr) const;
+
+    /// Appends places of the box around those that are nearest to sources much nearer than the box
+    /// is large, in their metrics: there the field bends within a small part of the box.
+    void append_around_tips(const Box& box, std::vector<Point>& places) const;
 
 private:
     struct Part;
