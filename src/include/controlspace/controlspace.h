@@ -204,9 +204,10 @@ CSPACE_API cspace_status cspace_save(const cspace* space, const char* file);
 CSPACE_API cspace_status cspace_load(const char* file, cspace** space);
 
 /** Loads an octree that ranks of MPI wrote in pieces, from its index (.pctrl), to be read. Of a
- * region, x0 y0 z0 x1 y1 z1, only the pieces that answer in it are loaded, and it is the domain: for
- * a process that meshes a part. NULL: all of them. */
-CSPACE_API cspace_status cspace_load_pieces(const char* index, const double* region, cspace** space);
+ * region, x0 y0 z0 x1 y1 z1, only the pieces that answer in it are loaded, and it is the domain:
+ * for a process that meshes a part. NULL: all of them. */
+CSPACE_API cspace_status cspace_load_pieces(const char* index, const double* region,
+                                            cspace** space);
 
 /* NOLINTEND(readability-identifier-naming) */
 

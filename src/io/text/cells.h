@@ -10,8 +10,8 @@
 namespace controlspace {
 
 /// The cells of any structure, each once: the leaves of a tree, the cells of a grid, as far as
-/// they lie in the domain. Found by calls of cell_at alone, for any structure; in ascending order of
-/// their low corners, x first.
+/// they lie in the domain. Found by calls of cell_at alone, for any structure; in ascending order
+/// of their low corners, x first.
 std::vector<Box> elements_of(const ControlSpace& space);
 /// The same of those in `regions`, unions of cells.
 std::vector<Box> elements_of(const ControlSpace& space, std::span<const Box> regions);
