@@ -49,8 +49,9 @@ AdaptationReport BackgroundTets::adapt(const AdaptationGoal& goal) {
         named.push_back({{}, nearest_in(domain(), places[i])});
     }
     ask(named, wanted);
-    // Beside the largest errors that are found there may be somewhat larger ones.
-    const double allowed = 0.8 * goal.target;
+    // Beside the largest errors that are found there may be somewhat larger ones, of tensors more
+    // so.
+    const double allowed = (wanted.has_ranges() ? 0.8 : 0.75) * goal.target;
     AdaptationReport report;
     while (refine(named, wanted, allowed, report.shortfall)) continue;
     report.reached = wanted.largest_departure(domain(), [&](auto x, auto out) { sample(x, out); });
