@@ -76,7 +76,7 @@ def main(arguments):
         prog="bench/check", description="Compares the results of two runs of the same cases, but for times.",
         epilog="Exit status: 0 the same, but for rounding; 1 different; 2 they cannot be compared.")
     parser.add_argument("results", help="folder of results")
-    parser.add_argument("kept", help="folder of results to compare with, such as bench/results/paper-sphere")
+    parser.add_argument("kept", help="folder of results to compare with, such as bench/results/paper-sphere-quick")
     given = parser.parse_args(arguments)
     lines, is_different = check(read_results(given.results), read_results(given.kept))
     print("\n".join(lines))

@@ -2,6 +2,7 @@
 string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
 get_target_property(build_flags controlspace_flags INTERFACE_COMPILE_OPTIONS)
 list(FILTER build_flags EXCLUDE REGEX "^-W|^\\$")
+list(TRANSFORM build_flags REPLACE ">$" "")  # where a generator expression ends
 list(JOIN build_flags " " build_flags)
 string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}} ${build_flags}" build_flags)
 add_custom_target(controlspace_build_info
