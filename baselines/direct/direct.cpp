@@ -8,8 +8,8 @@
 
 #include "baselines/rows.h"
 #include "cones/cone_field.h"
+#include "controlspace/space/detail/given_sources.h"
 #include "controlspace/space/detail/goal_field.h"
-#include "controlspace/space/detail/own_growths.h"
 #include "controlspace/space/detail/saved.h"
 #include "controlspace/space/detail/shared_builder.h"
 #include "controlspace/space/detail/state.h"
@@ -31,9 +31,15 @@ public:
     }
 
     InsertionReport insert(std::span<const PointSource> sources) {
-        if (sources.size() > 1) sources_.reserve(sources_.size() + sources.size());
+        search_.reset();
         // A source that is refused leaves those before it.
-        for (std::size_t i = 0; i < sources.size(); ++i) append(sources[i], i);
+        std::size_t valid = 0;
+        while (valid < sources.size() && is_valid(sources[valid], domain_)) ++valid;
+        if (sources_.size() + valid > most) {
+            refuse("sources kept as they are: give fewer than 2^31");
+        }
+        sources_.add(sources.first(valid));
+        if (valid < sources.size()) require_valid(sources[valid], valid, domain_);
         return {sources.size(), sources.size()};
     }
     GradationReport grade(const GradationOptions& options) {
@@ -50,10 +56,9 @@ public:
         ControlNodes nodes;
         NodeGraph graph;
         graph.first.assign(sources_.size() + 1, 0);
-        for (const PointSource& source : sources_) {
-            graph.positions.push_back(source.position);
-            nodes.metrics.push_back(source.metric);
-        }
+        graph.positions = sources_.positions();
+        nodes.metrics = sources_.metrics();
+        for (const double h : sources_.lengths()) nodes.metrics.push_back(Metric::isotropic(h));
         nodes.graph = std::move(graph);
         return nodes;
     }
@@ -64,41 +69,27 @@ public:
                 "`direct` cannot be saved with a continuous field: save a structure that holds "
                 "metrics");
         }
-        const ControlNodes nodes = control_nodes(Neighbourhood::faces);
-        state("sources.positions", positions(nodes.graph));
-        state("sources.metrics", nodes.metrics);
+        controlspace::save(state, "sources", sources_);
         state("sources.ratio", ratio_);
         state("sources.h_max", h_max_);
         state("sources.intersection", intersection_, IntersectionRule::in_turn);
-        OwnGrowths growths;
-        for (std::size_t i = 0; i < sources_.size(); ++i) growths.add(i, sources_[i].growth);
-        growths.save(state, "sources.growths");
     }
     void load(const StateReader& state) {
-        std::vector<Point> positions;
-        std::vector<Metric> metrics;
-        state("sources.positions", positions);
-        state("sources.metrics", metrics);
+        const SourceColumns loaded = load_sources(state, "sources");
         state("sources.ratio", ratio_);
         state("sources.h_max", h_max_);
         state.require(is_length(h_max_), "sources.h_max", "is no length");
         state("sources.intersection", intersection_, IntersectionRule::in_turn);
-        state.require(positions.size() == metrics.size(), "sources.metrics", "has another length");
         require_valid(GradationOptions{.ratio = ratio_});
-        OwnGrowths growths;
-        growths.load(state, "sources.growths", positions.size());
-        search_.reset();
-        sources_.clear();
-        sources_.reserve(positions.size());
-        for (std::size_t i = 0; i < positions.size(); ++i) {
-            append({positions[i], metrics[i], growths[i]}, i);
-        }
+        sources_ = {};
+        constexpr std::size_t at_once = 65536;
+        for (std::size_t i = 0; i < loaded.size(); i += at_once) insert(loaded.part(i, at_once));
     }
 
     const Box& domain() const { return domain_; }
     double ratio() const { return ratio_; }
     Metric largest() const { return largest_metric(domain_, h_max_); }
-    const std::vector<PointSource>& all() const { return sources_; }
+    const SourceColumns& all() const { return sources_; }
     const ControlSpace* continuous() const { return continuous_.get(); }
 
     /// The search among them, made once for all that is built.
@@ -113,20 +104,13 @@ public:
     }
 
 private:
-    void append(const PointSource& source, std::size_t index) {
-        search_.reset();
-        require_valid(source, index, domain_);
-        if (sources_.size() >= std::numeric_limits<std::uint32_t>::max() / 2) {
-            refuse("sources kept as they are: give fewer than 2^31");
-        }
-        sources_.push_back(source);
-    }
+    static constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max() / 2;
 
     Box domain_;
     double ratio_;
     double h_max_;
     IntersectionRule intersection_;
-    std::vector<PointSource> sources_;
+    SourceColumns sources_;
     std::shared_ptr<const ControlSpace> continuous_;
     mutable std::shared_ptr<const ConeField> search_;  ///< none since the last change
 };
@@ -164,7 +148,7 @@ public:
         footprint.control_nodes = count;
         footprint.bytes_payload = cones_.bytes_payload();
         footprint.bytes_topology = cones_.bytes_topology();
-        footprint.bytes_auxiliary = sources_->all().capacity() * sizeof(PointSource);
+        footprint.bytes_auxiliary = sources_->all().bytes();
         footprint.remark = fmt::format("cone law of ratio {}; {} of {} sources can matter",
                                        sources_->ratio(), count - cones_.dropped(), count);
         return footprint;
@@ -201,7 +185,7 @@ AdaptationReport Sources::adapt(const AdaptationGoal& goal) {
     const GoalField wanted(bounded, domain_);
     ratio_ = goal.ratio;
     intersection_ = goal.intersection;
-    sources_.assign(goal.sources.begin(), goal.sources.end());
+    sources_ = columns_of(goal.sources);
     continuous_ = goal.continuous;
     const Direct direct(std::make_shared<Sources>(*this));
     AdaptationReport report;

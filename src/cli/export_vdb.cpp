@@ -55,7 +55,7 @@ std::string export_vdb(const Export& e, VdbOptions vdb) {
     if (origin) {
         const auto& [study, c, workload] = *origin;
         vdb.max_bytes = space_options(study, c, workload).max_bytes;
-        if (with_sources) vdb.sources = workload.sources;
+        if (with_sources) vdb.sources = workload.sources.all();
     } else if (with_sources) {
         refuse("{} keeps no sources: leave them out of --grids", e.input.string());
     }

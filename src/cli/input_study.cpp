@@ -184,7 +184,7 @@ std::vector<PointSource> sources_of_input(const std::filesystem::path& input,
     if (study.sources.kind == SourcesKind::file) {
         return read_source_file(study.sources, file_readers());
     }
-    return make_workload(study, only_case(study).sources, file_readers()).sources;
+    return make_workload(study, only_case(study).sources, file_readers()).sources.all();
 }
 
 std::vector<std::filesystem::path> files_named(const std::filesystem::path& input) {

@@ -17,6 +17,19 @@ ConeField::ConeField(std::span<const PointSource> sources, double g, const Metri
       rule_(rule),
       cones_(make_cones(sources, g)) {}
 
+ConeField::ConeField(const SourceColumns& sources, double g, const Metric& largest,
+                     double tolerance, IntersectionRule rule)
+    : largest_(largest),
+      longest_(eigen_frame(largest).lengths[2]),
+      tolerance_(tolerance),
+      rule_(rule),
+      cones_(make_cones(sources, g)) {}
+
+ConeField::Cones ConeField::make_cones(const SourceColumns& sources, double g) const {
+    if (sources.are_isotropic()) return IsotropicCones(sources, g, longest_);
+    return make_cones(sources.all(), g);
+}
+
 ConeField::Cones ConeField::make_cones(std::span<const PointSource> sources, double g) const {
     const bool isotropic = std::all_of(sources.begin(), sources.end(), [](const PointSource& s) {
         return controlspace::is_isotropic(s.metric);

@@ -12,6 +12,7 @@
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/metric.h"
 #include "controlspace/sources/point_source.h"
+#include "controlspace/sources/source_columns.h"
 
 namespace controlspace {
 
@@ -39,6 +40,8 @@ public:
     /// takes 60 % of the time, 1e-2 half.
     ConeField(std::span<const PointSource> sources, double g, const Metric& largest,
               double tolerance = 0, IntersectionRule rule = IntersectionRule::order_free);
+    ConeField(const SourceColumns& sources, double g, const Metric& largest, double tolerance = 0,
+              IntersectionRule rule = IntersectionRule::order_free);
 
     /// What a search remembers from one call to the next: best kept from place to nearby place,
     /// by one thread for one field.
@@ -93,6 +96,7 @@ private:
     using Cones = std::variant<IsotropicCones, AnisotropicCones, OrderFreeCones>;
     Metric at(const Point& x, const Metric* further, Memory& memory) const;
     Cones make_cones(std::span<const PointSource> sources, double g) const;
+    Cones make_cones(const SourceColumns& sources, double g) const;
 
     Metric largest_;
     double longest_;  ///< of the lengths of `largest_`

@@ -20,7 +20,8 @@ namespace controlspace {
 
 namespace {
 
-void require_usable(std::span<const PointSource> sources, double g, const Metric& largest) {
+template <class Sources>
+void require_usable(const Sources& sources, double g, const Metric& largest) {
     require_valid(GradationOptions{.ratio = g});
     if (!is_positive_definite(largest)) {
         refuse(
@@ -32,19 +33,20 @@ void require_usable(std::span<const PointSource> sources, double g, const Metric
         refuse("{} sources for the reference: give fewer than 2^31", sources.size());
     }
     for (std::size_t i = 0; i < sources.size(); ++i) {
-        if (!sources[i].position.allFinite()) {
+        const PointSource& source = sources[i];
+        if (!source.position.allFinite()) {
             throw IndexedError(i,
                                fmt::format("source {}: its position is not finite: correct it", i));
         }
-        require_valid(sources[i], i, Box::everywhere());
+        require_valid(source, i, Box::everywhere());
     }
 }
 
 class ExactReference final : public ControlSpace {
 public:
-    ExactReference(std::span<const PointSource> sources, double g, const Metric& largest,
-                   double tolerance, IntersectionRule rule,
-                   std::shared_ptr<const ControlSpace> continuous)
+    template <class Sources>
+    ExactReference(const Sources& sources, double g, const Metric& largest, double tolerance,
+                   IntersectionRule rule, std::shared_ptr<const ControlSpace> continuous)
         : field_(sources, g, largest, tolerance, rule), continuous_(std::move(continuous)) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
@@ -96,18 +98,32 @@ private:
     Metric largest_;
 };
 
-}  // namespace
-
-std::unique_ptr<ControlSpace> exact_reference(std::vector<PointSource> sources, double g,
-                                              const Metric& largest, double tolerance,
-                                              IntersectionRule rule,
-                                              std::shared_ptr<const ControlSpace> continuous) {
+template <class Sources>
+std::unique_ptr<ControlSpace> reference_of(const Sources& sources, double g, const Metric& largest,
+                                           double tolerance, IntersectionRule rule,
+                                           std::shared_ptr<const ControlSpace> continuous) {
     require_usable(sources, g, largest);
     if (!std::isfinite(tolerance) || tolerance < 0) {
         refuse("tolerance {} of the reference: give a finite one >= 0", tolerance);
     }
     return std::make_unique<ExactReference>(sources, g, largest, tolerance, rule,
                                             std::move(continuous));
+}
+
+}  // namespace
+
+std::unique_ptr<ControlSpace> exact_reference(const SourceColumns& sources, double g,
+                                              const Metric& largest, double tolerance,
+                                              IntersectionRule rule,
+                                              std::shared_ptr<const ControlSpace> continuous) {
+    return reference_of(sources, g, largest, tolerance, rule, std::move(continuous));
+}
+
+std::unique_ptr<ControlSpace> exact_reference(const std::vector<PointSource>& sources, double g,
+                                              const Metric& largest, double tolerance,
+                                              IntersectionRule rule,
+                                              std::shared_ptr<const ControlSpace> continuous) {
+    return reference_of(sources, g, largest, tolerance, rule, std::move(continuous));
 }
 
 std::unique_ptr<ControlSpace> brute_force_reference(std::vector<PointSource> sources, double g,

@@ -177,8 +177,7 @@ struct DistributedSpace::Impl {
                                            std::span<const char> is_wanted,
                                            std::span<const Box> boxes, RankReport& about) const {
         const auto made = std::make_shared<InsertedPart<LeafMetrics>>(options.space, boxes);
-        GivenSources given;
-        given.add(sources);
+        const SourceColumns given = columns_of(sources);
         std::erase_if(sources, [&](const PointSource& source) {
             return is_wanted[octants.tree().find(source.position)] == 0;
         });

@@ -67,22 +67,24 @@ Workload read_share(Ranks& ranks, const Study& study, const Case& c) {
                              c.sources.h_min == 0 && c.sources.h_max == largest_magnitude;
     ranks.together([&] {
         if (is_by_parts) {
-            workload.sources = read_csv_part(files.front(), ranks.rank(), ranks.size());
+            workload.sources = columns_of(read_csv_part(files.front(), ranks.rank(), ranks.size()));
             return;
         }
         workload = make_workload(study, c.sources, file_readers());
         const auto border = [&](int r) {
-            const auto count = static_cast<std::ptrdiff_t>(workload.sources.size());
-            return workload.sources.begin() + count * r / ranks.size();
+            return workload.sources.size() * static_cast<std::size_t>(r) /
+                   static_cast<std::size_t>(ranks.size());
         };
-        workload.sources = std::vector<PointSource>(border(ranks.rank()), border(ranks.rank() + 1));
+        const std::size_t first = border(ranks.rank());
+        workload.sources =
+            columns_of(workload.sources.part(first, border(ranks.rank() + 1) - first));
     });
     if (!is_by_parts) return workload;
     constexpr double infinity = std::numeric_limits<double>::infinity();
     std::vector<double> ends(6, infinity);  // the lowest coordinates, and the highest's negatives
-    for (const PointSource& s : workload.sources) {
+    for (const Point& position : workload.sources.positions()) {
         for (std::size_t a = 0; a < 3; ++a) {
-            const double x = s.position[static_cast<Axis>(a)];
+            const double x = position[static_cast<Axis>(a)];
             ends[a] = std::min(ends[a], x);
             ends[a + 3] = std::min(ends[a + 3], -x);
         }
@@ -117,7 +119,7 @@ Made make(Ranks& ranks, const ParallelJob& job) {
                    .target = c.target_delta,
                    .octants_per_rank = static_cast<std::uint64_t>(std::max(job.octants, 0))};
     });
-    made.space = std::make_unique<DistributedSpace>(ranks.comm(), workload.sources, options);
+    made.space = std::make_unique<DistributedSpace>(ranks.comm(), workload.sources.all(), options);
     return made;
 }
 

@@ -84,12 +84,10 @@ void fill(const CatalogueEntry& entry, const StateReader& state, SavedControlSpa
     }
     own->set_recipe(saved.recipe);
     own->load(state);
-    std::shared_ptr<GivenSources> given;
-    if (GivenSources::are_in(state)) {
-        given = std::make_shared<GivenSources>();
-        given->load(state);
-    }
-    own->set_given(std::move(given));
+    constexpr std::string_view given = "given";
+    own->set_given(has_sources(state, given)
+                       ? std::make_shared<SourceColumns>(load_sources(state, given))
+                       : nullptr);
     own->set_grows_apart(state.has(grows_apart));
     saved.space = builder->build({.precision = saved.recipe.precision});
     if (!saved.recipe.precision) saved.builder = std::move(builder);
@@ -147,7 +145,7 @@ void save(const std::filesystem::path& file, const Saved* saved) {
     exchange(recipe.options, state);
     if (recipe.precision) state("compact.precision", *recipe.precision, Precision::floats);
     saved->save(state);
-    if (saved->given()) saved->given()->save(state);
+    if (saved->given()) controlspace::save(state, "given", *saved->given());
     if (saved->grows_apart()) state(grows_apart, std::uint64_t{1});
 
     const Header header{.size = header_size + state.bytes().size() + checksum_size};

@@ -6,10 +6,14 @@
 
 #include <algorithm>
 #include <functional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cones/cone_field.h"
 #include "controlspace/input_errors.h"
 #include "controlspace/metric/intersection.h"
+#include "controlspace/sources/cone.h"
 #include "geometry/threads.h"
 
 namespace controlspace {
@@ -18,8 +22,8 @@ namespace {
 
 class SourceField final : public ControlSpace {
 public:
-    SourceField(const GivenSources& given, double ratio, const SpaceOptions& space)
-        : cones_(given.all(), ratio, largest_metric(space), tolerance, space.intersection) {}
+    SourceField(const SourceColumns& given, double ratio, const SpaceOptions& space)
+        : cones_(given, ratio, largest_metric(space), tolerance, space.intersection) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         cones_.evaluate(x, out);
@@ -31,75 +35,56 @@ private:
     ConeField cones_;
 };
 
+std::string column(std::string_view name, std::string_view of) {
+    return fmt::format("{}.{}", name, of);
+}
+
 }  // namespace
 
-void GivenSources::add(std::span<const PointSource> sources) {
-    const auto is_isotropic = [](const PointSource& s) {
-        return controlspace::is_isotropic(s.metric);
+void save_growths(StateWriter& state, std::string_view name, const OwnGrowths& growths) {
+    if (!growths.empty()) state(column(name, "growths"), growths.values());
+}
+
+OwnGrowths load_growths(const StateReader& state, std::string_view name, std::size_t sources) {
+    const std::string growths = column(name, "growths");
+    std::vector<double> values;
+    if (!state.has(growths)) return {};
+    state(growths, values);
+    state.require(values.size() == sources, growths, "has another length than the sources");
+    state.require(all_are(values, is_source_growth), growths, "holds what is no ratio");
+    return OwnGrowths(std::move(values));
+}
+
+void save(StateWriter& state, std::string_view name, const SourceColumns& sources) {
+    state(column(name, "positions"), sources.positions());
+    state(column(name, "lengths"), sources.lengths());
+    state(column(name, "metrics"), sources.metrics());
+    save_growths(state, name, sources.growths());
+}
+
+bool has_sources(const StateReader& state, std::string_view name) {
+    return state.has(column(name, "positions"));
+}
+
+SourceColumns load_sources(const StateReader& state, std::string_view name) {
+    const auto get = [&](std::string_view of, auto& values, const auto& holds,
+                         std::string_view fault) {
+        const std::string full = column(name, of);
+        state(full, values);
+        state.require(all_are(values, holds), full, fault);
     };
-    const bool are_lengths = metrics_.empty() && std::ranges::all_of(sources, is_isotropic);
-    if (!are_lengths && metrics_.empty()) {
-        for (const double h : lengths_) metrics_.push_back(Metric::isotropic(h));
-        lengths_ = {};
-    }
-    for (std::size_t i = 0; i < sources.size(); ++i) growths_.add(size() + i, sources[i].growth);
-    const auto append = [&](auto& values, auto member) {
-        const auto first = static_cast<std::ptrdiff_t>(values.size());
-        values.resize(values.size() + sources.size());
-        std::ranges::transform(sources, values.begin() + first, member);
-    };
-    append(positions_, [](const PointSource& s) { return s.position; });
-    if (are_lengths) {
-        append(lengths_, [](const PointSource& s) { return s.metric.xx; });
-    } else {
-        append(metrics_, [](const PointSource& s) { return s.metric; });
-    }
-}
-
-std::vector<PointSource> GivenSources::all() const {
-    std::vector<PointSource> sources;
-    sources.reserve(size());
-    for (std::size_t i = 0; i < size(); ++i) {
-        sources.push_back({positions_[i],
-                           metrics_.empty() ? Metric::isotropic(lengths_[i]) : metrics_[i],
-                           growths_[i]});
-    }
-    return sources;
-}
-
-double GivenSources::largest_growth(double g) const {
-    double largest = g;
-    for (std::size_t i = 0; i < size(); ++i) largest = std::max(largest, growths_[i]);
-    return largest;
-}
-
-std::size_t GivenSources::bytes() const {
-    return positions_.capacity() * sizeof(Point) + lengths_.capacity() * sizeof(double) +
-           metrics_.capacity() * sizeof(Metric) + growths_.bytes();
-}
-
-void GivenSources::save(StateWriter& state) const {
-    state("given.positions", positions_);
-    state("given.lengths", lengths_);
-    state("given.metrics", metrics_);
-    growths_.save(state, "given.growths");
-}
-
-bool GivenSources::are_in(const StateReader& state) { return state.has("given.positions"); }
-
-void GivenSources::load(const StateReader& state) {
-    state("given.positions", positions_);
-    state("given.lengths", lengths_);
-    state("given.metrics", metrics_);
-    state.require(
-        lengths_.size() + metrics_.size() == size() && (lengths_.empty() || metrics_.empty()),
-        "given.positions", "has another length than the metrics");
-    growths_.load(state, "given.growths", size());
-    const auto is_place = [](const Point& x) { return x.allFinite(); };
-    const auto is_length = [](double h) { return h > 0 && std::isfinite(h); };
-    state.require(all_are(positions_, is_place), "given.positions", "holds what is no place");
-    state.require(all_are(lengths_, is_length), "given.lengths", "holds what is no length");
-    require_metrics(state, "given.metrics", metrics_);
+    const auto is_place = [](const Point& x) { return std::ranges::all_of(x, is_coordinate); };
+    std::vector<Point> positions;
+    std::vector<double> lengths;
+    std::vector<Metric> metrics;
+    get("positions", positions, is_place, "holds what is no place");
+    get("lengths", lengths, is_length, "holds what is no length");
+    get("metrics", metrics, is_source_metric, "holds what is no metric");
+    const std::size_t count = positions.size();
+    state.require(lengths.size() + metrics.size() == count && (lengths.empty() || metrics.empty()),
+                  column(name, "positions"), "has another length than the metrics");
+    return {std::move(positions), std::move(lengths), std::move(metrics),
+            load_growths(state, name, count)};
 }
 
 void require_alike_growth(std::span<const PointSource> sources) {
@@ -112,17 +97,17 @@ void require_alike_growth(std::span<const PointSource> sources) {
     }
 }
 
-NodeGradation::NodeGradation(const GradationOptions& wanted, const GivenSources* given,
+NodeGradation::NodeGradation(const GradationOptions& wanted, const SourceColumns* given,
                              const SpaceOptions& space)
     : options(wanted), largest_ratio(wanted.ratio) {
     require_valid(options);
     if (options.schedule == GradationSchedule::sources && given != nullptr &&
         options.law == GradationLaw::cone) {
         field = std::make_unique<SourceField>(*given, options.ratio, space);
-        largest_ratio = given->largest_growth(options.ratio);
+        largest_ratio = std::max(options.ratio, largest_growth(*given, options.ratio));
         return;
     }
-    if (given != nullptr && !given->all_grow_alike()) {
+    if (given != nullptr && !given->growths().empty()) {
         throw InputError(
             "sources have gradation ratios of their own: grade by the cone law, with the schedule "
             "`sources`");

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
+#include <vector>
 
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/control_nodes.h"
@@ -12,6 +14,8 @@
 
 namespace controlspace {
 namespace {
+
+constexpr std::size_t sources_at_once = std::size_t{1} << 22;  // of insertion
 
 /// A field is followed by adaptation; without a target only what keeps its cells can follow it.
 void require_follows(const Case& c, const CatalogueEntry& entry) {
@@ -34,8 +38,9 @@ void add_remark(Creation& creation, const std::string& remark) {
     creation.remark.append(creation.remark.empty() ? "" : "; ").append(remark);
 }
 
-void adapt(Filled& filled, const Case& c, const Workload& workload) {
-    AdaptationGoal goal{.sources = workload.sources,
+void adapt(Filled& filled, const Case& c, const Workload& workload,
+           std::span<const PointSource> sources) {
+    AdaptationGoal goal{.sources = sources,
                         .continuous = workload.field.field,
                         .ratio = c.g_r,
                         .intersection = c.intersection,
@@ -85,8 +90,10 @@ void remark_on_all(Creation& creation, const Study& study, const Case& c, const 
 }
 
 // Whether the leaf of a source has an edge longer than tau in its metric.
-bool has_long_leaf(const ControlSpace& space, std::span<const PointSource> sources, double tau) {
-    return std::ranges::any_of(sources, [&](const PointSource& source) {
+bool has_long_leaf(const ControlSpace& space, const SourceColumns& sources, double tau) {
+    const auto numbers = std::views::iota(std::size_t{0}, sources.size());
+    return std::ranges::any_of(numbers, [&](std::size_t i) {
+        const PointSource source = sources[i];
         const auto leaf = space.cell_at(source.position);
         return leaf && std::ranges::max(metric_edge_lengths(source.metric, leaf->edges())) > tau;
     });
@@ -105,10 +112,11 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     };
     Filled filled;
     Creation& creation = filled.creation;
+    const auto goal_sources = is_adapted ? workload.sources.all() : std::vector<PointSource>();
     Stopwatch time = phase(is_adapted ? "adaptation" : "insertion");
     filled.builder = entry.make(space_options(study, c, workload, rows.parameters));
     if (is_adapted) {
-        adapt(filled, c, workload);
+        adapt(filled, c, workload, goal_sources);
         const auto space = filled.builder->build();  // where forms of other systems are made
         creation.insert_s = {time.seconds()};
         creation.gradation_s = {0};
@@ -116,9 +124,15 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
         remark_on_all(creation, study, c, rows);
         return filled;
     }
-    const std::span<const PointSource> sources = workload.sources;
-    creation.sources_inserted = filled.builder->insert(sources).inserted;
-    creation.insert_s = {time.seconds()};
+    const SourceColumns& sources = workload.sources;
+    double insertion = time.seconds();
+    for (std::size_t i = 0; i < sources.size(); i += sources_at_once) {
+        const std::vector<PointSource> part = sources.part(i, sources_at_once);
+        time = {};
+        creation.sources_inserted += filled.builder->insert(part).inserted;
+        insertion += time.seconds();
+    }
+    creation.insert_s = {insertion};
 
     time = phase("gradation");
     creation.gradation = filled.builder->grade(

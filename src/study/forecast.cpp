@@ -59,10 +59,11 @@ Trial forecast_grid(const PreparedStudy& prepared, Case c, const Workload& workl
 Trial forecast_patches(const PreparedStudy& prepared, const Case& c, const Workload& workload) {
     constexpr std::size_t sources_of_trial = 4000;
     Workload patch = workload;
-    patch.sources = patch_of(workload.sources, sources_of_trial);
+    std::vector<PointSource> sources = patch_of(workload.sources.all(), sources_of_trial);
+    patch.sources = columns_of(sources);
     Trial trial = try_case(prepared, c, patch);
     if (patch.sources.size() == workload.sources.size()) return trial;
-    patch.sources = patch_of(patch.sources, sources_of_trial / 2);
+    patch.sources = columns_of(patch_of(std::move(sources), sources_of_trial / 2));
     const double steps =
         static_cast<double>(workload.sources.size() - sources_of_trial) / (sources_of_trial / 2.0);
     trial.cost += steps * (trial.cost - try_case(prepared, c, patch).cost).max(0);

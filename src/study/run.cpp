@@ -159,9 +159,9 @@ private:
         Finished& finished = *member.finished;
         finished.accuracy = accuracy(*member.space, probes.coarse);
         finished.accuracy_fine = accuracy(*member.space, probes.fine);
-        finished.source_accuracy = source_accuracy(*member.space, workload.sources);
-        finished.steepness =
-            steepness(*member.space, workload.domain, workload.sources, study_.seed);
+        const std::vector<PointSource> sources = workload.sources.all();
+        finished.source_accuracy = source_accuracy(*member.space, sources);
+        finished.steepness = steepness(*member.space, workload.domain, sources, study_.seed);
         finished.access_batch = finished_before_ + i + 1 - batch_.size();
     }
 

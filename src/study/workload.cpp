@@ -89,8 +89,8 @@ AnalyticField continuous_field(const SourcesChoice& choice,
     return field.field && has_limits(choice) ? limited(field, choice) : field;
 }
 
-Box domain_of(const Study& study, const SourcesChoice& choice, const Workload& workload,
-              const std::vector<DistanceField>& distances) {
+Box domain_of(const Study& study, const SourcesChoice& choice, std::span<const PointSource> sources,
+              const Workload& workload, const std::vector<DistanceField>& distances) {
     if (study.domain) return *study.domain;
     if (workload.field.field && workload.field.field->domain() != Box::everywhere()) {
         return workload.field.field->domain();
@@ -100,7 +100,7 @@ Box domain_of(const Study& study, const SourcesChoice& choice, const Workload& w
         return {Point::Constant(-1), Point::Constant(1)};
     }
     std::vector<Point> positions;
-    for (const PointSource& source : workload.sources) positions.push_back(source.position);
+    for (const PointSource& source : sources) positions.push_back(source.position);
     if (are_alone) {
         for (const DistanceField& d : distances) {
             positions.insert(positions.end(), {d.box.low, d.box.high});
@@ -204,26 +204,27 @@ std::vector<PointSource> read_source_file(const SourcesChoice& choice, const Fil
 
 bool has_tensors(const Workload& workload) {
     return (workload.field.field && !workload.field.is_isotropic) ||
-           !std::ranges::all_of(workload.sources, is_isotropic, &PointSource::metric);
+           !workload.sources.are_isotropic();
 }
 
 Workload make_workload(const Study& study, const SourcesChoice& choice,
                        const FileReaders& readers) {
     Workload workload;
     JoinedSources sources = make_sources(choice, study.seed, readers);
-    workload.sources = std::move(sources.all);
     const std::vector<DistanceField> distances = distances_of(choice, readers);
     workload.field = continuous_field(choice, distances, readers);
-    workload.domain = domain_of(study, choice, workload, distances);
+    workload.domain = domain_of(study, choice, sources.all, workload, distances);
     require_defined(workload.field, workload.domain, std::string(name_of(choice.field.kind)));
     require_inside(choice, distances, workload.domain);
-    for (std::size_t i = 0; i < workload.sources.size(); ++i) {
-        PointSource& source = workload.sources[i];
+    for (std::size_t i = 0; i < sources.all.size(); ++i) {
+        PointSource& source = sources.all[i];
         if (!is_valid(source, workload.domain)) {
             require_valid(source, i, sources.name(choice, i), workload.domain);
         }
         if (has_limits(choice)) source.metric = limited(source.metric, choice);
     }
+    workload.sources = columns_of(sources.all);
+    sources.all = {};  // its memory first
     workload.finest_length = finest_length_of(workload);
     return workload;
 }

@@ -105,7 +105,8 @@ std::vector<PointSource> layered_sphere(Draw& draw, int n, double across, double
 
 TEST_CASE("Without sources the field is the largest metric") {
     const Metric largest = metric_from_frame({1, 2, 3}, Draw(1).rotation());
-    CHECK(at(*exact_reference({}, 1.25, largest), Point(1, 2, 3)) == largest);
+    CHECK(at(*exact_reference(std::vector<PointSource>{}, 1.25, largest), Point(1, 2, 3)) ==
+          largest);
     CHECK(at(*brute_force_reference({}, 1.25, largest), Point(1, 2, 3)) == largest);
 }
 

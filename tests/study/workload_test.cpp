@@ -55,7 +55,7 @@ TEST_CASE("sources must lie in the field's domain") {
     choice.centre = Point::Constant(0.5);
     choice.radius = 0.3;
     const Workload workload = make_workload(study, choice);
-    for (const PointSource& s : workload.sources) {
+    for (const PointSource& s : workload.sources.all()) {
         CHECK((s.position - choice.centre).norm() == Approx(0.3).epsilon(1e-14));
     }
 }
@@ -115,7 +115,7 @@ TEST_CASE("the order-free reference is the largest metric within all cones and t
     for (int i = 0; i < 30; ++i) {
         const Point p(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
         std::vector<Metric> all{largest_metric(mixed.domain), value_at(*mixed.field.field, p)};
-        for (const PointSource& s : mixed.sources) {
+        for (const PointSource& s : mixed.sources.all()) {
             all.push_back((1 + (c.g_r - 1) * metric_length(s.metric, p - s.position)) * s.metric);
         }
         const Metric m = value_at(*reference, p);

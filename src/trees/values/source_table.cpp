@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "controlspace/space/detail/given_sources.h"
+
 namespace controlspace {
 
 SourceIndex SourceTable::add(const PointSource& source) {
@@ -38,7 +40,7 @@ void SourceTable::save(StateWriter& state) const {
     state("sources.positions", positions_);
     state("sources.metric_of", metric_of_);
     state("sources.metrics", metrics_);
-    growths_.save(state, "sources.growths");
+    save_growths(state, "sources", growths_);
 }
 
 void SourceTable::load(const StateReader& state) {
@@ -53,8 +55,7 @@ void SourceTable::load(const StateReader& state) {
     state.require(metric_of.size() == positions.size(), "sources.metric_of", "has another length");
     require_below(state, "sources.metric_of", metric_of, metrics.size());
     require_metrics(state, "sources.metrics", metrics);
-    OwnGrowths growths;
-    growths.load(state, "sources.growths", positions.size());
+    const OwnGrowths growths = load_growths(state, "sources", positions.size());
     *this = {};
     for (std::size_t i = 0; i < positions.size(); ++i) {
         add({positions[i], metrics[metric_of[i]], growths[i]});

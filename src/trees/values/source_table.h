@@ -5,8 +5,8 @@
 
 #include "controlspace/metric/metric.h"
 #include "controlspace/sources/cone.h"
+#include "controlspace/sources/own_growths.h"
 #include "controlspace/sources/point_source.h"
-#include "controlspace/space/detail/own_growths.h"
 #include "controlspace/space/detail/state.h"
 
 namespace controlspace {

@@ -6,6 +6,7 @@
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/metric.h"
 #include "controlspace/sources/point_source.h"
+#include "controlspace/sources/source_columns.h"
 #include "controlspace/space/control_space.h"
 
 namespace controlspace {
@@ -27,7 +28,11 @@ namespace controlspace {
 /// Throws InputError, naming the source by its index (0-based), for a position that is not finite
 /// or a metric that is not positive definite; for a gradation ratio g < 1 or not finite; for such a
 /// `largest`; for a tolerance that is negative or not finite.
-std::unique_ptr<ControlSpace> exact_reference(std::vector<PointSource> sources, double g,
+std::unique_ptr<ControlSpace> exact_reference(const SourceColumns& sources, double g,
+                                              const Metric& largest, double tolerance = 0,
+                                              IntersectionRule rule = IntersectionRule::order_free,
+                                              std::shared_ptr<const ControlSpace> continuous = {});
+std::unique_ptr<ControlSpace> exact_reference(const std::vector<PointSource>& sources, double g,
                                               const Metric& largest, double tolerance = 0,
                                               IntersectionRule rule = IntersectionRule::order_free,
                                               std::shared_ptr<const ControlSpace> continuous = {});

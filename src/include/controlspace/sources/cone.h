@@ -1,7 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <span>
+#include <cstddef>
 
 #include "controlspace/metric/metric.h"
 #include "controlspace/sources/point_source.h"
@@ -14,10 +14,14 @@ inline double cone_growth(const PointSource& source, double g) {
     return cone_growth(source.growth, g);
 }
 
-/// The largest of all sources' cones; g if there are none.
-inline double largest_growth(std::span<const PointSource> sources, double g) {
+/// The largest of all sources' cones; g if there are none. A span or vector of sources, or
+/// SourceColumns.
+template <class Sources>
+double largest_growth(const Sources& sources, double g) {
     double largest = sources.empty() ? g : 1;
-    for (const PointSource& source : sources) largest = std::max(largest, cone_growth(source, g));
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        largest = std::max(largest, cone_growth(sources[i], g));
+    }
     return largest;
 }
 

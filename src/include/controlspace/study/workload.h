@@ -11,6 +11,7 @@
 #include "controlspace/geometry/box.h"
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/sources/point_source.h"
+#include "controlspace/sources/source_columns.h"
 #include "controlspace/study/study.h"
 
 namespace controlspace {
@@ -29,7 +30,7 @@ struct FileReaders {
 
 /// Sources and field, shared by all cases with the same ones.
 struct Workload {
-    std::vector<PointSource> sources;
+    SourceColumns sources;
     AnalyticField field;  ///< `field.field` is null where there is none
     Box domain;
     double finest_length = 0;  ///< smallest requested length, of sources and field

@@ -1,48 +1,30 @@
 #pragma once
 
-#include <cstddef>
 #include <memory>
 #include <span>
-#include <vector>
+#include <string_view>
 
 #include "controlspace/gradation/grade.h"
 #include "controlspace/gradation/ordered_metrics.h"
 #include "controlspace/metric/metric.h"
 #include "controlspace/sources/point_source.h"
+#include "controlspace/sources/source_columns.h"
 #include "controlspace/space/control_space.h"
-#include "controlspace/space/detail/own_growths.h"
 #include "controlspace/space/detail/state.h"
 #include "controlspace/space/space_options.h"
 
 namespace controlspace {
 
-/// All sources that were given to a builder, whether they changed it or not: what it grades by
-/// (GradationSchedule::sources). 32 bytes for each as long as all are isotropic, 72 otherwise; 8
-/// more where some have gradation ratios of their own.
-class GivenSources {
-public:
-    void add(std::span<const PointSource> sources);
+/// Gradation ratios of sources in a `.ctrl` file: the array "NAME.growths", if any has one. Throws
+/// InputError where they are not sound, or not as many as `sources`.
+void save_growths(StateWriter& state, std::string_view name, const OwnGrowths& growths);
+OwnGrowths load_growths(const StateReader& state, std::string_view name, std::size_t sources);
 
-    std::size_t size() const { return positions_.size(); }
-    std::vector<PointSource> all() const;
-    /// Whether none has a gradation ratio of its own.
-    bool all_grow_alike() const { return growths_.empty(); }
-    /// The largest gradation ratio of all, in a field of ratio g.
-    double largest_growth(double g) const;
-    /// Bytes allocated.
-    std::size_t bytes() const;
-
-    void save(StateWriter& state) const;
-    static bool are_in(const StateReader& state);
-    /// Throws InputError where they are not sound.
-    void load(const StateReader& state);
-
-private:
-    std::vector<Point> positions_;
-    std::vector<double> lengths_;  // as long as all are isotropic
-    std::vector<Metric> metrics_;  // otherwise
-    OwnGrowths growths_;
-};
+/// Sources, as arrays "NAME.positions" and so on.
+void save(StateWriter& state, std::string_view name, const SourceColumns& sources);
+/// Throws InputError where they are not sound.
+SourceColumns load_sources(const StateReader& state, std::string_view name);
+bool has_sources(const StateReader& state, std::string_view name);
 
 /// Throws InputError if a source has a gradation ratio of its own: where the sources before it are
 /// not known, nodes are graded one by the other.
@@ -51,9 +33,10 @@ void require_alike_growth(std::span<const PointSource> sources);
 /// How a builder grades its control nodes: by the exact field of the sources it was given, or else
 /// by the law, from node to node.
 struct NodeGradation {
-    /// `given`: null where they are not known. Throws InputError as require_valid(options) does,
+    /// `given`: all sources that the builder was given, whether they changed it or not; null where
+    /// they are not known. Throws InputError as require_valid(options) does,
     /// and for sources with ratios of their own if they are not to be graded by the exact field.
-    NodeGradation(const GradationOptions& options, const GivenSources* given,
+    NodeGradation(const GradationOptions& options, const SourceColumns* given,
                   const SpaceOptions& space);
 
     GradationOptions options;  ///< `schedule` is `sources` only with a field

@@ -27,8 +27,8 @@ public:
     /// The sources it was given, in builders of control nodes and, where sources may come later,
     /// in what they build; null where they are not known or not needed. Not to be changed while
     /// they are shared.
-    const std::shared_ptr<GivenSources>& given() const { return given_; }
-    void set_given(std::shared_ptr<GivenSources> given) { given_ = std::move(given); }
+    const std::shared_ptr<SourceColumns>& given() const { return given_; }
+    void set_given(std::shared_ptr<SourceColumns> given) { given_ = std::move(given); }
 
     /// Whether sources have gradation ratios of their own: where the sources are not known any
     /// more, gradation from node to node would take the growth of such cones away.
@@ -38,7 +38,7 @@ public:
 private:
     bool grows_apart_ = false;
     std::optional<Recipe> recipe_;
-    std::shared_ptr<GivenSources> given_;
+    std::shared_ptr<SourceColumns> given_;
 };
 
 /// A builder that takes back what was saved. Throws InputError where what is read is not sound; it

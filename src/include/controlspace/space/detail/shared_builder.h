@@ -107,7 +107,7 @@ public:
     template <class... Arguments>
     explicit SharedBuilder(const Arguments&... arguments)
         : data_(std::make_shared<Data>(arguments...)) {
-        if constexpr (has_nodes) this->set_given(std::make_shared<GivenSources>());
+        if constexpr (has_nodes) this->set_given(std::make_shared<SourceColumns>());
     }
 
     using ControlSpaceBuilder::insert;
@@ -187,7 +187,7 @@ private:
         const auto keep = [&](std::span<const PointSource> valid) {
             if (!this->given()) return;
             if (this->given().use_count() > 1) {
-                this->set_given(std::make_shared<GivenSources>(*this->given()));
+                this->set_given(std::make_shared<SourceColumns>(*this->given()));
             }
             this->given()->add(valid);
         };
