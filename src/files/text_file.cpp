@@ -88,6 +88,11 @@ std::string quote(std::string_view text) {
     return shown + (text.size() > most ? "...'" : "'");
 }
 
+std::string lower_case(std::string text) {
+    for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 'a' - 'A') : c;
+    return text;
+}
+
 std::vector<std::string_view> split(std::string_view text, char separator) {
     std::vector<std::string_view> parts;
     for (std::size_t begin = 0; begin <= text.size(); begin += parts.back().size() + 1) {

@@ -31,6 +31,9 @@ std::string place(const std::filesystem::path& path, std::size_t line);
 /// A piece of a file as a message can quote it: its beginning, in printable characters.
 std::string quote(std::string_view text);
 
+/// `text` with small letters in place of capital ones (ASCII).
+std::string lower_case(std::string text);
+
 /// The parts of `text` between separators: one more than there are separators.
 std::vector<std::string_view> split(std::string_view text, char separator);
 

@@ -21,7 +21,7 @@ bool is_coordinate(double x) { return std::abs(x) <= largest_magnitude; }
 bool is_length(double h) { return h >= 1 / largest_magnitude && h <= largest_magnitude; }
 
 bool is_source_metric(const Metric& m) {
-    return is_positive_definite(m) && is_length(mean_length(m));
+    return is_positive_definite(m) && is_length(m.xx) && is_length(m.yy) && is_length(m.zz);
 }
 
 bool is_source_growth(double g) { return g == 0 || (g >= 1 && g <= 1e6); }

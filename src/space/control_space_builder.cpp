@@ -53,7 +53,7 @@ void require_valid(const PointSource& source, std::size_t index, const std::stri
     require(is_positive_definite(source.metric),
             fmt::format(" has the metric {} (xx yy zz xy xz yz), which is not positive definite",
                         to_string(source.metric)));
-    require(is_length(mean_length(source.metric)),
+    require(is_source_metric(source.metric),
             fmt::format(" has the metric {} (xx yy zz xy xz yz), with lengths beyond {} to {}: use "
                         "another unit of length",
                         to_string(source.metric), 1 / largest_magnitude, largest_magnitude));

@@ -82,7 +82,7 @@ public:
     }
 
     AdaptationReport adapt(const AdaptationGoal& goal) {
-        const AdaptationReport report = Base::adapt(goal, [&] { storage_.take_over(goal); });
+        AdaptationReport report = Base::adapt(goal, [&] { storage_.take_over(goal); });
         finish();
         is_graded_ = true;
         return report;

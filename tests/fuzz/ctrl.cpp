@@ -14,6 +14,7 @@
 #include "controlspace/space/control_space_file.h"
 #include "files/text_file.h"
 #include "fuzz/fuzzing.h"
+#include "fuzz/memory_file.h"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,

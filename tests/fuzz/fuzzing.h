@@ -11,7 +11,6 @@
 #include "controlspace/error.h"
 #include "controlspace/metric/metric.h"
 #include "controlspace/sources/point_source.h"
-#include "memory_file.h"
 
 namespace controlspace {
 

@@ -5,7 +5,6 @@
 using namespace controlspace;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static MemoryFile file;
-    answers([&] { require_valid(read_msh_sources(file.with(as_text(data, size)))); });
+    answers([&] { require_valid(parse_msh_sources(as_text(data, size), "f.msh")); });
     return 0;
 }

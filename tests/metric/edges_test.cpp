@@ -156,8 +156,8 @@ TEST_CASE("edges: sources of lengths beyond 1e-50 to 1e50 are refused, and the e
     constexpr double denormal = std::numeric_limits<double>::denorm_min();
     for (const double size : {denormal, 1e-310, 1e-300, 1e-200, 1e-60, 1e60, 1e200, 1e300}) {
         const Metric turned = Draw(3).metric(size, size < 1e-300 ? 1 : 4);
-        for (const Metric& m :
-             {Metric::isotropic(size), Metric{size, 2 * size, size, 0, 0, 0}, turned}) {
+        for (const Metric& m : {Metric::isotropic(size), Metric{size, 2 * size, size, 0, 0, 0},
+                                Metric{1, 1, size, 0, 0, 0}, turned}) {
             CAPTURE(to_string(m));
             CHECK_FALSE(is_source_metric(m));
             CHECK_FALSE(is_valid({Point(0.5, 0.5, 0.5), m}, domain));

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Shows that the scenes are sharp: each defect of tests/scenes/defects, put into a copy of the
-tree, must break the law that its patch names, which holds without it.
+tree, must break the law that its patch names, which holds without it. A defect that no scene can
+show, since it is not one of structures, must break a test of another program, which its patch names.
 
 The copy and its build folder are kept, so that a second run builds little.
 """
@@ -37,16 +38,23 @@ def quiet(command, folder):
         sys.exit(" ".join(map(str, command)) + "\n" + done.stdout + done.stderr)
 
 
-def build(tree, jobs):
+def build(tree, programs, jobs):
     if not (tree / "build/ci/build.ninja").exists():
         quiet(["cmake", "--preset", "ci"], tree)
-    quiet(["ninja", "-C", "build/ci", f"-j{jobs}", "tests_scenes"], tree)
+    quiet(["ninja", "-C", "build/ci", f"-j{jobs}", *programs], tree)
 
 
-def run(tree, law, scenes):
+def defect(patch):
+    """The program of tests and the law, or test, that a patch names."""
+    head = dict(line.split(": ", 1) for line in patch.read_text().partition("---")[0].splitlines())
+    return head.get("Program", "tests_scenes"), head["Law"]
+
+
+def run(tree, program, law, scenes):
     """Status and output of a law over all structures that it is for, up to the first failure."""
+    cases = law.replace(",", "\\,") + (": *" if program == "tests_scenes" else "")
     return subprocess.run(
-        ["build/ci/bin/tests_scenes", law.replace(",", "\\,") + ": *", "--abort"], cwd=tree,
+        [f"build/ci/bin/{program}", cases, "--abort"], cwd=tree,
         capture_output=True, text=True, errors="replace",
         env=os.environ | {"CONTROLSPACE_FIRST_SCENE": str(FIRST_SCENE),
                           "CONTROLSPACE_SCENES": str(scenes)})
@@ -66,20 +74,20 @@ def main():
         patches = [patch for patch in patches if patch.stem in options.only]
     if not patches:
         sys.exit("no defect is called so")
-    laws = {patch: patch.read_text().partition("\n")[0].removeprefix("Law: ") for patch in patches}
+    defects = {patch: defect(patch) for patch in patches}
     missed = False
     copy_tree(options.copy)
-    build(options.copy, options.jobs)
-    for law in dict.fromkeys(laws.values()):
-        done = run(options.copy, law, options.scenes)
+    build(options.copy, {program for program, _ in defects.values()}, options.jobs)
+    for program, law in dict.fromkeys(defects.values()):
+        done = run(options.copy, program, law, options.scenes)
         if done.returncode != 0 or "No test cases matched" in done.stdout:
             sys.exit(f"without a defect: {law}\n{done.stdout[-4000:]}")
         print(f"without a defect: holds: {law}", flush=True)
-    for patch, law in laws.items():
+    for patch, (program, law) in defects.items():
         quiet(["patch", "-p1", "--forward", "--input", patch], options.copy)
         try:
-            build(options.copy, options.jobs)
-            done = run(options.copy, law, options.scenes)
+            build(options.copy, [program], options.jobs)
+            done = run(options.copy, program, law, options.scenes)
         finally:
             quiet(["patch", "-p1", "--reverse", "--input", patch], options.copy)
         if done.returncode == 0:

@@ -249,6 +249,33 @@ STRUCTURE_CASE(every_structure, "scenes refuse ratios below 1 and not-a-number, 
     });
 }
 
+STRUCTURE_CASE(every_structure,
+               "scenes refuse an unknown split, and lengths that they cannot hold") {
+    for_each_scene(structure, [&](Scene scene, auto x, std::uint64_t) {
+        SpaceOptions unknown = scene.options;
+        unknown.split = static_cast<SplitRule>(77);
+        CHECK_THROWS_AS(structure.entry->make(unknown), InputError);
+
+        constexpr double tiny = 1e-42;  // below the range of floats
+        scene.options.domain.low *= tiny;
+        scene.options.domain.high *= tiny;
+        scene.options.finest_length *= tiny;
+        scene.options.voxel *= tiny;
+        for (PointSource& source : scene.sources) {
+            source.position *= tiny;
+            source.metric = tiny * source.metric;
+        }
+        for (Point& p : x) p *= tiny;
+        std::unique_ptr<EditableSpace> space;
+        try {
+            space = inserted(structure, scene);
+        } catch (const InputError&) {
+            return;
+        }
+        REQUIRE(std::ranges::all_of(answers(*space, x), oracle_is_positive_definite));
+    });
+}
+
 STRUCTURE_CASE(has_node_builder, "scenes refuse a metric too many or too few for their nodes") {
     for_each_scene(structure, [&](const Scene& scene, const auto& x, std::uint64_t) {
         const auto space = inserted(structure, scene);

@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 
-#include "controlspace/io/read_sources.h"
 #include "files/output_file.h"
 #include "files/text_file.h"
 #include "io/text/metric_rows.h"
@@ -214,13 +213,16 @@ std::string csv_line_of(const std::filesystem::path& path, std::size_t index) {
     return where.substr(where.rfind(':') + 1);
 }
 
-std::vector<Point> read_csv_points(const std::filesystem::path& path) {
-    const std::string text = read_text_file(path);
+std::vector<Point> parse_csv_points(std::string_view text, const std::filesystem::path& path) {
     Table table(text, path, /*positions_alone=*/true);
     std::vector<Point> points;
     while (const Table::Values* row = table.next()) points.emplace_back(row->data());
     if (points.empty()) fail_empty(path, "points");
     return points;
+}
+
+std::vector<Point> read_csv_points(const std::filesystem::path& path) {
+    return parse_csv_points(read_text_file(path), path);
 }
 
 void write_csv_sources(const std::filesystem::path& path, std::span<const PointSource> sources) {

@@ -31,6 +31,7 @@ std::string csv_line_of(const std::filesystem::path& path, std::size_t index);
 
 /// Points from a table of the same kind: columns x, y and z; other columns are ignored.
 std::vector<Point> read_csv_points(const std::filesystem::path& path);
+std::vector<Point> parse_csv_points(std::string_view text, const std::filesystem::path& path);
 
 /// Writes sources that read back to the last bit, with column h where all are isotropic and as
 /// tensors otherwise. The file appears whole or not at all; throws InputError if it cannot.

@@ -77,7 +77,11 @@ std::vector<PointSource> read_medit_sources(const std::filesystem::path& mesh,
 }
 
 std::vector<PointSource> read_medit_required_edges(const std::filesystem::path& mesh) {
-    const std::string bytes = read_binary_file(mesh);
+    return parse_medit_required_edges(read_binary_file(mesh), mesh);
+}
+
+std::vector<PointSource> parse_medit_required_edges(std::string_view bytes,
+                                                    const std::filesystem::path& mesh) {
     const std::vector<Point> vertices = parse_medit_vertices(bytes, mesh);
     const auto edges = read_medit_elements<2>(bytes, mesh, medit_edges, vertices.size());
     struct Lengths {

@@ -24,7 +24,9 @@ std::vector<PointSource> read_medit_required_edges(const std::filesystem::path& 
 /// The vertices alone.
 std::vector<Point> read_medit_vertices(const std::filesystem::path& mesh);
 
-/// The two readers for contents in memory; the paths are for messages.
+/// The readers for contents in memory; the paths are for messages.
+std::vector<PointSource> parse_medit_required_edges(std::string_view bytes,
+                                                    const std::filesystem::path& mesh);
 std::vector<Point> parse_medit_vertices(std::string_view bytes, const std::filesystem::path& path);
 std::vector<Metric> parse_medit_metrics(std::string_view bytes, const std::filesystem::path& path);
 

@@ -236,10 +236,15 @@ private:
 
 }  // namespace
 
+std::vector<PointSource> parse_msh_sources(std::string_view bytes,
+                                           const std::filesystem::path& path,
+                                           const std::string& view) {
+    return Parser(bytes, path).sources(view);
+}
+
 std::vector<PointSource> read_msh_sources(const std::filesystem::path& path,
                                           const std::string& view) {
-    const std::string bytes = read_binary_file(path);
-    return Parser(bytes, path).sources(view);
+    return parse_msh_sources(read_binary_file(path), path, view);
 }
 
 }  // namespace controlspace

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "controlspace/sources/point_source.h"
@@ -18,5 +19,10 @@ namespace controlspace {
 /// room for, and for data that are no metrics.
 std::vector<PointSource> read_msh_sources(const std::filesystem::path& path,
                                           const std::string& view = {});
+
+/// The same from `bytes`; `path` is used in messages.
+std::vector<PointSource> parse_msh_sources(std::string_view bytes,
+                                           const std::filesystem::path& path,
+                                           const std::string& view = {});
 
 }  // namespace controlspace

@@ -6,6 +6,7 @@
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/io/write_vtk.h"
+#include "files/text_file.h"
 #include "io/text/csv.h"
 #include "io/text/medit.h"
 #include "io/text/msh.h"
@@ -51,11 +52,6 @@ std::vector<PointSource> read_medit_mesh(const std::filesystem::path& mesh, cons
 }
 
 }  // namespace
-
-std::string lower_case(std::string text) {
-    for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 'a' - 'A') : c;
-    return text;
-}
 
 std::string lower_case_extension(const std::filesystem::path& path) {
     return lower_case(path.extension().string());

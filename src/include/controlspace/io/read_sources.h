@@ -37,8 +37,6 @@ std::string place_of_source(const std::filesystem::path& path, std::size_t index
 /// Throws InputError for another ending, and if writing fails, of which nothing is left.
 void write_sources(const std::filesystem::path& path, std::span<const PointSource> sources);
 
-/// `text` with small letters in place of capital ones (ASCII).
-std::string lower_case(std::string text);
 /// The extension of a file name in lower case, which selects its format: ".csv".
 std::string lower_case_extension(const std::filesystem::path& path);
 

@@ -23,8 +23,8 @@ struct PointSource {
 double finest_length(std::span<const PointSource> sources);
 
 /// Whether a number can be a coordinate (finite, up to largest_magnitude), a length (positive, and
-/// its inverse too); whether a metric can be that of a source (positive definite, its mean length a
-/// length).
+/// its inverse too); whether a metric can be that of a source (positive definite, its diagonal of
+/// lengths).
 bool is_coordinate(double x);
 bool is_length(double h);
 bool is_source_metric(const Metric& m);

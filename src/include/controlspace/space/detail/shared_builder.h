@@ -138,18 +138,14 @@ public:
     }
     AdaptationReport adapt(const AdaptationGoal& goal) override {
         forget_given();
-        AdaptationGoal bounded = goal;
         if constexpr (has_nodes) {
             this->set_grows_apart(false);
             note_growth(goal.sources);
         }
-        if constexpr (requires { data_->options(); }) {
-            bounded.h_max = std::min(goal.h_max, data_->options().h_max);
-        }
         if constexpr (requires(Data & data) { data.adapt(goal); }) {
-            return edit().adapt(bounded);
+            return edit().adapt(bounded(goal));
         } else {
-            return Base::adapt(bounded);
+            return Base::adapt(bounded(goal));
         }
     }
     std::unique_ptr<ControlSpace> build(const BuildOptions& options) override {
@@ -201,6 +197,12 @@ private:
             keep({sources.begin(), first});
             throw;
         }
+    }
+    AdaptationGoal bounded(AdaptationGoal goal) const {
+        if constexpr (requires { data_->options(); }) {
+            goal.h_max = std::min(goal.h_max, data_->options().h_max);
+        }
+        return goal;
     }
     void note_growth(std::span<const PointSource> sources) {
         const auto grows = [](const PointSource& s) { return s.growth != 0; };

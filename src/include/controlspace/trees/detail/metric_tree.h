@@ -57,7 +57,7 @@ public:
     }
 
     AdaptationReport adapt(const AdaptationGoal& goal) {
-        const AdaptationReport report = Base::adapt(goal, [&] { past_.reset(); });
+        AdaptationReport report = Base::adapt(goal, [&] { past_.reset(); });
         finish();
         return report;
     }
