@@ -95,7 +95,7 @@ def main():
             missed = True
             continue
         seed = re.search(r"seed := (\d+)", done.stdout)
-        name = re.search(re.escape(law) + ": (.+)", done.stdout)
+        name = re.search(re.escape(law) + r": (?!\*)(.+)", done.stdout)
         if seed is None or name is None:
             print(f"{patch.stem}: found, status {done.returncode}: {law}", flush=True)
             continue
