@@ -5,7 +5,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "controlspace/input_errors.h"
@@ -93,9 +92,9 @@ private:
 
 /// The row of a system that `make` makes; `order` of its interpolation.
 template <MakePeer make, PeerValue value>
-CatalogueEntry peer_row(std::string id, std::string description, int order) {
-    return {.id = std::move(id),
-            .description = std::move(description),
+CatalogueEntry peer_row(const std::string& id, const std::string& description, int order) {
+    return {.id = id,
+            .description = description,
             .order = order,
             .construct = [](const SpaceOptions& options) -> std::unique_ptr<ControlSpaceBuilder> {
                 return std::make_unique<PeerBuilder>(options, make, value);
