@@ -68,6 +68,7 @@ void exchange(Self& options, State& state) {
     state("options.ratio", options.ratio);
     state("options.quadratic_form", options.quadratic_form, QuadraticForm::published);
     state("options.takes_later_sources", options.takes_later_sources);
+    state("options.vertices_in_turn", options.vertices_in_turn);
     state("options.max_bytes", options.max_bytes);
     state("options.intersection", options.intersection, IntersectionRule::in_turn);
     state("options.h_max", options.h_max);

@@ -246,6 +246,8 @@ SpaceOptions space_options(const Study& study, const Case& c, const Workload& wo
     options.prune_delta = c.prune_delta.value_or(0);
     if (c.interpolation) options.quadratic_form = *c.interpolation;
     options.intersection = c.intersection;
+    options.vertices_in_turn =
+        c.schedule != GradationSchedule::sources || c.law != GradationLaw::cone;
     for (const CaseParameter& parameter : parameters) {
         if (parameter.apply && !values_of(parameter, c).empty()) parameter.apply(c, options);
     }

@@ -36,7 +36,8 @@ Built build(const std::string& id, SplitRule split, double rho, double tau) {
     std::vector<PointSource>& sources = spheres[rho];
     if (sources.empty()) sources = sample_sphere({.rho = rho});
     Built built;
-    built.space = editable(tree_named(id).make({.domain = domain, .split = split, .l_min = tau}));
+    built.space = editable(tree_named(id).make(
+        {.domain = domain, .split = split, .l_min = tau, .vertices_in_turn = true}));
     built.inserted = built.space->insert(sources);
     built.footprint = built.space->footprint();
     built.megabytes = published_megabytes(tree_named(id), built.footprint);

@@ -1,4 +1,6 @@
+#include <array>
 #include <catch2/catch.hpp>
+#include <map>
 #include <random>
 #include <set>
 
@@ -137,6 +139,67 @@ CASE_OF_EACH(entry, tree_catalogue(),
             }
         }
     }
+}
+
+TEST_CASE("vertices request the least of the leaves around them, which are those of K_L and K_oL") {
+    const auto [of_leaves, of_vertices] =
+        GENERATE(std::pair("K_L", "K_V"), std::pair("K_oL", "K_oV"));
+    const SplitRule split = GENERATE(SplitRule::middle, SplitRule::golden, SplitRule::metric);
+    const Box box = GENERATE(Box(domain), Box{Point(2, 0, 1), Point(5, 1, 2)},
+                             Box{Point(-1, -1, 0.5), Point(1, 1, 0.5)});
+    CAPTURE(of_vertices, static_cast<int>(split), to_string(box));
+    std::vector<PointSource> sources = scattered(300, 4);
+    for (PointSource& s : sources) {
+        s.position = box.low + (0.5 * (s.position + Point::Ones())).cwiseProduct(box.edges());
+    }
+    const SpaceOptions options{.domain = box, .split = split};
+    const auto leaves = editable(tree_named(of_leaves).make(options));
+    const auto vertices = editable(tree_named(of_vertices).make(options));
+    CHECK(vertices->insert(sources).inserted == leaves->insert(sources).inserted);
+
+    using Place = std::array<double, 3>;
+    const auto key = [](const Point& p) { return Place{p.x(), p.y(), p.z()}; };
+    std::map<Place, double> least;
+    const ControlNodes centres = leaves->control_nodes(Neighbourhood::faces);
+    const auto& leaf_graph = std::get<NodeGraph>(centres.graph);
+    for (NodeIndex i = 0; i < leaf_graph.size(); ++i) {
+        const Box leaf = leaves->cell_at(leaf_graph.position(i)).value();
+        CHECK(vertices->cell_at(leaf_graph.position(i)) == leaf);
+        for (int c = 0; c < 8; ++c) {
+            const auto [at, is_new] = least.insert({key(corner(leaf, c)), centres.metrics[i].xx});
+            at->second = std::min(at->second, centres.metrics[i].xx);
+        }
+    }
+    const ControlNodes nodes = vertices->control_nodes(Neighbourhood::faces);
+    const auto& graph = std::get<NodeGraph>(nodes.graph);
+    std::map<Place, double> found;
+    for (NodeIndex i = 0; i < graph.size(); ++i) {
+        found[key(graph.position(i))] = nodes.metrics[i].xx;
+    }
+    CHECK(graph.size() == least.size());
+    CHECK(found == least);
+}
+
+CASE_OF_EACH(entry, tree_catalogue(),
+             "inserted at once, or one by one and read in between: the same field, to the bit") {
+    const auto sources = scattered(120, 11);
+    const auto at_once = editable(entry.make({.domain = domain}));
+    const auto one_by_one = editable(entry.make({.domain = domain}));
+    at_once->insert(sources);
+    const std::vector<Point> x = places(300, 12);
+    const auto answers = [&](const ControlSpace& space) {
+        std::vector<Metric> metrics(x.size());
+        space.sample(x, metrics);
+        return metrics;
+    };
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        one_by_one->insert(sources[i]);
+        if (i % 10 == 0) CHECK(answers(*one_by_one).size() == x.size());
+    }
+    CHECK(answers(*one_by_one) == answers(*at_once));
+    at_once->grade({});
+    one_by_one->grade({});
+    CHECK(answers(*one_by_one) == answers(*at_once));
 }
 
 TEST_CASE("vertex neighbours are joined by an edge of a leaf: along one axis") {

@@ -38,4 +38,8 @@ private:
     std::size_t used_ = 0;
 };
 
+/// Numbers places, equal ones alike, by the order in which they come first, on all of TBB's
+/// threads. Appends those that differ to `distinct`; a place whose x is NaN gets some number.
+std::vector<NodeIndex> number_places(std::span<const Point> x, std::vector<Point>& distinct);
+
 }  // namespace controlspace

@@ -1,9 +1,15 @@
 #include "trees/values/vertex_values.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <limits>
 #include <utility>
 
+#include "controlspace/metric/intersection.h"
 #include "controlspace/trees/detail/make_room.h"
+#include "geometry/threads.h"
+#include "trees/topology/cut_lattice.h"
 
 namespace controlspace {
 
@@ -39,69 +45,48 @@ NodeIndex VertexValues::vertex_at(const Point& x, const Box& box, const Corners&
 }
 
 void VertexValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new) {
-    // The children's corners stand on a lattice of up to 3 x 3 x 3 places: per axis the low face,
-    // the cut and the high face. Those that are not corners of the leaf are searched, once each.
     const Corners old = corners_[leaf];
-    const Box& box = subdivision.box;
-    constexpr NodeIndex unknown = ~NodeIndex{0}, searched = unknown - 1;
-    std::array<NodeIndex, 27> lattice;
-    lattice.fill(unknown);
-    struct Place {
-        std::size_t at;  // in the lattice
-        Point x;
-    };
-    std::array<Place, 19> fresh;
-    std::size_t count = 0;
-    const auto enter = [&](const std::array<int, 3>& step) {
-        const auto at = static_cast<std::size_t>(step[0] + 3 * step[1] + 9 * step[2]);
-        if (lattice[at] != unknown) return at;
-        Point x;
-        int old_corner = 0;
-        bool is_old = true;
-        for (Axis a = 0; a < 3; ++a) {
-            const int s = step[static_cast<std::size_t>(a)];
-            x[a] = s == 0 ? box.low[a] : s == 1 ? subdivision.at[a] : box.high[a];
-            old_corner |= (s / 2) << a;
-            is_old = is_old && s != 1;
-        }
-        lattice[at] = is_old ? old[static_cast<std::size_t>(old_corner)] : searched;
-        if (!is_old) fresh[count++] = {at, x};
-        return at;
-    };
-
-    const int children = subdivision.children();
-    std::array<std::array<std::size_t, 8>, 8> corners_at;  // in the lattice
-    for (int c = 0; c < children; ++c) {
-        for (int i = 0; i < 8; ++i) {
-            std::array<int, 3> step{};
-            for (Axis a = 0; a < 3; ++a) {
-                const auto axis = static_cast<std::size_t>(a);
-                const int bit = i >> a & 1;
-                const int high = box.low[a] < box.high[a] ? 2 : 0;
-                step[axis] = subdivision.cuts[axis] ? subdivision.side(c, a) + bit : high * bit;
-            }
-            corners_at[static_cast<std::size_t>(c)][static_cast<std::size_t>(i)] = enter(step);
-        }
-    }
+    CutLattice lattice(subdivision, old);
     // All are prefetched before the first is waited for.
-    const auto places = std::span(fresh).first(count);
-    for (const Place& place : places) places_.prefetch(place.x);
-    for (const Place& place : places) {
+    const auto places = lattice.new_places();
+    for (const auto& place : places) places_.prefetch(place.x);
+    for (const auto& place : places) {
         const NodeIndex node = places_.likely_at(place.x);
         if (node >= positions_.size()) continue;
         __builtin_prefetch(&positions_[node]);
         metrics_.prefetch(node);
     }
-    for (const Place& place : places) lattice[place.at] = vertex_at(place.x, box, old);
+    for (const auto& place : places) lattice.set(place, vertex_at(place.x, subdivision.box, old));
 
+    const int children = subdivision.children();
     make_room(corners_, static_cast<std::size_t>(children - 1));
     corners_.resize(corners_.size() + static_cast<std::size_t>(children - 1));
     for (int c = 0; c < children; ++c) {
-        const LeafIndex child = c == 0 ? leaf : first_new + static_cast<LeafIndex>(c - 1);
-        for (std::size_t i = 0; i < 8; ++i) {
-            corners_[child][i] = lattice[corners_at[static_cast<std::size_t>(c)][i]];
-        }
+        corners_[c == 0 ? leaf : first_new + static_cast<LeafIndex>(c - 1)] = lattice.child(c);
     }
+}
+
+void VertexValues::enter(LeafVertices vertices, std::span<const Metric> of_leaves) {
+    corners_ = std::move(vertices.of_leaves);
+    positions_ = std::move(vertices.positions);
+    places_ = PlaceIndex();
+    // Each thread intersects at nodes of its own, leaf after leaf.
+    std::vector<Metric> metrics = large_array<Metric>(positions_.size());
+    const std::size_t shares = threads_allowed();
+    tbb::parallel_for(std::size_t{0}, shares, [&](std::size_t share) {
+        const auto low = static_cast<NodeIndex>(share * metrics.size() / shares);
+        const auto high = static_cast<NodeIndex>((share + 1) * metrics.size() / shares);
+        const double unknown = std::numeric_limits<double>::infinity();
+        for (NodeIndex node = low; node < high; ++node) metrics[node].xx = unknown;
+        for (LeafIndex leaf = 0; leaf < corners_.size(); ++leaf) {
+            for (const NodeIndex node : corners_[leaf]) {
+                if (node < low || node >= high) continue;
+                Metric& own = metrics[node];
+                own = own.xx == unknown ? of_leaves[leaf] : intersection(own, of_leaves[leaf]);
+            }
+        }
+    });
+    metrics_ = NodeMetrics(std::move(metrics));
 }
 
 void VertexValues::require_sound(const StateReader& state, std::size_t leaves) {

@@ -16,6 +16,7 @@
 #include "controlspace/trees/node_metrics.h"
 #include "controlspace/trees/topology.h"
 #include "trees/packing/frozen_tree.h"
+#include "trees/topology/leaf_vertices.h"
 #include "trees/topology/place_index.h"
 #include "trees/values/trilinear_cursor.h"
 
@@ -26,7 +27,8 @@ namespace controlspace {
 /// A vertex is one control node for all leaves that have a corner there, hanging vertices included.
 /// A new vertex of a split gets the interpolated metric; where a control node stands already, it is
 /// intersected with that. So a split changes the field only where it makes a finer neighbour's
-/// vertex count, and never makes it larger.
+/// vertex count, and never makes it larger. Or else vertices collect what the leaves around them
+/// request, when these have grown (SpaceOptions::vertices_in_turn).
 class VertexValues {
 public:
     static constexpr int order = 1;
@@ -51,6 +53,11 @@ public:
         return {positions_[corners_[leaf].front()], positions_[corners_[leaf].back()]};
     }
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new);
+    /// Starts anew with the leaves of a tree, which request `metrics`.
+    template <class Node>
+    void collect(const Topology<Node>& tree, std::span<const Metric> metrics) {
+        enter(leaf_vertices(tree), metrics);
+    }
     NodeMetrics& metrics() { return metrics_; }
     const NodeMetrics& metrics() const { return metrics_; }
     const Corners& nodes_of(LeafIndex leaf) const { return corners_[leaf]; }
@@ -104,6 +111,7 @@ private:
         return blend_lengths(weights,
                              [&](std::size_t i) -> const Metric& { return metrics[corners[i]]; });
     }
+    void enter(LeafVertices vertices, std::span<const Metric> of_leaves);
     NodeIndex vertex_at(const Point& x, const Box& box, const Corners& corners);
     // The index of places waits for the first cut, which needs it.
     void require_sound(const StateReader& state, std::size_t leaves);

@@ -71,6 +71,9 @@ namespace controlspace {
 //   prefetch(leaf)         prefetches what value_in reads first
 //   ceiling(leaf, x)       upper bound of the requested isotropic length at x, now and after all
 //                          later insertions; infinity where there is none
+//   collect(tree, metrics) starts anew with the leaves of a tree, each of which requests a metric;
+//                          insertion then cuts leaves as those of LeafMetrics, on all threads
+//                          (SpaceOptions::vertices_in_turn)
 //   cursor(tree)           lengths for one caller (Cursor), beside trilinear_leaves
 //   prepare(tree)          makes queries faster until a leaf is cut; they may come without it
 //   pack(tree, precision)  the compact form, in which leaves have other numbers. Required for eight

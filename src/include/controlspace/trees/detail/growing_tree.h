@@ -145,7 +145,8 @@ protected:
         // vertices; with all neighbours up to 640.
         const std::size_t gradation_bytes_per_leaf =
             neighbourhood == Neighbourhood::all ? 700 : 300;
-        const std::size_t bytes = footprint().bytes_total() + leaves * gradation_bytes_per_leaf;
+        const std::size_t bytes =
+            footprint().bytes_total() + leaves * (gradation_bytes_per_leaf + bytes_to_come_);
         if (bytes > options_.max_bytes) fail_too_large(bytes, options_.max_bytes);
         next_check_ = leaves + leaves / 16;
     }
@@ -174,7 +175,8 @@ protected:
     bool balanced_;
     Topology<Node> topology_;
     Storage storage_;
-    bool is_finished_ = false;  // nothing has grown since `settle`
+    bool is_finished_ = false;       // nothing has grown since `settle`
+    std::size_t bytes_to_come_ = 0;  // for each leaf, beside gradation
 
 private:
     // Brings all face neighbours to the leaf's own level at least, so that it may be split.

@@ -15,6 +15,19 @@
 
 namespace controlspace {
 
+/// Whether the nodes of a storage collect what the leaves of a tree request.
+template <class Storage, class Node>
+concept CollectsRequests = requires(Storage& s, const Topology<Node>& tree,
+                                    std::span<const Metric> metrics) {
+    s.collect(tree, metrics);
+};
+
+/// Whether a storage has a cursor of its own for lengths.
+template <class Storage, class Node>
+concept HasCursor = requires(const Storage& s, const Topology<Node>& tree) {
+    s.cursor(tree);
+};
+
 /// A tree whose control nodes carry metrics, for SharedBuilder: the cut and the storage are
 /// independent of each other, insertion (paper §3.1) is the same for all.
 template <class Node, class Storage>
@@ -24,7 +37,8 @@ class MetricTree : public GrowingTree<Node, Storage> {
 
 public:
     explicit MetricTree(const SpaceOptions& options, bool balanced = false)
-        : Base(options, balanced) {}
+        : Base(options, balanced),
+          collects_(!balanced && !options.vertices_in_turn && !options.takes_later_sources) {}
 
     InsertionReport insert(std::span<const PointSource> sources) {
         // Copying everything would be out of proportion to a few sources more.
@@ -32,7 +46,16 @@ public:
         InsertionReport report;
         // A leaf is its own metric alone: leaves grow at the same time.
         if constexpr (HasConstantLeaves<Storage>) {
-            if (!Base::balanced_ && !metrics().keeps_requested()) report = insert_by_leaf(sources);
+            if (!Base::balanced_ && !metrics().keeps_requested()) {
+                insert_by_leaf(metrics(), sources, report);
+            }
+        } else if constexpr (CollectsRequests<Storage, Node>) {
+            if (collects_) {
+                if (!requests_) requests_.emplace(topology_.leaves(), largest_metric(options_));
+                is_finished_ = are_collected_ = false;
+                Base::bytes_to_come_ = bytes_collected_per_leaf;
+                insert_by_leaf(*requests_, sources, report);
+            }
         }
         insert_in_turn(sources, report);
         if (!is_finished_ && sources.size() > topology_.leaves() / 16) finish();
@@ -40,9 +63,11 @@ public:
     }
 
     ControlNodes control_nodes(Neighbourhood neighbourhood) const {
+        if (!are_collected_) return collected().control_nodes(neighbourhood);
         return nodes_of_tree(topology_, storage_, neighbourhood);
     }
     void assign(std::span<const Metric> metrics) {
+        end_collection();
         assign_nodes(topology_, storage_, metrics);
         past_.reset();
     }
@@ -51,18 +76,28 @@ public:
         if (!gradation.field && gradation.options.neighbourhood == Neighbourhood::all) {
             Base::require_memory(topology_.leaves(), Neighbourhood::all);
         }
+        end_collection();
         topology_.fit_jumps();
         return options_.takes_later_sources ? grade_beside_requested(gradation)
                                             : grade_nodes(topology_, storage_, gradation);
     }
 
     AdaptationReport adapt(const AdaptationGoal& goal) {
+        forget_requests();
         AdaptationReport report = Base::adapt(goal, [&] { past_.reset(); });
         finish();
         return report;
     }
 
-    void finish() { Base::settle(); }
+    void finish() {
+        collect();
+        Base::settle();
+    }
+    Footprint footprint() const {
+        Footprint footprint = Base::footprint();
+        if (requests_) footprint.bytes_auxiliary += requests_->field().size() * sizeof(Metric);
+        return footprint;
+    }
 
     /// Whether all metrics are isotropic, and sample_lengths answers.
     bool has_lengths() const {
@@ -77,20 +112,17 @@ public:
         return value_at<double>(topology_, field_of(storage_), x);
     }
 
-    std::unique_ptr<Cursor> length_cursor() const requires AnswersLengths<Storage, Node> {
-        if constexpr (HasTrilinearLeaves<Storage> && requires { storage_.cursor(topology_); }) {
-            return storage_.cursor(topology_);
-        } else {
-            using Field = NodeField<Storage, Metric>;
-            return std::make_unique<LengthCursor<Node, Field>>(topology_, field_of(storage_));
-        }
+    std::unique_ptr<Cursor> length_cursor() const requires HasCursor<Storage, Node> {
+        return storage_.cursor(topology_);
     }
 
     std::unique_ptr<ControlSpace> pack(Precision precision) const {
+        if (!are_collected_) return collected().pack(precision);
         return pack_tree(topology_, storage_, precision);
     }
 
     void save(StateWriter& state) const {
+        if (!are_collected_) return collected().save(state);
         controlspace::save(topology_, state);
         save_storage(storage_, metrics(), state);
         if (!options_.takes_later_sources) return;
@@ -98,6 +130,7 @@ public:
         exchange_past(past_, state);
     }
     void load(const StateReader& state) {
+        forget_requests();
         is_finished_ = true;
         topology_ = load_topology<Node>(Base::domain(), state);
         load_storage(storage_, topology_, state);
@@ -111,23 +144,49 @@ private:
     NodeMetrics& metrics() { return storage_.metrics(); }
     const NodeMetrics& metrics() const { return storage_.metrics(); }
 
-    InsertionReport insert_by_leaf(std::span<const PointSource> sources) {
-        InsertionReport report;
+    // Sets the nodes to what the leaves request.
+    void collect() {
+        if (are_collected_) return;
+        if constexpr (CollectsRequests<Storage, Node>) {
+            storage_.collect(topology_, requests_->field());
+        }
+        are_collected_ = true;
+        Base::bytes_to_come_ = 0;
+        Base::require_memory(topology_.leaves());
+    }
+    // From now on the nodes alone count.
+    void end_collection() {
+        collect();
+        forget_requests();
+    }
+    void forget_requests() {
+        requests_.reset();
+        are_collected_ = true;
+        collects_ = false;
+        Base::bytes_to_come_ = 0;
+    }
+    MetricTree collected() const {
+        MetricTree copy = *this;
+        copy.collect();
+        return copy;
+    }
+
+    void insert_by_leaf(NodeMetrics& of_leaves, std::span<const PointSource> sources,
+                        InsertionReport& report) {
         const SourceCuts<Node> cuts = Base::cuts();
         LeafGrowth<Node> growth(cuts, options_.tolerance);
         while (report.sources < sources.size()) {
             const auto batch = growth.next_batch(sources.subspan(report.sources));
-            const std::size_t valid = growth.grow(topology_, metrics().field(), batch);
+            const std::size_t valid = growth.grow(topology_, of_leaves.field(), batch);
             if (valid == 0) require_valid(batch.front(), report.sources, Base::domain());
             Base::make_room_for(growth.leaves_made());
             topology_.grow(growth.cuts_made(), growth.leaves_made());
-            metrics().grow(growth.leaves_made());
-            growth.enter(topology_, metrics().field());
+            of_leaves.grow(growth.leaves_made());
+            growth.enter(topology_, of_leaves.field());
             topology_.fit_jumps_roughly();
             report.sources += valid;
             report.inserted += growth.inserted();
         }
-        return report;
     }
 
     // One after the other, those left after the report's.
@@ -176,6 +235,13 @@ private:
         past_ = {options, report.largest_ratio_left};
         return report;
     }
+
+    // As long as nothing but insertion has changed it: what leaves request (of a storage that
+    // collects that), and whether the nodes have been set to it.
+    static constexpr std::size_t bytes_collected_per_leaf = 224;
+    bool collects_;
+    bool are_collected_ = true;
+    std::optional<NodeMetrics> requests_;
 
     // Since the last gradation, where sources may come after it.
     TreeChanges<Storage> changes_;
