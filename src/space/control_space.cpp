@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "controlspace/space/control_nodes.h"
+#include "controlspace/space/detail/plain_cursor.h"
 
 namespace controlspace {
 
@@ -13,18 +14,6 @@ namespace {
 double smallest_length(const Metric& m) {
     return is_isotropic(m) ? m.xx : eigen_frame(m).lengths[0];
 }
-
-/// Without memory.
-class PlainCursor final : public Cursor {
-public:
-    explicit PlainCursor(const ControlSpace& space) : space_(space) {}
-
-    Metric metric_at(const Point& x) override { return space_.metric_at(x); }
-    double length_at(const Point& x) override { return space_.length_at(x); }
-
-private:
-    const ControlSpace& space_;
-};
 
 }  // namespace
 
@@ -50,7 +39,7 @@ Metric ControlSpace::metric_at(const Point& x) const {
 double ControlSpace::length_at(const Point& x) const { return smallest_length(metric_at(x)); }
 
 std::unique_ptr<Cursor> ControlSpace::cursor() const {
-    return std::make_unique<PlainCursor>(*this);
+    return std::make_unique<PlainCursor<ControlSpace>>(*this);
 }
 
 double Cursor::length_at(const Point& x) { return smallest_length(metric_at(x)); }

@@ -18,7 +18,8 @@ namespace controlspace {
 /// `Values` as of trilinear_in_leaves, to be copied, or a reference to them.
 ///
 /// On walks in steps of half an element, one leaf would hold 50 to 70 % of the next places, four
-/// hold 70 to 90 %, sixteen 75 to 95 %.
+/// hold 70 to 90 %, sixteen 75 to 95 %. Where they hold less than two of three, entering leaves
+/// takes longer than it saves: then it works without for a while.
 template <class Node, class Values>
 class TrilinearCursor final : public Cursor {
 public:
@@ -32,6 +33,11 @@ public:
 
     Metric metric_at(const Point& x) override { return Metric::isotropic(length_at(x)); }
     double length_at(const Point& x) override {
+        if (without_ > 0) {
+            --without_;
+            return trilinear_in_leaf<double>(values_, tree_.find(x), x);
+        }
+        ++asked_;
         // One comparison with all: which of them holds the place cannot be predicted. A bit for
         // each, since a leaf is there twice where places beyond the domain come to it.
         const Whole held = (x.x() > above_[0]) & (x.x() <= up_to_[0]) & (x.y() > above_[1]) &
@@ -67,6 +73,10 @@ private:
 
     // Not inlined: otherwise what it needs is also done for places in leaves that are remembered.
     [[gnu::noinline]] double enter(const Point& x) {
+        if (++entered_ == most_entered) {
+            if (asked_ < few_asked) without_ = long_without;
+            asked_ = entered_ = 0;
+        }
         const LeafIndex found = tree_.find(x);
         const Box box = values_.box(found);
         const Box& domain = tree_.domain();
@@ -98,6 +108,9 @@ private:
     std::array<Numbers, 3> above_{}, up_to_{};  // faces of the leaves
     std::array<Leaf, most> leaves_;
     std::size_t next_ = 0;  // to be replaced
+    // Where less than two of three places are in them, none are remembered for a while.
+    static constexpr std::uint32_t most_entered = 32, few_asked = 96, long_without = 1024;
+    std::uint32_t asked_ = 0, entered_ = 0, without_ = 0;
 };
 
 }  // namespace controlspace

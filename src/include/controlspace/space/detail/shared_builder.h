@@ -14,6 +14,7 @@
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/control_space_builder.h"
 #include "controlspace/space/detail/given_sources.h"
+#include "controlspace/space/detail/plain_cursor.h"
 #include "controlspace/space/detail/saved.h"
 
 namespace controlspace {
@@ -50,7 +51,7 @@ public:
         if constexpr (requires { data_->length_cursor(); }) {
             if (has_lengths()) return data_->length_cursor();
         }
-        return ControlSpace::cursor();
+        return std::make_unique<PlainCursor<SharedSpace>>(*this);
     }
     Box domain() const override { return data_->domain(); }
     Footprint footprint() const override {

@@ -10,6 +10,7 @@
 
 #include "controlspace/metric/stored_metric.h"
 #include "controlspace/space/control_nodes.h"
+#include "controlspace/space/detail/plain_cursor.h"
 #include "controlspace/space/detail/saved.h"
 #include "controlspace/trees/detail/leaf_graph.h"
 #include "controlspace/trees/detail/sample_leaves.h"
@@ -114,12 +115,10 @@ public:
         }
     }
     std::unique_ptr<Cursor> cursor() const override {
-        if constexpr (!Values::are_lengths) {
-            return ControlSpace::cursor();
-        } else if constexpr (requires { values_.cursor(topology_); }) {
+        if constexpr (Values::are_lengths && requires { values_.cursor(topology_); }) {
             return values_.cursor(topology_);
         } else {
-            return std::make_unique<LengthCursor<Node, const Values&>>(topology_, values_);
+            return std::make_unique<PlainCursor<PackedTree>>(*this);
         }
     }
     ControlNodes control_nodes(Neighbourhood neighbourhood) const override {

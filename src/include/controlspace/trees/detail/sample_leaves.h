@@ -65,22 +65,6 @@ Value value_at(const Topology<Node>& tree, const Field& field, const Point& x) {
     return value_in<Value>(tree, field, tree.find(x), x);
 }
 
-/// Lengths of a field, where all are known to be isotropic, for one caller: without memory, where
-/// to find a leaf takes no longer than to see whether a place is in one that is remembered. `Field`
-/// may be a reference.
-template <class Node, class Field>
-class LengthCursor final : public Cursor {
-public:
-    LengthCursor(const Topology<Node>& tree, Field field) : tree_(tree), field_(field) {}
-
-    Metric metric_at(const Point& x) override { return Metric::isotropic(length_at(x)); }
-    double length_at(const Point& x) override { return value_at<double>(tree_, field_, x); }
-
-private:
-    const Topology<Node>& tree_;
-    Field field_;
-};
-
 /// The same at many points: leaves are found side by side, then read.
 template <class Node, class Field, class Value>
 void sample_leaves(const Topology<Node>& tree, const Field& field, std::span<const Point> x,
