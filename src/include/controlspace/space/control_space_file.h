@@ -22,7 +22,7 @@ namespace controlspace {
 //   64 bits    checksum of all bytes before: XXH3
 
 /// Version of the format that is written, and the only one that is read.
-inline constexpr std::uint32_t control_space_file_version = 4;
+inline constexpr std::uint32_t control_space_file_version = 5;
 
 /// How a structure was made.
 struct Recipe {
