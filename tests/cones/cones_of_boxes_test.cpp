@@ -93,7 +93,7 @@ TEST_CASE("what cannot be gathered is refused") {
     IsotropicCones::Hint hint = 0;
     const Box box{Point::Constant(-1), Point::Constant(1)};
     CHECK_FALSE(ConeField(sample_sphere({}), g, wide).isotropic().gather(box, cones, hint));
-    CHECK(ConeField({}, g, wide).isotropic().gather(box, cones, hint));
+    CHECK(ConeField(SourceColumns(), g, wide).isotropic().gather(box, cones, hint));
     CHECK(cones.smallest_length(Point::Zero(), cap) == cap);
 }
 
@@ -114,7 +114,9 @@ TEST_CASE("bounds in a box: the least is met, and one cone stays below the most"
     }
     const auto [least, most] = [&] {
         IsotropicCones::Hint hint = 0;
-        return ConeField({}, g, wide).isotropic().range_in({Point::Zero(), Point::Ones()}, hint);
+        return ConeField(SourceColumns(), g, wide)
+            .isotropic()
+            .range_in({Point::Zero(), Point::Ones()}, hint);
     }();
     CHECK(least == cap);
     CHECK(most == cap);

@@ -122,7 +122,7 @@ TEST_CASE("lengths that are shown to follow isotropic cones do so everywhere, ot
 }
 
 TEST_CASE("without sources lengths are compared with the largest") {
-    const IsotropicCones cones({}, 1.25, 2);
+    const IsotropicCones cones(SourceColumns(), 1.25, 2);
     IsotropicCones::Hint hint = 0;
     TrilinearLengths lengths{domain_at(Point::Zero()), {}};
     lengths.at.fill(2);

@@ -207,7 +207,7 @@ TEST_CASE("limits hold for all that is requested") {
     // What lies within the limits stays as it is, to the bit.
     study.sources.h_min = 0.0001;
     study.sources.h_max = 10;
-    CHECK(workload_of(study, readers_of(points)).sources == points);
+    CHECK(workload_of(study, readers_of(points)).sources.all() == points);
 
     study.sources = with_sources(ball).sources;
     study.sources.h_min = 0.3;
