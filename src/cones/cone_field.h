@@ -69,6 +69,11 @@ public:
     /// for the tolerance.
     Metric evaluate_close(const Point& x, const Metric* further, const OrderFreeCones::Start& near,
                           OrderFreeCones::Start& found) const;
+    /// Where `has_starts`: appends the indices of the sources that an answer found to matter.
+    void append_sources(const OrderFreeCones::Start& found,
+                        std::vector<std::uint32_t>& sources) const {
+        std::get<OrderFreeCones>(cones_).append_sources(found, sources);
+    }
     /// Whether sources are intersected without an order.
     bool has_starts() const { return std::holds_alternative<OrderFreeCones>(cones_); }
     /// The metric `m` at `x`, and the `sources` that make it so, their indices: `m` is `largest`

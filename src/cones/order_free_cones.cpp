@@ -150,6 +150,12 @@ PointSource OrderFreeCones::member(std::uint32_t number) const {
     return tree_.vectors()[number / lane_count][static_cast<Eigen::Index>(number % lane_count)];
 }
 
+void OrderFreeCones::append_sources(const Start& start, std::vector<std::uint32_t>& sources) const {
+    for (std::uint32_t k = 0; k < start.count; ++k) {
+        sources.push_back(tree_.indices()[start.members[k]]);
+    }
+}
+
 double OrderFreeCones::growth(const Point& p, const Eigen::Matrix3d& h,
                               const PointSource& source) const {
     const Eigen::Matrix3d k = Cholesky(source.metric).solve(h) / cone_factor(source, 1, p);

@@ -56,6 +56,9 @@ public:
     OrderFreeIntersection intersect_close(const Point& p, const Metric* further, const Start& near,
                                           Start& found) const;
 
+    /// Indices of the members of a core set.
+    void append_sources(const Start& start, std::vector<std::uint32_t>& sources) const;
+
     /// Sources that change the result nowhere, and were left out.
     std::size_t dropped() const { return dropped_; }
 

@@ -124,15 +124,15 @@ struct NearbyField::Search {
         const std::vector<Metric> further = field.continuous_at({&x, 1});
         return answer(x, further.empty() ? nullptr : further.data(), trail.nearest(x));
     }
-    std::optional<Metric> recall(const Point& x) {
+    std::optional<GoalCache::Answer> recall(const Point& x) {
         GoalCache::Answer known;
         if (!field.cache().recall(x, known)) return std::nullopt;
         trail.add(x, known.start);
-        return known.metric;
+        return known;
     }
     // Whatever the places before.
     Metric shared(const Point& x) {
-        if (const auto metric = recall(x)) return *metric;
+        if (const auto known = recall(x)) return known->metric;
         GoalCache::Answer known;
         const std::vector<Metric> further = field.continuous_at({&x, 1});
         known = answer(x, further.empty() ? nullptr : further.data(), nullptr);
@@ -192,6 +192,21 @@ double NearbyField::evaluate_roughly(std::span<const Point> x, bool shared, std:
             field.cones().isotropic().smallest_length(x[i], search_->memory.hint, tolerance));
     }
     return 1 + tolerance;
+}
+
+Metric NearbyField::governed(const Point& x, double tolerance,
+                             std::vector<std::uint32_t>& sources) {
+    const GoalField& field = search_->field;
+    if (!field.cones().has_starts()) {
+        Metric m;
+        field.cones().governing(x, tolerance, sources, m, search_->memory);
+        return m;
+    }
+    sources.clear();
+    const auto known = search_->recall(x);
+    const GoalCache::Answer answer = known ? *known : search_->answer_near(x);
+    field.cones().append_sources(answer.start, sources);
+    return answer.metric;
 }
 
 Metric NearbyField::at(const Point& x) {

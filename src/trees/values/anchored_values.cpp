@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "cones/cone_field.h"
@@ -13,6 +16,7 @@
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/metric/order_free_intersection.h"
 #include "controlspace/trees/detail/in_parallel.h"
+#include "controlspace/trees/detail/nearby_field.h"
 #include "metric/decompose.h"
 #include "metric/interior_point.h"
 
@@ -23,6 +27,9 @@ namespace {
 // Shortening all lengths by a small fraction t gives δ = √3 t^2: a cone may be left out where it
 // shortens some by this, and most of the target remains for places in between.
 double negligible_shortening(double target) { return 0.5 * std::sqrt(target); }
+
+// Share of the target that is left at places to which leaves are fitted.
+constexpr double well_within = 0.25;
 
 }  // namespace
 
@@ -157,43 +164,91 @@ bool AnchoredValues::is_covered(SourceIndex source, std::span<const SourceIndex>
     return true;
 }
 
-std::size_t AnchoredValues::drop_needless(std::span<SourceIndex> list, std::span<const Point> x,
-                                          std::span<const Metric> exact, double tolerance) const {
-    std::size_t n = list.size();
-    const auto left_by = [&](std::span<const SourceIndex> sources, std::size_t i) {
-        return std::max(tolerance, nonconformity(cones_at(x[i], sources), exact[i]));
+// What the field is at a place, and which sources make it so.
+struct AnchoredValues::Known {
+    Point x;
+    Metric exact;
+    std::vector<SourceIndex> governing;
+    std::vector<Metric> further;  // or none
+};
+
+AnchoredValues::Known AnchoredValues::known_at(const Point& x, NearbyField& nearby,
+                                               const GoalField& field) const {
+    Known known{x, {}, {}, field.continuous_at({&x, 1})};
+    known.exact = nearby.governed(x, negligible_shortening(field.target()), known.governing);
+    return known;
+}
+
+// By the sources alone, if the answer is to be compared with one of sources alone.
+Metric AnchoredValues::own_at(const Known& known, std::span<const SourceIndex> anchors) const {
+    return are_order_free() && !known.further.empty()
+               ? largest_within_cones(known.x, anchors, known.further.data())
+               : cones_at(known.x, anchors);
+}
+
+bool AnchoredValues::add_most_exceeded(const Known& at, const Metric& own,
+                                       std::vector<SourceIndex>& list) const {
+    if (list.size() >= most_anchors()) return false;
+    double greatest = 1;
+    std::optional<SourceIndex> worst;
+    for (const SourceIndex s : at.governing) {
+        if (std::ranges::find(list, s) != list.end()) continue;
+        const double excess = growth(own, sources_.factor(s, ratio_, at.x) * sources_.metric(s));
+        if (!(excess > greatest)) continue;
+        greatest = excess;
+        worst = s;
+    }
+    if (worst) list.push_back(*worst);
+    return worst.has_value();
+}
+
+// The worst place first: what it lacks most is added, until none is far off.
+std::vector<SourceIndex> AnchoredValues::fitted(std::span<const Known> places,
+                                                double tolerance) const {
+    struct State {
+        double delta = std::numeric_limits<double>::infinity();
+        bool is_new = false;  // of the list as it is
+        Metric own;
     };
-    std::array<double, LeafPlaces::all> left{};  // by the list as it is
-    std::array<double, LeafPlaces::all> left_without{};
-    for (std::size_t i = 0; i < x.size(); ++i) left[i] = left_by(list, i);
-    for (std::size_t k = 0; k < n;) {
-        std::array<SourceIndex, most> others{};
-        std::copy_n(list.begin(), k, others.begin());
-        std::copy(list.begin() + static_cast<std::ptrdiff_t>(k) + 1,
-                  list.begin() + static_cast<std::ptrdiff_t>(n),
-                  others.begin() + static_cast<std::ptrdiff_t>(k));
-        const auto without = std::span<const SourceIndex>(others).first(n - 1);
-        bool is_needed = false;
-        for (std::size_t i = 0; i < x.size() && !is_needed; ++i) {
-            left_without[i] = left_by(without, i);
-            is_needed = left_without[i] > left[i];
-        }
-        if (is_needed) {
-            ++k;
+    std::vector<State> states(places.size());
+    std::vector<SourceIndex> list;
+    for (;;) {
+        const auto worst = std::ranges::max_element(states, {}, &State::delta);
+        if (!(worst->delta > tolerance)) return list;
+        const Known& place = places[static_cast<std::size_t>(worst - states.begin())];
+        if (!worst->is_new) {
+            worst->own = own_at(place, list);
+            worst->delta = directional_nonconformity(worst->own, place.exact);
+            worst->is_new = true;
+        } else if (add_most_exceeded(place, worst->own, list)) {
+            for (State& state : states) state.is_new = false;
+        } else if (list.size() >= most_anchors()) {
+            return list;
         } else {
-            std::ranges::copy(without, list.begin());
-            left = left_without;
-            --n;
+            worst->delta = 0;  // nothing is lacking there
         }
     }
-    return n;
+}
+
+void AnchoredValues::fit_closely(std::span<const LeafBox> leaves, const GoalField& field) {
+    evaluate_shared(field, leaves, LeafPlaces::corners, LeafPlaces::all);
+    std::vector<std::vector<SourceIndex>> lists(leaves.size());
+    in_parallel(leaves.size(), [&, nearby = NearbyField(field)](std::size_t i) mutable {
+        nearby.enter(leaves[i].box, true);
+        std::vector<Known> places;
+        for (std::size_t k = 0; k < LeafPlaces::all; ++k) {
+            places.push_back(known_at(leaf_places().in(leaves[i].box, k), nearby, field));
+        }
+        lists[i] = fitted(places, well_within * field.target());
+    });
+    for (std::size_t i = 0; i < leaves.size(); ++i) anchors_.set(leaves[i].leaf, lists[i]);
 }
 
 void AnchoredValues::fit(std::span<const LeafBox> leaves, const GoalField& field,
                          std::size_t places, bool beside_old) {
-    const double well_within = 0.25 * field.target();
+    const double close = well_within * field.target();
     const double negligible = negligible_shortening(field.target());
-    const double factor = largest_factor_within(well_within);
+    const double factor = largest_factor_within(close);
     std::vector<SourceIndex> chosen(leaves.size() * most);
     std::vector<std::size_t> count(leaves.size(), 0);
     // Cells of an order-free search serve many leaves, and have no effect on answers.
@@ -203,8 +258,6 @@ void AnchoredValues::fit(std::span<const LeafBox> leaves, const GoalField& field
         const std::span<SourceIndex> list(chosen.data() + i * most, most);
         std::size_t& n = count[i];
         memory.hint = 0;  // of several sources that are equally near the same is found always
-        std::array<Point, LeafPlaces::all> at;
-        std::array<Metric, LeafPlaces::all> exact;
         for (std::size_t k = 0; k < places; ++k) {
             const std::size_t p = (LeafPlaces::centre + k) % LeafPlaces::all;  // the centre first
             const Point x = leaf_places().in(leaves[i].box, p);
@@ -217,16 +270,11 @@ void AnchoredValues::fit(std::span<const LeafBox> leaves, const GoalField& field
             }
             Metric m;
             field.cones().governing(x, negligible, governing, m, memory);
-            at[k] = x;
-            exact[k] = m;
-            if (nonconformity(own, m) <= well_within) continue;
+            if (nonconformity(own, m) <= close) continue;
             for (const SourceIndex s : governing) {
                 const auto end = list.begin() + static_cast<std::ptrdiff_t>(n);
                 if (n < most_anchors() && std::find(list.begin(), end, s) == end) list[n++] = s;
             }
-        }
-        if (are_order_free() && places == LeafPlaces::all) {
-            n = drop_needless(list.first(n), std::span(at).first(places), exact, well_within);
         }
     });
     std::vector<std::vector<SourceIndex>> kept(beside_old ? leaves.size() : 0);
@@ -270,18 +318,26 @@ void AnchoredValues::cover(std::span<const LeafBox> leaves, const GoalField& fie
     }
 }
 
-bool AnchoredValues::learn(LeafIndex leaf, const Point& x, const GoalField& field) {
-    std::vector<SourceIndex> governing;
-    Metric m;
-    field.cones().governing(x, negligible_shortening(field.target()), governing, m);
+std::vector<SourceIndex> AnchoredValues::lesson(LeafIndex leaf, const Point& x, NearbyField& nearby,
+                                                const GoalField& field) const {
     const auto old = anchors_.of(leaf);
+    if (old.size() >= most_anchors()) return {};
     std::vector<SourceIndex> list(old.begin(), old.end());
-    for (const SourceIndex s : governing) {
-        if (std::find(list.begin(), list.end(), s) == list.end()) list.push_back(s);
+    const Known known = known_at(x, nearby, field);
+    if (are_order_free()) {
+        for (;;) {
+            const Metric own = own_at(known, list);
+            if (directional_nonconformity(own, known.exact) <= well_within * field.target() ||
+                !add_most_exceeded(known, own, list)) {
+                break;
+            }
+        }
+    } else {
+        std::ranges::copy_if(known.governing, std::back_inserter(list),
+                             [&](SourceIndex s) { return std::ranges::find(old, s) == old.end(); });
     }
-    if (list.size() == old.size() || list.size() > most_anchors()) return false;
-    anchors_.set(leaf, list);
-    return true;
+    if (list.size() == old.size() || list.size() > most_anchors()) return {};
+    return list;
 }
 
 void AnchoredValues::drop_idle_sources() {

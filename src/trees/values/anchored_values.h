@@ -11,6 +11,7 @@
 #include "controlspace/space/detail/state.h"
 #include "controlspace/space/space_options.h"
 #include "controlspace/trees/detail/leaf_judge.h"
+#include "controlspace/trees/detail/nearby_field.h"
 #include "controlspace/trees/topology.h"
 #include "metric/interior_point.h"
 #include "trees/values/anchors.h"
@@ -55,6 +56,7 @@ public:
              bool proved) {
         // Of tensors hundreds may each cut a little: what governs the centre has to do.
         fits_tensors_loosely_ = !proved;
+        if (proved && are_order_free()) return fit_closely(leaves, field);
         fit(leaves, field, sources_.all_isotropic() || proved ? LeafPlaces::all : 1, !proved);
     }
     /// Anchors for these leaves that keep within the target everywhere in them, of an isotropic
@@ -62,11 +64,14 @@ public:
     void cover(std::span<const LeafBox> leaves, const GoalField& field,
                std::span<std::uint8_t> is_kept);
     bool is_fitted(LeafIndex leaf) const {
-        return (fits_tensors_loosely_ && !sources_.all_isotropic()) ||
-               anchors_.of(leaf).size() < most_anchors();
+        if (fits_tensors_loosely_) return !sources_.all_isotropic();
+        return !are_order_free() && anchors_.of(leaf).size() < most_anchors();
     }
-    /// Enters the sources that govern the field at `x`, unless the leaf has enough anchors.
-    bool learn(LeafIndex leaf, const Point& x, const GoalField& field);
+    /// The anchors of a leaf and those that it lacks at `x`; empty if it lacks none, or more than
+    /// there is room for.
+    std::vector<SourceIndex> lesson(LeafIndex leaf, const Point& x, NearbyField& nearby,
+                                    const GoalField& field) const;
+    void learn(LeafIndex leaf, std::span<const SourceIndex> lesson) { anchors_.set(leaf, lesson); }
     /// Forgets sources that are no leaf's anchor.
     void drop_idle_sources();
 
@@ -98,10 +103,16 @@ private:
     // the largest metric, in any direction; as far as parts of the box show.
     bool is_covered(SourceIndex source, std::span<const SourceIndex> others, const Box& box,
                     int halvings) const;
-    // Leaves out sources without which the list keeps to the metrics at `x`, as far as it did, or
-    // up to the tolerance. Returns how many are left, at the front.
-    std::size_t drop_needless(std::span<SourceIndex> list, std::span<const Point> x,
-                              std::span<const Metric> exact, double tolerance) const;
+    // Without an order, at all places of the leaves.
+    void fit_closely(std::span<const LeafBox> leaves, const GoalField& field);
+    struct Known;
+    Known known_at(const Point& x, NearbyField& nearby, const GoalField& field) const;
+    Metric own_at(const Known& known, std::span<const SourceIndex> anchors) const;
+    std::vector<SourceIndex> fitted(std::span<const Known> places, double tolerance) const;
+    // The source that `own` exceeds most, of those that govern the place; false if it exceeds none,
+    // or there is no room.
+    bool add_most_exceeded(const Known& at, const Metric& own,
+                           std::vector<SourceIndex>& list) const;
     void load(std::size_t leaves, const StateReader& state);
     // At the nearest point of the domain.
     Metric value(const Box& domain, LeafIndex leaf, const Point& place) const;

@@ -91,12 +91,19 @@ public:
 
 private:
     enum class LeafState : std::uint8_t { settled, changed, fresh };
+    // Whether the storage can improve a leaf that departs from the field without cutting it. What
+    // costs little is done before it is necessary.
+    static constexpr bool learns() {
+        return requires(Storage & s) { s.learn(LeafIndex{}, std::vector<std::uint32_t>()); };
+    }
+    static constexpr double share_where_learned = 0.7;
 
     // Samples the leaves that are not settled, and settles, fits or cuts them. Returns
     // whether some have to be sampled again.
     template <class Split>
     bool round(bool proved, Split&& split) {
         field_.forget_if_full();
+        if constexpr (learns()) lessons_.assign(tree_.leaves(), {});
         std::vector<LeafBox> young = leaves_in_state(LeafState::changed);
         if (proved && covers()) {
             cover(young);
@@ -117,14 +124,15 @@ private:
             // It may have been cut to make way for a neighbour.
             if (states_[l.leaf] != LeafState::settled) continue;
             Departure& departure = departures_[l.leaf];
-            if (!(departure.worst > aim_)) continue;
-            if constexpr (requires { storage_.learn(l.leaf, departure.where, field_); }) {
-                if (departure.is_elsewhere && storage_.learn(l.leaf, departure.where, field_)) {
+            if constexpr (learns()) {
+                if (!lessons_[l.leaf].empty()) {
+                    storage_.learn(l.leaf, lessons_[l.leaf]);
                     states_[l.leaf] = LeafState::changed;
                     changes = true;
                     continue;
                 }
             }
+            if (!(departure.worst > aim_)) continue;
             cut.clear();
             const bool is_cut = split(l.box, departure.along, cut);
             changes = is_cut || changes;
@@ -269,9 +277,13 @@ private:
                     }
                 }
                 if (is_sampled) search(l, judge, nearby, first[i], first[i + 1], found);
-                departure.is_elsewhere = is_bad();
             }
             departures_[l.leaf] = departure;
+            if constexpr (learns()) {
+                if (proved && departure.worst > share_where_learned * aim_) {
+                    lessons_[l.leaf] = storage_.lesson(l.leaf, departure.where, nearby, field_);
+                }
+            }
         });
     }
 
@@ -330,8 +342,9 @@ private:
     std::vector<Metric> at_sources_;  // the field there
     NextToSources<Node, Storage> next_to_sources_;
     std::vector<LeafIndex> leaf_of_source_;
-    std::vector<LeafState> states_;      // of the leaves
-    std::vector<Departure> departures_;  // likewise
+    std::vector<LeafState> states_;                    // of the leaves
+    std::vector<Departure> departures_;                // likewise
+    std::vector<std::vector<std::uint32_t>> lessons_;  // likewise, where the storage learns
     std::uint64_t places_used_ = 0;
 };
 

@@ -13,7 +13,6 @@ struct Departure {
     double worst = 0;             ///< δ, or a bound: lower above the target, upper below 3/4 of it
     Point where = Point::Zero();  ///< the place of it
     std::array<double, 3> along{};  ///< how much speaks for a cut across each axis
-    bool is_elsewhere = false;      ///< above the target only at a place that was not fitted to
 
     bool is_unknown() const { return std::isinf(worst); }
     void take(double delta, const Point& x) {
