@@ -179,7 +179,7 @@ AnchoredValues::Known AnchoredValues::known_at(const Point& x, NearbyField& near
     return known;
 }
 
-// By the sources alone, if the answer is to be compared with one of sources alone.
+// What these anchors make of it. In turn, both are of the sources alone.
 Metric AnchoredValues::own_at(const Known& known, std::span<const SourceIndex> anchors) const {
     return are_order_free() && !known.further.empty()
                ? largest_within_cones(known.x, anchors, known.further.data())

@@ -34,7 +34,8 @@ public:
     /// the cones of tensors that are close to those which matter nearby; others, of which none
     /// mattered at the places of this box that were compared with all, may shorten it.
     double evaluate_roughly(std::span<const Point> x, bool shared, std::span<Metric> out);
-    /// The same at one place, and the sources that make it so (ConeField::governing).
+    /// The same at one place, exactly, and the sources that make it so (ConeField::governing). In
+    /// turn and of isotropic sources, without the continuous field.
     Metric governed(const Point& x, double tolerance, std::vector<std::uint32_t>& sources);
     /// The same, exactly, at any point, shared, which best is near to the one before.
     Metric at(const Point& x);
