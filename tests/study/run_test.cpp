@@ -206,7 +206,9 @@ TEST_CASE("graded by the sources, structures err between nodes only") {
     const Row& sources = rows[1];
     CHECK(sources.setting.schedule == GradationSchedule::sources);
     CHECK(sources.number("delta_R_mean") < 0.8 * queue.number("delta_R_mean"));
-    CHECK(sources.number("bytes_total") == queue.number("bytes_total"));
+    // The tree is that of K_oL, a few leaves finer than with vertices in turn.
+    CHECK(sources.number("cells") >= queue.number("cells"));
+    CHECK(sources.number("cells") < 1.1 * queue.number("cells"));
 }
 
 TEST_CASE("the ratio left is that of the law and of the neighbours that were graded by") {

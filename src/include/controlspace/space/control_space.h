@@ -70,8 +70,8 @@ inline Metric sample_at(const ControlSpace& space, const Point& x) { return spac
 ///
 /// The answers are those of the space, to the bit. K_V and K_oV of isotropic metrics remember the
 /// last four leaves, with the lengths at their corners. Where they are adapted to a field, so that
-/// leaves are longer than elements, a query along a walk takes 0.5 to 0.75 of its time without;
-/// where leaves are as short as steps, and at random places, up to 1.6 times as long. Other trees
+/// leaves are longer than elements, a query along a walk takes 0.5 to 1 times as long as without;
+/// where leaves are as short as steps, and at random places, it stops remembering. Other trees
 /// search as length_at does, which takes no longer than looking at what would be remembered; so do
 /// tensors. Keeps a reference to the space, which must outlive it, and is for one thread
 /// (otherwise: ThreadCursor).
