@@ -60,10 +60,11 @@ Metric ConeField::at(const Point& x, const Metric* further, Memory& memory) cons
 }
 
 Metric ConeField::evaluate(const Point& x, const Metric* further, Memory& memory,
-                           const OrderFreeCones::Start* near, OrderFreeCones::Start& found) const {
+                           const OrderFreeCones::Start* near, OrderFreeCones::Start& found,
+                           std::optional<double> tolerance) const {
     const auto* cones = std::get_if<OrderFreeCones>(&cones_);
     if (cones == nullptr) return at(x, further, memory);
-    return cones->intersect(x, further, memory.order_free, near, &found).metric();
+    return cones->intersect(x, further, memory.order_free, near, &found, tolerance).metric();
 }
 
 Metric ConeField::evaluate_close(const Point& x, const Metric* further,

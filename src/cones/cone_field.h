@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -61,10 +62,11 @@ public:
     void evaluate(std::span<const Point> x, std::span<Metric> out, Memory& memory,
                   std::span<const Metric> further = {}) const;
     /// The metric at one place, intersected with `further`, if given. Where `has_starts`, the
-    /// search begins at `near`, if given, and `found` becomes what those of nearby places may begin
-    /// at.
+    /// search begins at `near`, if given, `found` becomes what those of nearby places may begin at,
+    /// and a `tolerance`, if given, takes the place of the field's own.
     Metric evaluate(const Point& x, const Metric* further, Memory& memory,
-                    const OrderFreeCones::Start* near, OrderFreeCones::Start& found) const;
+                    const OrderFreeCones::Start* near, OrderFreeCones::Start& found,
+                    std::optional<double> tolerance = {}) const;
     /// The same of sources close to those of `near` alone: the volume of an element is no less, but
     /// for the tolerance.
     Metric evaluate_close(const Point& x, const Metric* further, const OrderFreeCones::Start& near,

@@ -329,11 +329,12 @@ const OrderFreeCones::Start& OrderFreeCones::start_near(const Point& p, Search& 
 }
 
 OrderFreeIntersection OrderFreeCones::intersect(const Point& p, const Metric* further,
-                                                Search& search, const Start* near,
-                                                Start* found) const {
+                                                Search& search, const Start* near, Start* found,
+                                                std::optional<double> tolerance) const {
     if (further != nullptr) require_valid(*further, failure_of("the further metric"));
-    if (tree_.empty() || !p.allFinite()) return answer(p, further, {}, tolerance_, found);
-    return answer(p, further, near != nullptr ? *near : start_near(p, search), tolerance_, found);
+    const double t = tolerance.value_or(tolerance_);
+    if (tree_.empty() || !p.allFinite()) return answer(p, further, {}, t, found);
+    return answer(p, further, near != nullptr ? *near : start_near(p, search), t, found);
 }
 
 OrderFreeIntersection OrderFreeCones::intersect_close(const Point& p, const Metric* further,

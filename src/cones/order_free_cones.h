@@ -49,8 +49,10 @@ public:
     /// indices of sources. Begins at `near`, if given, which should be that of a place near to `p`:
     /// the answer depends on it, as far as the tolerance allows. `found` becomes that of `p`.
     /// Throws InputError for a `further` metric that `order_free_intersection` does not accept.
+    /// With a `tolerance`, in place of the field's own.
     OrderFreeIntersection intersect(const Point& p, const Metric* further, Search& search,
-                                    const Start* near = nullptr, Start* found = nullptr) const;
+                                    const Start* near = nullptr, Start* found = nullptr,
+                                    std::optional<double> tolerance = {}) const;
     /// The same of sources close to those of `near` in the hierarchy alone: log det M is no less,
     /// to the tolerance. A fraction of the time.
     OrderFreeIntersection intersect_close(const Point& p, const Metric* further, const Start& near,

@@ -20,7 +20,7 @@
 #include "editable_space.h"
 
 // What adaptation reports as met is searched where it is most likely to be broken: small random
-// scenes, each searched by a multistart for its worst place. Some run as tests; bench/promise runs
+// scenes, each searched by a multistart for its worst place. Some run as tests;
 // many by tests_adaptation "[promise]", which prints a row for each: CONTROLSPACE_SCENES is their
 // number for each structure (20 unless it is set), CONTROLSPACE_FIRST_SCENE the seed of the first,
 // CONTROLSPACE_STARTS that of places where a search of tensors starts (94000).

@@ -113,10 +113,19 @@ struct NearbyField::Search {
             }
         }
     }
+    void closely(std::span<const Point> x, std::span<Metric> out) {
+        const std::vector<Metric> further = field.continuous_at(x);
+        const double tolerance = std::min(0.01 * field.target(), 0.1);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const Metric* own_further = further.empty() ? nullptr : &further[i];
+            out[i] = answer(x[i], own_further, trail.nearest(x[i]), tolerance).metric;
+        }
+    }
     GoalCache::Answer answer(const Point& x, const Metric* further,
-                             const OrderFreeCones::Start* near) {
+                             const OrderFreeCones::Start* near,
+                             std::optional<double> tolerance = {}) {
         GoalCache::Answer answer;
-        answer.metric = field.cones().evaluate(x, further, memory, near, answer.start);
+        answer.metric = field.cones().evaluate(x, further, memory, near, answer.start, tolerance);
         trail.add(x, answer.start);
         return answer;
     }
@@ -166,6 +175,8 @@ void NearbyField::evaluate(std::span<const Point> x, std::span<Metric> out) {
     search_->gather();
     if (search_->are_few) {
         search_->by_few(x, out);
+    } else if (search_->field.cones().has_starts()) {
+        search_->closely(x, out);
     } else {
         search_->by_memory(x, out);
     }
@@ -175,9 +186,9 @@ double NearbyField::evaluate_roughly(std::span<const Point> x, bool shared, std:
     const GoalField& field = search_->field;
     if (shared && search_->takes_long()) {
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = at(x[i]);
-        return 1;
+        return field.cones().has_starts() ? std::numeric_limits<double>::infinity() : 1;
     }
-    if (field.cones().has_starts() && !field.has_few_sources()) {
+    if (field.cones().has_starts()) {
         search_->by_close_cones(x, out);
         return std::numeric_limits<double>::infinity();
     }

@@ -57,14 +57,14 @@ public:
     /// false where the leaf must stay as it is.
     ///
     /// Leaves are sampled in their LeafPlaces; if `proved`, those that pass also at other places.
-    /// Leaves above the target, or just below it where that is affordable, are fitted anew or cut,
+    /// Leaves above the target, or just below it where no bound is known, are fitted anew or cut,
     /// and sampled again. Returns the largest departure that is left; infinite if some leaf was not
     /// to be cut, and neither shown to keep the target nor found to exceed it.
     template <class Split>
     double run(bool proved, Split&& split) {
         // A peak is rarely found to its very top.
-        constexpr double share_where_sampled = 0.97;
-        is_thorough_ = proved && !field_.has_ranges() && field_.has_few_sources();
+        constexpr double share_where_sampled = 0.99;
+        is_thorough_ = proved && !field_.has_ranges() && field_.has_sources();
         if (is_thorough_) aim_ = share_where_sampled * field_.target();
         states_.assign(tree_.leaves(), LeafState::fresh);
         departures_.resize(tree_.leaves());
@@ -295,6 +295,7 @@ private:
         const double worst = found.departure.worst;
         if (is_thorough_ && worst > 0.5 * aim_ && !(worst > aim_)) {
             judge.at_sequence(l, nearby, end, end + more, found);
+            if (!(found.departure.worst > aim_)) judge.at_places_between(l, nearby, found);
         }
         judge.climb(l, nearby, is_thorough_ ? Peaks::most : 1, found);
     }

@@ -70,6 +70,18 @@ public:
         }
     }
 
+    /// On its edges and faces, between the places of the leaf.
+    void at_places_between(const LeafBox& of, NearbyField& nearby, Findings& found) const {
+        std::array<Point, LeafPlaces::between / 2> x;
+        for (std::size_t first = 0; first < LeafPlaces::between; first += x.size()) {
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                x[i] =
+                    of.box.low + leaf_places().at_between[first + i].cwiseProduct(of.box.edges());
+            }
+            compare_with(of, nearby, x, false, found, {});
+        }
+    }
+
     /// Of lengths that are trilinear in the leaf: the target, if bounds show that it is kept
     /// everywhere; otherwise more, without bound where they show nothing.
     Departure everywhere(const LeafBox& of, NearbyField& nearby) const {
@@ -201,7 +213,7 @@ private:
         if (std::isinf(factor)) {
             Metric exact = longest;
             double delta = directional_nonconformity(own, exact);
-            if (delta > 0.75 * target_) {
+            if (delta > 0.75 * target_ && !(delta > 1.5 * target_)) {
                 nearby.evaluate({&x, 1}, {&exact, 1});
                 delta = directional_nonconformity(own, exact);
             }

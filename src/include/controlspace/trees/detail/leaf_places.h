@@ -13,6 +13,9 @@ struct LeafPlaces {
     static constexpr std::size_t corners = 0, centre = corners + 8, faces = centre + 1,
                                  edges = faces + 6, all = edges + 12;
     std::array<Vector, all> at;
+    /// On edges and faces, a quarter from the middles of edges, and from two of them.
+    static constexpr std::size_t between = 24 + 24;
+    std::array<Vector, between> at_between;
 
     LeafPlaces();
     static constexpr std::size_t low_face(std::size_t axis) { return faces + 2 - axis; }

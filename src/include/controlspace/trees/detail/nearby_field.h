@@ -28,11 +28,13 @@ public:
     /// not depend on the boxes before.
     void enter(const Box& box, bool at_many_points);
 
+    /// Tensors without an order: to a hundredth of the target.
     void evaluate(std::span<const Point> x, std::span<Metric> out);
     /// The same, or longer by a factor less than the one returned, where that is quicker. Places
     /// that are `shared` by leaves are evaluated once, where that takes long. An infinite factor:
-    /// the cones of tensors that are close to those which matter nearby; others, of which none
-    /// mattered at the places of this box that were compared with all, may shorten it.
+    /// tensors without an order, to a tenth of the target; where places are not shared, by the
+    /// cones that are close to those which matter nearby; others, of which none mattered at the
+    /// places of this box that were compared with all, may shorten it.
     double evaluate_roughly(std::span<const Point> x, bool shared, std::span<Metric> out);
     /// The same at one place, exactly, and the sources that make it so (ConeField::governing). In
     /// turn and of isotropic sources, without the continuous field.
