@@ -39,7 +39,9 @@ double negligible_for(double target) { return 0.1 * std::sqrt(target); }
 
 double tolerance_for(const AdaptationGoal& goal) {
     const bool is_order_free = goal.intersection == IntersectionRule::order_free;
-    return is_order_free ? std::min(0.1 * goal.target, 0.1) : negligible_for(goal.target);
+    if (!is_order_free) return negligible_for(goal.target);
+    const double share = goal.sources.size() <= GoalField::few_sources ? 0.01 : 0.1;
+    return std::min(share * goal.target, 0.1);
 }
 
 }  // namespace

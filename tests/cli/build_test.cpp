@@ -216,13 +216,13 @@ TEST_CASE("info says what a saved control space is and holds") {
     CHECK_THAT(said("--structures K_V --splits s_G --tau 0.5 --frozen floats"),
                Contains("structure    K_V: kd-tree, trilinear") &&
                    Contains("compact      floats: read-only") &&
-                   Contains("saved by     controlspace ") && Contains(", format 4\n") &&
+                   Contains("saved by     controlspace ") && Contains(", format 5\n") &&
                    Contains("split s_G, tau 0.5, epsilon 0.2") && Contains(" leaves of ") &&
                    Contains(" tree nodes, at levels of up to ") && Contains("MB in the file") &&
                    Contains("lengths      0.10") && Contains("anisotropy   1 (largest)") &&
                    Contains("gradation    1."));
     CHECK_THAT(said("--structures K_oLA --g-r 1.5"),
-               Contains("g_r 1.5") && Contains("octree, up to three sources"));
+               Contains("g_r 1.5") && Contains("octree, the few sources"));
     CHECK_THAT(said("--structures uniform-nearest --voxel 0.25"),
                Contains("voxel 0.25") && !Contains("leaves") && !Contains("compact"));
     check_refused(box.run("info f.ctrl --source-array a"), "--source-array");

@@ -4,7 +4,7 @@
 namespace controlspace {
 
 CatalogueEntry kd_sources() {
-    return source_row<KdNode>("K_LA", "kd-tree, up to three sources in each leaf");
+    return source_row<KdNode>("K_LA", "kd-tree, the few sources that matter in each leaf");
 }
 
 }  // namespace controlspace

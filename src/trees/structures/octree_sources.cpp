@@ -4,7 +4,7 @@
 namespace controlspace {
 
 CatalogueEntry octree_sources() {
-    return source_row<OctreeNode>("K_oLA", "octree, up to three sources in each leaf");
+    return source_row<OctreeNode>("K_oLA", "octree, the few sources that matter in each leaf");
 }
 
 }  // namespace controlspace

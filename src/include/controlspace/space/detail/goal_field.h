@@ -46,7 +46,9 @@ public:
     void forget_if_full() const;
 
     const ConeField& cones() const { return *cones_; }
-    bool has_sources() const { return !sources_.empty(); }
+    /// Whether there are sources, and so few that all can be compared with every leaf: then the
+    /// field is evaluated closely everywhere.
+    bool has_few_sources() const { return !sources_.empty() && sources_.size() <= few_sources; }
     /// Relative shortening of lengths that is left out.
     double negligible() const;
     const Metric& largest() const { return largest_; }
@@ -55,6 +57,8 @@ public:
     double ratio() const { return ratio_; }
     /// The largest of all sources' and that one.
     double largest_ratio() const { return largest_ratio_; }
+
+    static constexpr std::size_t few_sources = 64;
 
 private:
     double target_;

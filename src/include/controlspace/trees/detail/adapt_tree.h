@@ -63,8 +63,9 @@ public:
     template <class Split>
     double run(bool proved, Split&& split) {
         // A peak is rarely found to its very top.
-        constexpr double share_where_sampled = 0.99;
-        is_thorough_ = proved && !field_.has_ranges() && field_.has_sources();
+        const bool are_few = field_.has_few_sources();
+        const double share_where_sampled = are_few ? 0.97 : 0.99;
+        is_thorough_ = proved && !field_.has_ranges() && (are_few || field_.cones().has_starts());
         if (is_thorough_) aim_ = share_where_sampled * field_.target();
         states_.assign(tree_.leaves(), LeafState::fresh);
         departures_.resize(tree_.leaves());

@@ -32,9 +32,9 @@ public:
     void evaluate(std::span<const Point> x, std::span<Metric> out);
     /// The same, or longer by a factor less than the one returned, where that is quicker. Places
     /// that are `shared` by leaves are evaluated once, where that takes long. An infinite factor:
-    /// tensors without an order, to a tenth of the target; where places are not shared, by the
-    /// cones that are close to those which matter nearby; others, of which none mattered at the
-    /// places of this box that were compared with all, may shorten it.
+    /// more than few tensors without an order, to a tenth of the target; where places are not
+    /// shared, by the cones that are close to those which matter nearby; others, of which none
+    /// mattered at the places of this box that were compared with all, may shorten it.
     double evaluate_roughly(std::span<const Point> x, bool shared, std::span<Metric> out);
     /// The same at one place, exactly, and the sources that make it so (ConeField::governing). In
     /// turn and of isotropic sources, without the continuous field.

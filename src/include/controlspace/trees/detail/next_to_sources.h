@@ -37,7 +37,7 @@ public:
     template <class IsWanted>
     void find_beside(const IsWanted& is_wanted) {
         if (!cones_) cones_.emplace(sources_, field_.ratio(), field_.target());
-        if (are_few()) return;
+        if (field_.has_few_sources()) return;
         beside_.assign(tree_.leaves(), {});
         tbb::enumerable_thread_specific<std::vector<std::pair<LeafIndex, Departure>>> found;
         in_parallel(sources_.size(), [&](std::size_t i) {
@@ -57,7 +57,7 @@ public:
     /// the field there; nothing if that is far below the target. Of few sources, appends to
     /// `further` where it exceeds cones, and places around the tips of cones.
     Departure worst_in(const LeafBox& of, std::vector<Point>& further) const {
-        if (!are_few()) return beside_[of.leaf];
+        if (!field_.has_few_sources()) return beside_[of.leaf];
         cones_->append_around_tips(of.box, further);
         Departure worst;
         if constexpr (HasTrilinearLeaves<Storage>) {
@@ -75,9 +75,6 @@ public:
     }
 
 private:
-    // So few that all can be compared with every leaf.
-    bool are_few() const { return sources_.size() <= 64; }
-
     auto metric_in(LeafIndex leaf) const {
         return
             [this, leaf](const Point& x) { return value_in(tree_, field_of(storage_), leaf, x); };
