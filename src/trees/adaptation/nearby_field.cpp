@@ -184,7 +184,7 @@ void NearbyField::evaluate(std::span<const Point> x, std::span<Metric> out) {
 
 double NearbyField::evaluate_roughly(std::span<const Point> x, bool shared, std::span<Metric> out) {
     const GoalField& field = search_->field;
-    const bool is_rough = field.cones().has_starts() && !field.has_few_sources();
+    const bool is_rough = field.is_order_free() && !field.has_few_sources();
     if (shared && search_->takes_long()) {
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = at(x[i]);
         return is_rough ? std::numeric_limits<double>::infinity() : 1;

@@ -46,6 +46,8 @@ public:
     void forget_if_full() const;
 
     const ConeField& cones() const { return *cones_; }
+    /// Whether tensors are intersected without an order.
+    bool is_order_free() const;
     /// Whether there are sources, and so few that all can be compared with every leaf: then the
     /// field is evaluated closely everywhere.
     bool has_few_sources() const { return !sources_.empty() && sources_.size() <= few_sources; }
