@@ -61,7 +61,7 @@ std::string export_vdb(const Export& e, VdbOptions vdb) {
     }
     const Stopwatch time;
     const VdbReport report = write_vdb(e.output, *e.filled.space, vdb);
-    const std::string text = summary(e, report, time);
+    std::string text = summary(e, report, time);
     const double finest = origin ? origin->workload.finest_length : report.finest;
     if (report.voxel > finest) {
         spdlog::warn(

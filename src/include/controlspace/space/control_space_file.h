@@ -43,7 +43,7 @@ void save_control_space(const std::filesystem::path& file, const ControlSpaceBui
 /// What a file holds.
 struct SavedControlSpace {
     Recipe recipe;
-    std::string saved_by;                          ///< "controlspace 0.1.0, format 4"
+    std::string saved_by;                          ///< "controlspace 0.1.0, format 5"
     std::unique_ptr<ControlSpaceBuilder> builder;  ///< none of a compact form
     std::unique_ptr<ControlSpace> space;
 };
