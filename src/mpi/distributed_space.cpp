@@ -57,6 +57,7 @@ struct DistributedSpace::Impl {
         report.owned = near->owned();
         report.kept = near->kept();
         std::vector<std::vector<LeafIndex>> of_ranks;
+        of_ranks.reserve(static_cast<std::size_t>(ranks.size()));
         for (int r = 0; r < ranks.size(); ++r) of_ranks.push_back(octants.of_rank(r));
         report.octants = of_ranks[static_cast<std::size_t>(ranks.rank())].size();
         report.octants_of_all = octants.tree().leaves();
@@ -272,6 +273,7 @@ void write_pieces(Ranks& ranks, const std::filesystem::path& index, std::string_
         ranks.together([&] {
             if (ranks.rank() != 0) return;
             std::vector<std::filesystem::path> pieces;
+            pieces.reserve(static_cast<std::size_t>(ranks.size()));
             for (int r = 0; r < ranks.size(); ++r) pieces.push_back(piece_of(r));
             write_index(pieces);
         });

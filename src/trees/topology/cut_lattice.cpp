@@ -9,7 +9,8 @@ CutLattice::CutLattice(const Subdivision& subdivision, const Corners& old) {
     constexpr NodeIndex unknown = ~NodeIndex{0}, to_be_set = unknown - 1;
     nodes_.fill(unknown);
     const auto enter = [&](const std::array<int, 3>& step) {
-        const auto at = static_cast<std::size_t>(step[0] + 3 * step[1] + 9 * step[2]);
+        const int number = step[0] + 3 * step[1] + 9 * step[2];
+        const auto at = static_cast<std::size_t>(number);
         if (nodes_[at] != unknown) return at;
         Point x;
         int old_corner = 0;
