@@ -11,11 +11,7 @@ namespace controlspace {
 
 ConeField::ConeField(std::span<const PointSource> sources, double g, const Metric& largest,
                      double tolerance, IntersectionRule rule)
-    : largest_(largest),
-      longest_(eigen_frame(largest).lengths[2]),
-      tolerance_(tolerance),
-      rule_(rule),
-      cones_(make_cones(sources, g)) {}
+    : ConeField(columns_of(sources), g, largest, tolerance, rule) {}
 
 ConeField::ConeField(const SourceColumns& sources, double g, const Metric& largest,
                      double tolerance, IntersectionRule rule)
@@ -27,16 +23,9 @@ ConeField::ConeField(const SourceColumns& sources, double g, const Metric& large
 
 ConeField::Cones ConeField::make_cones(const SourceColumns& sources, double g) const {
     if (sources.are_isotropic()) return IsotropicCones(sources, g, longest_);
-    return make_cones(sources.all(), g);
-}
-
-ConeField::Cones ConeField::make_cones(std::span<const PointSource> sources, double g) const {
-    const bool isotropic = std::all_of(sources.begin(), sources.end(), [](const PointSource& s) {
-        return controlspace::is_isotropic(s.metric);
-    });
-    if (isotropic) return IsotropicCones(sources, g, longest_);
-    if (rule_ == IntersectionRule::in_turn) return AnisotropicCones(sources, g, longest_);
-    return OrderFreeCones(sources, g, largest_, tolerance_);
+    const std::vector<PointSource> tensors = sources.all();
+    if (rule_ == IntersectionRule::in_turn) return AnisotropicCones(tensors, g, longest_);
+    return OrderFreeCones(tensors, g, largest_, tolerance_);
 }
 
 Metric ConeField::at(const Point& x, const Metric* further, Memory& memory) const {

@@ -24,7 +24,6 @@ class IsotropicCones {
 public:
     /// All metrics must be isotropic; g >= 1 is the ratio of sources that have none. Lengths of
     /// `cap` or more do not matter.
-    IsotropicCones(std::span<const PointSource> sources, double g, double cap);
     IsotropicCones(const SourceColumns& sources, double g, double cap);
 
     /// Where a search starts from: best at the place where the last one nearby ended.
@@ -105,11 +104,7 @@ private:
     using Leaf = ConeLanes<leaf_size>;
     using Tree = ConeTree<Node, Leaf>;
 
-    IsotropicCones(double steepest, double cap);
-    template <class Sources>
-    void build_undominated(const Sources& sources, double g);
-    template <class Sources>
-    void build(std::span<ConeTreeItem> items, const Sources& sources, double g);
+    void build(std::span<ConeTreeItem> items, const SourceColumns& sources, double g);
     bool is_dominated(const IsotropicCone& cone) const;
     /// Of all cones below, everywhere at most `radius` away from `p`.
     Lanes lower_bounds(const Node& node, const Point& p, double radius = 0) const;

@@ -57,8 +57,7 @@ IsotropicCone cone_of(const PointSource& source, double g) {
 
 // For each place the item of the smallest length there, and longer ones that are less steep, in an
 // order that depends on nothing else.
-template <class Sources>
-void keep_smallest_at_each_place(std::vector<ConeTreeItem>& items, const Sources& sources,
+void keep_smallest_at_each_place(std::vector<ConeTreeItem>& items, const SourceColumns& sources,
                                  double g) {
     const auto slope = [&](const ConeTreeItem& item) { return slope_of(sources[item.index], g); };
     tbb::parallel_sort(items.begin(), items.end(), [&](const auto& a, const auto& b) {
@@ -107,25 +106,12 @@ struct Cylinder {
 
 }  // namespace
 
-IsotropicCones::IsotropicCones(double steepest, double cap)
-    : steepest_(steepest),
+IsotropicCones::IsotropicCones(const SourceColumns& sources, double g, double cap)
+    : steepest_(largest_growth(sources, g) - 1),
       cap_(cap),
       // A cone's length is computed as h (1 + (g-1) |v / h|), its bounds as h + (g-1) |v|; the two
       // differ by a few roundings, and the bounds give way by more. Without growth, by none.
-      safely_(steepest_ > 0 ? 1 - 64 * epsilon : 1) {}
-
-IsotropicCones::IsotropicCones(std::span<const PointSource> sources, double g, double cap)
-    : IsotropicCones(largest_growth(sources, g) - 1, cap) {
-    build_undominated(sources, g);
-}
-
-IsotropicCones::IsotropicCones(const SourceColumns& sources, double g, double cap)
-    : IsotropicCones(largest_growth(sources, g) - 1, cap) {
-    build_undominated(sources, g);
-}
-
-template <class Sources>
-void IsotropicCones::build_undominated(const Sources& sources, double g) {
+      safely_(steepest_ > 0 ? 1 - 64 * epsilon : 1) {
     // Without growth cones differ in their lengths only.
     const double weight = g > 1 ? 1 / (g - 1) : 1;
     std::vector<ConeTreeItem> items(sources.size());
@@ -171,8 +157,7 @@ bool IsotropicCones::is_dominated(const IsotropicCone& cone) const {
                          });
 }
 
-template <class Sources>
-void IsotropicCones::build(std::span<ConeTreeItem> items, const Sources& sources, double g) {
+void IsotropicCones::build(std::span<ConeTreeItem> items, const SourceColumns& sources, double g) {
     const auto make_leaf = [&](std::span<const ConeTreeItem> of_leaf, Leaf& leaf) {
         Eigen::Index lane = 0;
         for (const ConeTreeItem& item : of_leaf) leaf.set(lane++, cone_of(sources[item.index], g));

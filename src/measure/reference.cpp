@@ -20,8 +20,7 @@ namespace controlspace {
 
 namespace {
 
-template <class Sources>
-void require_usable(const Sources& sources, double g, const Metric& largest) {
+void require_usable(const SourceColumns& sources, double g, const Metric& largest) {
     require_valid(GradationOptions{.ratio = g});
     if (!is_positive_definite(largest)) {
         refuse(
@@ -44,8 +43,7 @@ void require_usable(const Sources& sources, double g, const Metric& largest) {
 
 class ExactReference final : public ControlSpace {
 public:
-    template <class Sources>
-    ExactReference(const Sources& sources, double g, const Metric& largest, double tolerance,
+    ExactReference(const SourceColumns& sources, double g, const Metric& largest, double tolerance,
                    IntersectionRule rule, std::shared_ptr<const ControlSpace> continuous)
         : field_(sources, g, largest, tolerance, rule), continuous_(std::move(continuous)) {}
 
@@ -98,10 +96,12 @@ private:
     Metric largest_;
 };
 
-template <class Sources>
-std::unique_ptr<ControlSpace> reference_of(const Sources& sources, double g, const Metric& largest,
-                                           double tolerance, IntersectionRule rule,
-                                           std::shared_ptr<const ControlSpace> continuous) {
+}  // namespace
+
+std::unique_ptr<ControlSpace> exact_reference(const SourceColumns& sources, double g,
+                                              const Metric& largest, double tolerance,
+                                              IntersectionRule rule,
+                                              std::shared_ptr<const ControlSpace> continuous) {
     require_usable(sources, g, largest);
     if (!std::isfinite(tolerance) || tolerance < 0) {
         refuse("tolerance {} of the reference: give a finite one >= 0", tolerance);
@@ -110,25 +110,16 @@ std::unique_ptr<ControlSpace> reference_of(const Sources& sources, double g, con
                                             std::move(continuous));
 }
 
-}  // namespace
-
-std::unique_ptr<ControlSpace> exact_reference(const SourceColumns& sources, double g,
-                                              const Metric& largest, double tolerance,
-                                              IntersectionRule rule,
-                                              std::shared_ptr<const ControlSpace> continuous) {
-    return reference_of(sources, g, largest, tolerance, rule, std::move(continuous));
-}
-
 std::unique_ptr<ControlSpace> exact_reference(const std::vector<PointSource>& sources, double g,
                                               const Metric& largest, double tolerance,
                                               IntersectionRule rule,
                                               std::shared_ptr<const ControlSpace> continuous) {
-    return reference_of(sources, g, largest, tolerance, rule, std::move(continuous));
+    return exact_reference(columns_of(sources), g, largest, tolerance, rule, std::move(continuous));
 }
 
 std::unique_ptr<ControlSpace> brute_force_reference(std::vector<PointSource> sources, double g,
                                                     const Metric& largest) {
-    require_usable(sources, g, largest);
+    require_usable(columns_of(sources), g, largest);
     return std::make_unique<BruteForceReference>(std::move(sources), g, largest);
 }
 

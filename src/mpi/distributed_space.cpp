@@ -119,7 +119,7 @@ struct DistributedSpace::Impl {
         std::optional<IsotropicCones> cones;
         if (!options.target) return cones;
         ranks.together([&] {
-            cones.emplace(sources_of(records), options.space.ratio,
+            cones.emplace(columns_of(sources_of(records)), options.space.ratio,
                           largest_metric(options.space).xx);
             std::vector<std::uint32_t> kept(cones->kept().begin(), cones->kept().end());
             std::ranges::sort(kept);

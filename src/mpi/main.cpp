@@ -11,6 +11,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/command.h"
@@ -119,7 +120,8 @@ Made make(Ranks& ranks, const ParallelJob& job) {
                    .target = c.target_delta,
                    .octants_per_rank = static_cast<std::uint64_t>(std::max(job.octants, 0))};
     });
-    made.space = std::make_unique<DistributedSpace>(ranks.comm(), workload.sources.all(), options);
+    const auto sources = std::exchange(workload.sources, {}).all();
+    made.space = std::make_unique<DistributedSpace>(ranks.comm(), sources, options);
     return made;
 }
 

@@ -46,7 +46,7 @@ void SharedSources::find_bounds() {
     sources_in_.assign(octants_.tree().leaves(), {});
     std::optional<IsotropicCones> own_cones;
     ranks_.together([&] {
-        own_cones.emplace(sources_of(records_), ratio_, cap_);
+        own_cones.emplace(columns_of(sources_of(records_)), ratio_, cap_);
         for (std::uint32_t k = 0; k < records_.size(); ++k) {
             sources_in_[octants_.tree().find(records_[k].position)].all.push_back(k);
         }

@@ -86,7 +86,7 @@ TEST_CASE("lengths that are shown to follow isotropic cones do so everywhere, ot
     for (int k = 0; k < 400; ++k) {
         CAPTURE(k);
         const Scene scene = random_scene(random);
-        const IsotropicCones cones(scene.sources, scene.g, scene.cap);
+        const IsotropicCones cones(columns_of(scene.sources), scene.g, scene.cap);
         // Brute force, with the places next to the sources, where the field has its minima.
         const Box& box = scene.lengths.box;
         std::vector<Point> x = random_points(box, 2000, random());
@@ -135,7 +135,7 @@ TEST_CASE("without sources lengths are compared with the largest") {
 
 TEST_CASE("what rounding hides is not shown") {
     const PointSource source{Point(0, 2.5, 2), Metric::isotropic(0.1)};
-    const IsotropicCones cones({&source, 1}, 1.25, 10);
+    const IsotropicCones cones(columns_of({&source, 1}), 1.25, 10);
     IsotropicCones::Hint hint = 0;
     const Box box{Point(0.5, 2.5, 2), Point(0.5 + 1e-9, 2.5 + 1e-9, 2 + 1e-9)};
     TrilinearLengths lengths{box, {}};

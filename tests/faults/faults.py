@@ -358,12 +358,12 @@ def little_memory(folder):
     for megabytes in (14, 18, 22, 25, 28, 31, 34, 37, 40, 45, 50, 60, 80):
         def cap():
             resource.setrlimit(resource.RLIMIT_AS, (megabytes << 20, megabytes << 20))
+        if run(["--version"], folder, cap)[0] == 127:
+            continue  # the system cannot start it, and says so in words of its own
         for command in ("info old.ctrl", "build large.csv --within 1.02 -o old.ctrl", "export old.ctrl -o f.csv",
                         "export old.ctrl --samples 3000 -o f.vti", " ".join(STUDY) + " --output capped"):
             before = (folder / "old.ctrl").read_bytes()
             status, err = run(command.split(), folder, cap)
-            if status == 127 and "shared libraries" in err:
-                continue  # it did not start
             if status == 0:
                 if "build" in command:
                     (folder / "old.ctrl").write_bytes(before)

@@ -86,9 +86,10 @@ struct NearbyField::Search {
             field.cones().evaluate(x, out, memory, further);
             return;
         }
+        const double tolerance = std::min(0.01 * field.target(), 0.1);
         for (std::size_t i = 0; i < x.size(); ++i) {
-            out[i] =
-                answer(x[i], further.empty() ? nullptr : &further[i], trail.nearest(x[i])).metric;
+            const Metric* own_further = further.empty() ? nullptr : &further[i];
+            out[i] = answer(x[i], own_further, trail.nearest(x[i]), tolerance).metric;
         }
     }
     // A search of all sources takes most of the time, and where the field is known at some places
@@ -111,14 +112,6 @@ struct NearbyField::Search {
                 out[i] = answer(x[i], own_further, &close.start).metric;
                 is_close_enough = nonconformity(out[i], close.metric) < 0.1 * field.target();
             }
-        }
-    }
-    void closely(std::span<const Point> x, std::span<Metric> out) {
-        const std::vector<Metric> further = field.continuous_at(x);
-        const double tolerance = std::min(0.01 * field.target(), 0.1);
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            const Metric* own_further = further.empty() ? nullptr : &further[i];
-            out[i] = answer(x[i], own_further, trail.nearest(x[i]), tolerance).metric;
         }
     }
     GoalCache::Answer answer(const Point& x, const Metric* further,
@@ -175,8 +168,6 @@ void NearbyField::evaluate(std::span<const Point> x, std::span<Metric> out) {
     search_->gather();
     if (search_->are_few) {
         search_->by_few(x, out);
-    } else if (search_->field.cones().has_starts()) {
-        search_->closely(x, out);
     } else {
         search_->by_memory(x, out);
     }

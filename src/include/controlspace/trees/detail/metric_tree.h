@@ -47,14 +47,21 @@ public:
         // A leaf is its own metric alone: leaves grow at the same time.
         if constexpr (HasConstantLeaves<Storage>) {
             if (!Base::balanced_ && !metrics().keeps_requested()) {
-                insert_by_leaf(metrics(), sources, report);
+                insert_by_leaf([&] { return metrics().field(); },
+                               [&](std::size_t more) { metrics().grow(more); }, sources, report);
             }
         } else if constexpr (CollectsRequests<Storage, Node>) {
             if (collects_) {
-                if (!requests_) requests_.emplace(topology_.leaves(), largest_metric(options_));
+                if (requests_.empty()) {
+                    requests_.assign(topology_.leaves(), largest_metric(options_));
+                }
                 is_finished_ = are_collected_ = false;
                 Base::bytes_to_come_ = bytes_collected_per_leaf;
-                insert_by_leaf(*requests_, sources, report);
+                const auto grow = [&](std::size_t more) {
+                    make_room(requests_, more);
+                    requests_.resize(requests_.size() + more);
+                };
+                insert_by_leaf([&] { return std::span(requests_); }, grow, sources, report);
             }
         }
         insert_in_turn(sources, report);
@@ -95,7 +102,7 @@ public:
     }
     Footprint footprint() const {
         Footprint footprint = Base::footprint();
-        if (requests_) footprint.bytes_auxiliary += requests_->field().size() * sizeof(Metric);
+        footprint.bytes_auxiliary += requests_.capacity() * sizeof(Metric);
         return footprint;
     }
 
@@ -148,7 +155,7 @@ private:
     void collect() {
         if (are_collected_) return;
         if constexpr (CollectsRequests<Storage, Node>) {
-            storage_.collect(topology_, requests_->field());
+            storage_.collect(topology_, requests_);
         }
         are_collected_ = true;
         Base::bytes_to_come_ = 0;
@@ -160,7 +167,7 @@ private:
         forget_requests();
     }
     void forget_requests() {
-        requests_.reset();
+        requests_ = {};
         are_collected_ = true;
         collects_ = false;
         Base::bytes_to_come_ = 0;
@@ -171,18 +178,20 @@ private:
         return copy;
     }
 
-    void insert_by_leaf(NodeMetrics& of_leaves, std::span<const PointSource> sources,
+    // Leaves alone, each with one metric: field() is these, grow(more) appends some.
+    template <class Field, class Grow>
+    void insert_by_leaf(const Field& field, const Grow& grow, std::span<const PointSource> sources,
                         InsertionReport& report) {
         const SourceCuts<Node> cuts = Base::cuts();
         LeafGrowth<Node> growth(cuts, options_.tolerance);
         while (report.sources < sources.size()) {
             const auto batch = growth.next_batch(sources.subspan(report.sources));
-            const std::size_t valid = growth.grow(topology_, of_leaves.field(), batch);
+            const std::size_t valid = growth.grow(topology_, field(), batch);
             if (valid == 0) require_valid(batch.front(), report.sources, Base::domain());
             Base::make_room_for(growth.leaves_made());
             topology_.grow(growth.cuts_made(), growth.leaves_made());
-            of_leaves.grow(growth.leaves_made());
-            growth.enter(topology_, of_leaves.field());
+            grow(growth.leaves_made());
+            growth.enter(topology_, field());
             topology_.fit_jumps_roughly();
             report.sources += valid;
             report.inserted += growth.inserted();
@@ -237,11 +246,11 @@ private:
     }
 
     // As long as nothing but insertion has changed it: what leaves request (of a storage that
-    // collects that), and whether the nodes have been set to it.
+    // collects that; nothing before the first), and whether the nodes have been set to it.
     static constexpr std::size_t bytes_collected_per_leaf = 224;
     bool collects_;
     bool are_collected_ = true;
-    std::optional<NodeMetrics> requests_;
+    std::vector<Metric> requests_;
 
     // Since the last gradation, where sources may come after it.
     TreeChanges<Storage> changes_;
