@@ -13,7 +13,7 @@ void SourceColumns::add(std::span<const PointSource> sources) {
     const bool are_lengths = metrics_.empty() && std::ranges::all_of(sources, is_isotropic);
     if (!are_lengths && metrics_.empty()) {
         for (const double h : lengths_) metrics_.push_back(Metric::isotropic(h));
-        lengths_ = {};
+        lengths_ = std::vector<double>();  // its memory too
     }
     if (positions_.empty()) {
         positions_.reserve(sources.size());

@@ -224,7 +224,6 @@ Workload make_workload(const Study& study, const SourcesChoice& choice,
         if (has_limits(choice)) source.metric = limited(source.metric, choice);
     }
     workload.sources = columns_of(sources.all);
-    sources.all = {};  // its memory first
     workload.finest_length = finest_length_of(workload);
     return workload;
 }

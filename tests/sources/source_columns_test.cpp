@@ -47,6 +47,9 @@ TEST_CASE("columns of isotropic sources take 32 bytes each") {
     const auto sources = drawn(1000, false, false);
     CHECK(columns_of(sources).bytes() == 32 * sources.size());
     CHECK(columns_of(drawn(1000, true, false)).bytes() == 72 * sources.size());
+    SourceColumns columns = columns_of(sources);  // lengths are given up for the first tensor
+    columns.add(std::vector{PointSource{Point::Zero(), Metric{1, 2, 3, 0, 0, 0}}});
+    CHECK(columns.lengths().capacity() == 0);
 }
 
 TEST_CASE("columns without sources have no finest length") {

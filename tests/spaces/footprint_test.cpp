@@ -37,6 +37,20 @@ CASE_OF_EACH(entry, all_trees(), "the footprint of a tree is what it has allocat
     CHECK(live_bytes() <= before + of_threads);
 }
 
+TEST_CASE("graded vertices keep nothing of what leaves requested") {
+    const std::vector<PointSource> sources = sample_sphere({.h = 0.05, .rho = 2});
+    const char* id = GENERATE("K_V", "K_oV");
+    const auto bytes_if = [&](bool in_turn) {
+        auto space = editable(tree_named(id).make(
+            {.domain = {Point::Constant(-1), Point::Constant(1)}, .vertices_in_turn = in_turn}));
+        space->insert(sources);
+        space->grade({});
+        const Footprint footprint = space->footprint();
+        return static_cast<double>(footprint.bytes_total()) / static_cast<double>(footprint.cells);
+    };
+    CHECK(bytes_if(false) <= 1.02 * bytes_if(true));
+}
+
 CASE_OF_EACH(entry, tree_catalogue(),
              "creation takes less than 2.7 times the memory that a tree ends up with") {
     const std::vector<PointSource> sources = sample_sphere({.h = 0.02});

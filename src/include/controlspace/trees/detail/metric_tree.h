@@ -167,7 +167,7 @@ private:
         forget_requests();
     }
     void forget_requests() {
-        requests_ = {};
+        requests_ = std::vector<Metric>();  // its memory too
         are_collected_ = true;
         collects_ = false;
         Base::bytes_to_come_ = 0;
