@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <deque>
 #include <exception>
@@ -142,10 +143,26 @@ int fail(int status, std::string what) {
     return status;
 }
 
+/// Allocates nothing.
+int fail_without_memory() {
+    print_error(
+        "controlspace: error: out of memory: give fewer sources, or lower --max-memory\n");
+    return 1;
+}
+
+const std::terminate_handler terminate_by_default = std::get_terminate();
+
+/// Where not even an exception can be allocated, the standard library terminates without one.
+void terminate_with_a_word() {
+    if (std::current_exception() == nullptr) std::_Exit(fail_without_memory());
+    terminate_by_default();
+}
+
 }  // namespace
 
 int run_program(int argc, const char* const* argv) {
     occupy_standard_descriptors();
+    std::set_terminate(terminate_with_a_word);
     std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit, writing fails as on a full disk
     try {
         spdlog::set_default_logger(spdlog::stderr_color_mt("controlspace"));
@@ -154,7 +171,7 @@ int run_program(int argc, const char* const* argv) {
     } catch (const InputError& error) {
         return fail(2, error.what());
     } catch (const std::bad_alloc&) {
-        return fail(1, "out of memory: give fewer sources, or lower --max-memory");
+        return fail_without_memory();
     } catch (const std::exception& error) {
         // TBB has no error of its own for it.
         if (std::string_view(error.what()).ends_with(std::strerror(EAGAIN))) {
