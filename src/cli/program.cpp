@@ -145,12 +145,11 @@ int fail(int status, std::string what) {
 
 /// Allocates nothing.
 int fail_without_memory() {
-    print_error(
-        "controlspace: error: out of memory: give fewer sources, or lower --max-memory\n");
+    print_error("controlspace: error: out of memory: give fewer sources, or lower --max-memory\n");
     return 1;
 }
 
-const std::terminate_handler terminate_by_default = std::get_terminate();
+std::terminate_handler terminate_by_default;
 
 /// Where not even an exception can be allocated, the standard library terminates without one.
 void terminate_with_a_word() {
@@ -158,11 +157,15 @@ void terminate_with_a_word() {
     terminate_by_default();
 }
 
+/// Before the first constants of libraries are made, which allocate.
+[[gnu::constructor(101)]] void set_terminate_first() {
+    terminate_by_default = std::set_terminate(terminate_with_a_word);
+}
+
 }  // namespace
 
 int run_program(int argc, const char* const* argv) {
     occupy_standard_descriptors();
-    std::set_terminate(terminate_with_a_word);
     std::signal(SIGXFSZ, SIG_IGN);  // beyond a limit, writing fails as on a full disk
     try {
         spdlog::set_default_logger(spdlog::stderr_color_mt("controlspace"));
