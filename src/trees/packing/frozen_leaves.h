@@ -11,8 +11,8 @@
 
 namespace controlspace {
 
-// What the leaves of compact forms hold (PackedTree), and save(state): as the storage does whose
-// compact form it is. `M` is what metrics are stored as, `Plane` the type of the numbers of
+// What the leaves of compact forms hold (PackedTree), and save(tree, state): as the storage does
+// whose compact form it is. `M` is what metrics are stored as, `Plane` the type of the numbers of
 // planes.
 
 /// Metrics of nodes, and leaves, of which each has its `faces` as numbers of planes.
@@ -35,10 +35,6 @@ public:
     }
 
 protected:
-    void save_metrics(StateWriter& state) const {
-        NodeMetrics::exchange(NodeMetrics({metrics_.begin(), metrics_.end()}), state);
-    }
-
     CutPlanes planes_;
     std::vector<M> metrics_;
     std::vector<Leaf> leaves_;

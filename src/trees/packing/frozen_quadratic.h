@@ -59,8 +59,9 @@ public:
     ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
         return {leaf_graph(tree, neighbourhood).graph, {metrics_.begin(), metrics_.end()}};
     }
-    void save(StateWriter& state) const {
-        this->save_metrics(state);
+    template <class Node>
+    void save(const Topology<Node>&, StateWriter& state) const {
+        NodeMetrics::exchange(NodeMetrics({metrics_.begin(), metrics_.end()}), state);
         state("quadratic.slope", rule_.slope);
     }
 

@@ -1,25 +1,32 @@
+#include <array>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "trees/packing/frozen_leaves.h"
 #include "trees/packing/frozen_tree.h"
+#include "trees/topology/leaf_vertices.h"
 #include "trees/values/trilinear_cursor.h"
 
 namespace controlspace {
 
 namespace {
 
-template <class Plane>
+/// Whether leaves hold the metrics at their corners themselves: they take no more bytes than their
+/// numbers.
+template <class M>
+constexpr bool in_leaves = sizeof(M) <= sizeof(NodeIndex);
+
+template <class M, class Plane>
 struct VertexLeaf {
-    Corners corners;
+    std::conditional_t<in_leaves<M>, std::array<M, 8>, Corners> corners;
     Faces<Plane> faces;
 };
 
-/// A metric at each vertex, trilinear between the eight of a leaf; vertices numbered as the leaves
-/// come to them.
+/// A metric at each vertex, trilinear between the eight of a leaf.
 template <class M, class Plane>
-class FrozenVertices : public FrozenLeaves<M, VertexLeaf<Plane>> {
-    using Base = FrozenLeaves<M, VertexLeaf<Plane>>;
+class FrozenVertices : public FrozenLeaves<M, VertexLeaf<M, Plane>> {
+    using Base = FrozenLeaves<M, VertexLeaf<M, Plane>>;
     using Base::planes_, Base::metrics_, Base::leaves_;
 
 public:
@@ -27,11 +34,19 @@ public:
     template <class Node>
     FrozenVertices(const Topology<Node>& tree, CutPlanes planes,
                    const std::vector<Corners>& corners, std::vector<M> metrics)
-        : Base(std::move(planes), std::move(metrics)) {
+        : Base(std::move(planes), std::move(metrics)), vertices_(metrics_.size()) {
         leaves_.reserve(tree.leaves());
         for_each_faces<Plane>(tree, planes_, [&](LeafIndex leaf, const Faces<Plane>& faces) {
-            leaves_.push_back({corners[leaf], faces});
+            auto& added = leaves_.emplace_back(VertexLeaf<M, Plane>{{}, faces});
+            for (std::size_t c = 0; c < 8; ++c) {
+                if constexpr (in_leaves<M>) {
+                    added.corners[c] = metrics_[corners[leaf][c]];
+                } else {
+                    added.corners[c] = corners[leaf][c];
+                }
+            }
         });
+        if constexpr (in_leaves<M>) metrics_ = std::vector<M>();
     }
 
     template <class Node, class Value>
@@ -43,28 +58,49 @@ public:
     std::unique_ptr<Cursor> cursor(const Topology<Node>& tree) const {
         return std::make_unique<TrilinearCursor<Node, const FrozenVertices&>>(tree, *this);
     }
-    const Corners& corners(LeafIndex leaf) const { return leaves_[leaf].corners; }
-    std::span<const M> metrics() const { return metrics_; }
+    auto at_corners(LeafIndex leaf) const {
+        const auto& corners = leaves_[leaf].corners;
+        if constexpr (in_leaves<M>) {
+            return [&](std::size_t c) -> const M& { return corners[c]; };
+        } else {
+            return AtCorners<M>{corners, metrics_.data()};
+        }
+    }
 
     template <class Node>
     ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
-        const std::vector<Corners> corners = all_corners();
-        return {
-            vertex_graph(corners, vertex_positions(tree, corners, metrics_.size()), neighbourhood),
-            {metrics_.begin(), metrics_.end()}};
+        const LeafVertices vertices = leaf_vertices(tree);
+        return {vertex_graph(vertices.of_leaves, vertices.positions, neighbourhood),
+                metrics_of(vertices)};
     }
-    void save(StateWriter& state) const {
-        this->save_metrics(state);
-        state("vertices.of_leaves", all_corners());
+    template <class Node>
+    void save(const Topology<Node>& tree, StateWriter& state) const {
+        const LeafVertices vertices = leaf_vertices(tree);
+        NodeMetrics::exchange(NodeMetrics(metrics_of(vertices)), state);
+        state("vertices.of_leaves", vertices.of_leaves);
+    }
+    void describe(Footprint& footprint) const {
+        Base::describe(footprint);
+        footprint.control_nodes = vertices_;
+        if constexpr (in_leaves<M>) {
+            const std::size_t bytes = leaves_.size() * sizeof(leaves_[0].corners);
+            footprint.bytes_payload += bytes;
+            footprint.bytes_topology -= bytes;
+        }
     }
 
 private:
-    std::vector<Corners> all_corners() const {
-        std::vector<Corners> corners;
-        corners.reserve(leaves_.size());
-        for (const auto& leaf : leaves_) corners.push_back(leaf.corners);
-        return corners;
+    std::vector<Metric> metrics_of(const LeafVertices& vertices) const {
+        std::vector<Metric> metrics(vertices.positions.size());
+        for (LeafIndex leaf = 0; leaf < leaves_.size(); ++leaf) {
+            for (std::size_t c = 0; c < 8; ++c) {
+                metrics[vertices.of_leaves[leaf][c]] = at_corners(leaf)(c);
+            }
+        }
+        return metrics;
     }
+
+    std::size_t vertices_;
 };
 
 }  // namespace

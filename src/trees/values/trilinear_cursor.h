@@ -91,9 +91,8 @@ private:
             above_[a] = is_next ? above : above_[a];
             up_to_[a] = is_next ? high : up_to_[a];
         }
-        const Corners& corners = values_.corners(found);
-        const auto metrics = values_.metrics();
-        const auto length = [&](std::size_t c) { return length_of(metrics[corners[c]]); };
+        const auto at_corners = values_.at_corners(found);
+        const auto length = [&](std::size_t c) { return length_of(at_corners(c)); };
         Leaf& leaf = leaves_[next];
         leaf.low = Numbers{box.low.x(), box.low.y(), box.low.z(), 0};
         leaf.edges = Numbers{edge(0), edge(1), edge(2), 1};

@@ -70,12 +70,23 @@ private:
     std::array<Numbers, 8> weights_;
 };
 
+/// The metrics at a leaf's corners, of which it holds the numbers.
+template <class M>
+struct AtCorners {
+    const Corners& corners;
+    const M* metrics;
+
+    const M& operator()(std::size_t corner) const { return metrics[corners[corner]]; }
+    [[gnu::always_inline]] void prefetch() const {
+        for (const NodeIndex node : corners) __builtin_prefetch(&metrics[node]);
+    }
+};
+
 /// The metric at `x`, or the length where all are known to be isotropic, trilinear between the
 /// corners of the leaf that holds it; `values` as below.
 template <class Value, class Values>
 Value trilinear_in_leaf(const Values& values, LeafIndex leaf, const Point& x) {
-    const Corners& corners = values.corners(leaf);
-    const auto metrics = values.metrics();
+    const auto at_corners = values.at_corners(leaf);
     const Box box = values.box(leaf);
     std::array<std::array<double, 2>, 3> sides;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -85,18 +96,17 @@ Value trilinear_in_leaf(const Values& values, LeafIndex leaf, const Point& x) {
     }
     return blend<Value>(
         8, [&](std::size_t c) { return sides[0][c & 1] * sides[1][c >> 1 & 1] * sides[2][c >> 2]; },
-        [&](std::size_t c) -> auto& { return metrics[corners[c]]; });
+        at_corners);
 }
 
 /// Metrics at `x`, or lengths where all are known to be isotropic, trilinear between the corners of
 /// the leaves that hold them, for some places at a time, so that metrics are prefetched while
-/// weights are computed. `values` provides box(leaf), prefetch_box(leaf), if it is worth it,
-/// corners(leaf), and metrics(), which these number.
+/// weights are computed. `values` provides box(leaf), prefetch_box(leaf), if it is worth it, and
+/// at_corners(leaf), a function of a corner's number, with prefetch() where it reads from afar.
 template <std::size_t at_a_time, class Values, class Value>
 void trilinear_in_leaves(const Values& values, std::span<const LeafIndex> leaves,
                          std::span<const Point> x, std::span<Value> out) {
     WeightsInBoxes<at_a_time> weights;
-    const auto metrics = values.metrics();
     for (std::size_t first = 0; first < x.size(); first += at_a_time) {
         const std::size_t count = std::min(at_a_time, x.size() - first);
         if constexpr (requires { values.prefetch_box(leaves[0]); }) {
@@ -104,15 +114,15 @@ void trilinear_in_leaves(const Values& values, std::span<const LeafIndex> leaves
         }
         for (std::size_t i = 0; i < count; ++i) {
             const LeafIndex leaf = leaves[first + i];
-            for (const NodeIndex node : values.corners(leaf)) __builtin_prefetch(&metrics[node]);
+            const auto at_corners = values.at_corners(leaf);
+            if constexpr (requires { at_corners.prefetch(); }) at_corners.prefetch();
             weights.put(i, values.box(leaf), x[first + i]);
         }
         weights.weigh(count);
         for (std::size_t i = 0; i < count; ++i) {
-            const Corners& corners = values.corners(leaves[first + i]);
             out[first + i] = blend<Value>(
                 8, [&](std::size_t c) { return weights(i, c); },
-                [&](std::size_t c) -> auto& { return metrics[corners[c]]; });
+                values.at_corners(leaves[first + i]));
         }
     }
 }

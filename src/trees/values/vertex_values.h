@@ -102,8 +102,9 @@ private:
 
         [[gnu::always_inline]] void prefetch_box(LeafIndex leaf) const { own.prefetch_box(leaf); }
         Box box(LeafIndex leaf) const { return own.box(leaf); }
-        const Corners& corners(LeafIndex leaf) const { return own.corners_[leaf]; }
-        std::span<const Metric> metrics() const { return of_nodes; }
+        AtCorners<Metric> at_corners(LeafIndex leaf) const {
+            return {own.corners_[leaf], of_nodes.data()};
+        }
     };
 
     static Metric interpolate(const Corners& corners, const std::array<double, 8>& weights,

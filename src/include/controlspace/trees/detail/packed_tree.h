@@ -78,7 +78,8 @@ public:
         footprint.control_nodes = metrics_.size();
         footprint.bytes_payload += metrics_.capacity() * sizeof(M);
     }
-    void save(StateWriter& state) const {
+    template <class Node>
+    void save(const Topology<Node>&, StateWriter& state) const {
         save_storage(storage_, NodeMetrics({metrics_.begin(), metrics_.end()}), state);
     }
 
@@ -134,7 +135,7 @@ public:
     }
     void save(StateWriter& state) const override {
         controlspace::save(topology_, state);
-        values_.save(state);
+        values_.save(topology_, state);
     }
 
 private:
