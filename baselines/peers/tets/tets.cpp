@@ -7,8 +7,8 @@ namespace controlspace {
 namespace {
 
 template <TetBlend blend>
-CatalogueEntry row(std::string id, std::string what) {
-    return {.id = std::move(id),
+CatalogueEntry row(const char* id, const std::string& what) {
+    return {.id = id,
             .description =
                 "background mesh: Delaunay tetrahedra of the sources and the box's "
                 "corners (CGAL), " +

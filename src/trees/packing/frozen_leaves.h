@@ -43,7 +43,8 @@ protected:
 /// pack(Plane()) for the type of numbers of planes.
 template <class Pack>
 auto with_plane(const CutPlanes& planes, Pack&& pack) {
-    return planes.most() <= std::size_t{1} << 16 ? pack(std::uint16_t()) : pack(std::uint32_t());
+    if (planes.most() > std::size_t{1} << 16) return pack(std::uint32_t());
+    return pack(std::uint16_t());
 }
 
 /// The compact form of these.

@@ -66,7 +66,7 @@ private:
         if (!part.is_leaf()) __builtin_prefetch(&tree_.node(part));
     }
     static std::size_t face_of(Axis a, bool high) {
-        return static_cast<std::size_t>(2 * a + (high ? 1 : 0));
+        return 2 * static_cast<std::size_t>(a) + (high ? 1 : 0);
     }
     bool is_at_border(const Box& box, int face) const {
         const Axis a = face / 2;

@@ -1,0 +1,100 @@
+#include "controlspace/cuda/gpu_field.h"
+
+#include <cuda_runtime_api.h>
+
+#include <algorithm>
+#include <variant>
+#include <vector>
+
+#include "cuda/octree_arrays.h"
+#include "cuda/octree_kernels.h"
+#include "refuse.h"
+
+namespace controlspace {
+
+namespace {
+
+void require(cudaError_t error) {
+    if (error != cudaSuccess) refuse("the GPU cannot be used: {}", cudaGetErrorString(error));
+}
+
+struct FreeOnDevice {
+    void operator()(void* memory) const { cudaFree(memory); }
+};
+template <class T>
+using OnDevice = std::unique_ptr<T, FreeOnDevice>;
+
+template <class T>
+OnDevice<T> allocate(std::size_t count) {
+    void* memory = nullptr;
+    require(cudaMalloc(&memory, std::max<std::size_t>(1, count) * sizeof(T)));
+    return OnDevice<T>(static_cast<T*>(memory));
+}
+
+template <class T>
+OnDevice<T> copied(const T* data, std::size_t count) {
+    auto memory = allocate<T>(count);
+    require(cudaMemcpy(memory.get(), data, count * sizeof(T), cudaMemcpyHostToDevice));
+    return memory;
+}
+
+}  // namespace
+
+struct GpuField::Copy {
+    int numbers;
+    std::vector<OnDevice<void>> arrays;
+    std::variant<OctreeView<float>, OctreeView<double>> view;
+
+    template <class Number>
+    explicit Copy(const OctreeArrays<Number>& octree)
+        : numbers(octree.numbers()), view(octree.view([&](const auto& array) {
+              auto on_device = copied(array.data(), array.size());
+              const auto* const pointer = on_device.get();
+              arrays.emplace_back(on_device.release());
+              return pointer;
+          })) {}
+};
+
+GpuField::GpuField(const ControlSpace& field, Precision precision)
+    : copy_(precision == Precision::floats ? std::make_unique<Copy>(OctreeArrays<float>(field))
+                                           : std::make_unique<Copy>(OctreeArrays<double>(field))) {}
+GpuField::~GpuField() = default;
+GpuField::GpuField(GpuField&&) noexcept = default;
+GpuField& GpuField::operator=(GpuField&&) noexcept = default;
+
+bool GpuField::answers_lengths() const { return copy_->numbers == 1; }
+
+void GpuField::start(const double* x, std::size_t count, double* out, CUstream_st* stream) const {
+    std::visit(
+        [&](const auto& view) { start_answers(view, copy_->numbers, x, count, out, stream); },
+        copy_->view);
+    require(cudaGetLastError());
+}
+
+void GpuField::sample_lengths(std::span<const Point> x, std::span<double> out) const {
+    if (!answers_lengths())
+        refuse("a field of tensors on a GPU answers no lengths: ask for metrics");
+    static_assert(sizeof(Point) == 3 * sizeof(double));
+    const auto places = copied(x.data()->data(), 3 * x.size());
+    const auto lengths = allocate<double>(x.size());
+    start(places.get(), x.size(), lengths.get(), nullptr);
+    require(
+        cudaMemcpy(out.data(), lengths.get(), x.size() * sizeof(double), cudaMemcpyDeviceToHost));
+}
+
+void GpuField::sample(std::span<const Point> x, std::span<Metric> out) const {
+    if (answers_lengths()) {
+        std::vector<double> lengths(x.size());
+        sample_lengths(x, lengths);
+        std::ranges::transform(lengths, out.begin(), &Metric::isotropic);
+        return;
+    }
+    static_assert(sizeof(Metric) == 6 * sizeof(double));
+    const auto places = copied(x.data()->data(), 3 * x.size());
+    const auto metrics = allocate<double>(6 * x.size());
+    start(places.get(), x.size(), metrics.get(), nullptr);
+    require(
+        cudaMemcpy(out.data(), metrics.get(), x.size() * sizeof(Metric), cudaMemcpyDeviceToHost));
+}
+
+}  // namespace controlspace
