@@ -82,5 +82,10 @@ int main(int argc, char** argv) {
                                          [space](auto& state) { on_processor(state, *space); });
         }
     }
-    benchmark::RunSpecifiedBenchmarks();
+    try {
+        benchmark::RunSpecifiedBenchmarks();
+    } catch (const InputError& error) {
+        std::cerr << "bench_cuda: " << error.what() << "\n";
+        return 1;
+    }
 }
