@@ -18,13 +18,23 @@ Vector main_direction(const Metric& tensor) {
     return squared.col(most).normalized();
 }
 
+// Cones of eight sources, and H seen from their metrics.
+struct Seen {
+    Lanes squared;  // factors of the cones
+    TensorLanes tensors;
+
+    Seen(const TensorLeaf& leaf, const Exceeding& exceeding) {
+        const CholeskyLanes<lane_count> factorisation(leaf.metric);
+        const auto [x, y, z] = factorisation.solve(displacements(leaf.position, exceeding.p));
+        const Lanes factor = 1 + (leaf.growth - 1) * (x.square() + y.square() + z.square()).sqrt();
+        squared = factor.square();
+        tensors = seen_from(exceeding.factor, factorisation);
+    }
+};
+
 void find_in_vector(const TensorLeaf& leaf, std::uint32_t first_member, const Exceeding& exceeding,
                     Exceeded& exceeded) {
-    const CholeskyLanes<lane_count> factorisation(leaf.metric);
-    const auto [x, y, z] = factorisation.solve(displacements(leaf.position, exceeding.p));
-    const Lanes factor = 1 + (leaf.growth - 1) * (x.square() + y.square() + z.square()).sqrt();
-    const Lanes squared = factor.square();
-    const TensorLanes seen = seen_from(exceeding.factor, factorisation);
+    const auto [squared, seen] = Seen(leaf, exceeding);
     const Lanes most = exceeded.limit() * squared;
     if ((seen.xx + seen.yy + seen.zz <= most).all()) return;
     const Lanes room = least_minor(most, seen);
@@ -73,6 +83,51 @@ void find_exceeded(const QuadricTree& tree, std::uint32_t root,
             stack[place] = first + c;
         }
     }
+}
+
+AllExceeded::AllExceeded(const QuadricTree& tree)
+    : tree_(tree),
+      is_found_(tree.indices().size(), 0),
+      are_found_(
+          tree.empty() ? 0 : tree.leaf_of(0) + tree.vectors().size() / QuadricTree::vectors_of_leaf,
+          0) {}
+
+void AllExceeded::add(const Exceeding& exceeding) {
+    if (!tree_.empty()) add_below(0, exceeding);
+}
+
+// Returns whether all sources below have been found.
+bool AllExceeded::add_below(std::uint32_t number, const Exceeding& exceeding) {
+    if (are_found_[number] != 0) return true;
+    bool are_all = true;
+    if (tree_.is_leaf(number)) {
+        const std::uint32_t first = tree_.first_vector(number);
+        for (std::uint32_t v = first; v < first + QuadricTree::vectors_of_leaf; ++v) {
+            const std::size_t begin = std::min<std::size_t>(v * lane_count, is_found_.size());
+            const std::size_t end = std::min<std::size_t>(begin + lane_count, is_found_.size());
+            const auto found = std::span(is_found_).subspan(begin, end - begin);
+            if (std::ranges::find(found, 0) == found.end()) continue;
+            if (may_exceed(tree_.leaves()[v], exceeding, 1)) {
+                const Seen seen(tree_.vectors()[v], exceeding);
+                const Lanes room = least_minor(seen.squared, seen.tensors);
+                for (std::size_t lane = 0; lane < found.size(); ++lane) {
+                    if (!(room[static_cast<Eigen::Index>(lane)] > 0)) found[lane] = 1;
+                }
+            }
+            are_all = are_all && std::ranges::find(found, 0) == found.end();
+        }
+    } else {
+        const QuadricNode& node = tree_.node(number);
+        const unsigned children = children_exceeded(node, exceeding, 1).bits;
+        for (std::uint32_t c = 0; c < node.child_count; ++c) {
+            const std::uint32_t child = node.first_child + c;
+            const bool are_found =
+                (children >> c & 1) != 0 ? add_below(child, exceeding) : are_found_[child] != 0;
+            are_all = are_all && are_found;
+        }
+    }
+    are_found_[number] = are_all ? 1 : 0;
+    return are_all;
 }
 
 }  // namespace controlspace

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "cones/quadric_tree.h"
 #include "controlspace/geometry/point.h"
@@ -67,5 +68,29 @@ private:
 void find_exceeded(const QuadricTree& tree, std::uint32_t root,
                    std::span<const std::uint32_t> except, const Exceeding& exceeding,
                    Exceeded& exceeded);
+
+/// All sources of a tree whose cones one factor or another exceeds.
+class AllExceeded {
+public:
+    /// The tree must outlive it.
+    explicit AllExceeded(const QuadricTree& tree);
+
+    /// Adds those that H exceeds.
+    void add(const Exceeding& exceeding);
+    /// visit(index of the source) for all found.
+    template <class Visit>
+    void for_each(const Visit& visit) const {
+        for (std::size_t k = 0; k < tree_.indices().size(); ++k) {
+            if (is_found_[k] != 0) visit(tree_.indices()[k]);
+        }
+    }
+
+private:
+    bool add_below(std::uint32_t number, const Exceeding& exceeding);
+
+    const QuadricTree& tree_;
+    std::vector<std::uint8_t> is_found_;   // in the tree's order
+    std::vector<std::uint8_t> are_found_;  // of nodes and leaves: all sources below
+};
 
 }  // namespace controlspace

@@ -61,6 +61,8 @@ public:
     /// Indices of the members of a core set.
     void append_sources(const Start& start, std::vector<std::uint32_t>& sources) const;
 
+    /// What finds the sources; it has those that may change the result.
+    const QuadricTree& tree() const { return tree_; }
     /// Sources that change the result nowhere, and were left out.
     std::size_t dropped() const { return dropped_; }
 

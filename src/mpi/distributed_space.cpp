@@ -6,14 +6,17 @@
 #include <algorithm>
 #include <ctime>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "cones/isotropic_cones.h"
 #include "controlspace/io/write_vtk.h"
 #include "controlspace/measure/access_time.h"
+#include "controlspace/metric/order_free_intersection.h"
 #include "controlspace/sources/cone.h"
 #include "controlspace/space/control_space_file.h"
 #include "controlspace/space/detail/saved.h"
+#include "controlspace/trees/detail/leaves_where.h"
 #include "controlspace/trees/leaf_metrics.h"
 #include "controlspace/trees/octree_pieces.h"
 #include "mpi/exchange.h"
@@ -47,13 +50,17 @@ struct DistributedSpace::Impl {
         const std::uint64_t first = ranks.sum_before(sources.size());
         std::vector<Record> records;
         ranks.together([&] { records = read(sources, first); });
+        const auto is_tensor = [](const Record& r) { return !is_isotropic(r.metric); };
+        has_tensors = ranks.reduced(std::ranges::any_of(records, is_tensor) ? 1 : 0, MPI_MAX) != 0;
+        ranks.together([&] { require_possible(); });
         find_steepest(records);
+        const double largest_ratio = steepest ? steepest->growth : options.space.ratio;
         {
             const auto cones = drop_dominated(records);
-            octants = Octants(ranks, options, records, cones ? &*cones : nullptr,
-                              steepest ? steepest->growth : options.space.ratio);
+            octants = Octants(ranks, options, records, cones ? &*cones : nullptr, largest_ratio);
         }
-        near.emplace(ranks, octants, options, std::move(records));
+        report.has_tensors = has_tensors;
+        near.emplace(ranks, octants, options, has_tensors, largest_ratio, std::move(records));
         report.owned = near->owned();
         report.kept = near->kept();
         std::vector<std::vector<LeafIndex>> of_ranks;
@@ -76,27 +83,40 @@ struct DistributedSpace::Impl {
 
     std::vector<Record> read(std::span<const PointSource> sources, std::uint64_t first) const {
         require_valid(options.space);
-        if (options.structure != "K_oL" && !(options.structure == "K_oV" && options.target)) {
-            refuse(
-                "{}{} depends on the order in which the whole tree is made, and is not built by "
-                "ranks: give K_oL, or K_oV with target_delta",
-                options.structure, options.target ? "" : ", inserted and graded,");
-        }
         if (options.octants_per_rank == 0) refuse("octants per rank: give at least 1");
         std::vector<Record> records;
         records.reserve(sources.size());
         for (std::size_t i = 0; i < sources.size(); ++i) {
             const PointSource& s = sources[i];
             require_valid(s, first + i, options.space.domain);
-            if (!is_isotropic(s.metric)) {
-                refuse(
-                    "source {} is a tensor: ranks build fields of lengths alone; give "
-                    "--isotropic, or build it without MPI",
-                    first + i);
-            }
-            records.push_back({s.position, s.metric.xx, s.growth, first + i});
+            if (!is_isotropic(s.metric)) require_order_free(s.metric, first + i);
+            records.push_back({s.position, s.metric, s.growth, first + i});
         }
         return records;
+    }
+
+    static void require_order_free(const Metric& metric, std::uint64_t index) {
+        try {
+            order_free_intersection({&metric, 1});
+        } catch (const InputError& error) {
+            refuse("source {}: {}", index, error.what());
+        }
+    }
+
+    void require_possible() const {
+        const SpaceOptions& space = options.space;
+        const bool is_vertices = options.structure == "K_oV";
+        if ((options.structure != "K_oL" && !is_vertices) ||
+            (is_vertices && !options.target &&
+             (space.vertices_in_turn || space.takes_later_sources))) {
+            refuse(
+                "{} depends on the order in which the whole tree is made, and is not built by "
+                "ranks: give K_oL or K_oV",
+                options.structure);
+        }
+        if (has_tensors && space.intersection == IntersectionRule::in_turn) {
+            refuse("ranks intersect tensors without an order: leave out --intersection in-turn");
+        }
     }
 
     // How steep the field may be counts in adaptation.
@@ -114,10 +134,10 @@ struct DistributedSpace::Impl {
         steepest = ranks.broadcast(one, rank).front();
     }
 
-    // Where leaves are not cut for sources, those that others dominate count for nothing.
+    // Where leaves are not cut for sources, lengths that others dominate count for nothing.
     std::optional<IsotropicCones> drop_dominated(std::vector<Record>& records) {
         std::optional<IsotropicCones> cones;
-        if (!options.target) return cones;
+        if (!options.target || has_tensors) return cones;
         ranks.together([&] {
             cones.emplace(columns_of(sources_of(records)), options.space.ratio,
                           largest_metric(options.space).xx);
@@ -133,24 +153,46 @@ struct DistributedSpace::Impl {
     /// The field in the octants that each rank wants, from the sources of all.
     std::unique_ptr<ControlSpace> build(const std::vector<std::vector<LeafIndex>>& wanted,
                                         RankReport& about) {
-        std::vector<PointSource> sources = near->near(wanted, about.received);
+        const bool takes_neighbours = !options.target && options.structure == "K_oV";
+        const auto whole = takes_neighbours ? with_neighbours(wanted) : wanted;
+        std::vector<PointSource> sources = near->near(wanted, whole, about.received);
         std::unique_ptr<ControlSpace> made;
         ranks.together([&] {
             std::vector<Box> boxes;
             std::vector<char> is_wanted(octants.tree().leaves(), 0);
-            for (const LeafIndex leaf : wanted[static_cast<std::size_t>(ranks.rank())]) {
+            for (const LeafIndex leaf : whole[static_cast<std::size_t>(ranks.rank())]) {
                 boxes.push_back(octants.box(leaf));
                 is_wanted[leaf] = 1;
             }
-            if (!options.target) {
-                made = inserted(sources, is_wanted, boxes, about);
-            } else if (options.structure == "K_oL") {
-                made = adapted<LeafMetrics>(sources, is_wanted, boxes, about);
+            const auto make = [&]<class Storage>(std::type_identity<Storage>) {
+                made = options.target ? adapted<Storage>(sources, is_wanted, boxes, about)
+                                      : inserted<Storage>(sources, is_wanted, boxes, about);
+            };
+            if (options.structure == "K_oL") {
+                make(std::type_identity<LeafMetrics>());
             } else {
-                made = adapted<VertexValues>(sources, is_wanted, boxes, about);
+                make(std::type_identity<VertexValues>());
             }
         });
         return made;
+    }
+
+    // A vertex takes what the leaves around it request.
+    std::vector<std::vector<LeafIndex>> with_neighbours(
+        const std::vector<std::vector<LeafIndex>>& some) const {
+        std::vector<std::vector<LeafIndex>> all(some.size());
+        for (std::size_t r = 0; r < some.size(); ++r) {
+            std::vector<char> is_in(octants.tree().leaves(), 0);
+            for (const LeafIndex octant : some[r]) {
+                for_each_leaf_around(octants.tree(), octants.box(octant), Neighbourhood::all,
+                                     [&](LeafIndex leaf, const Box&) {
+                                         if (std::exchange(is_in[leaf], 1) == 0) {
+                                             all[r].push_back(leaf);
+                                         }
+                                     });
+            }
+        }
+        return all;
     }
 
     template <class Storage>
@@ -174,10 +216,11 @@ struct DistributedSpace::Impl {
         return std::make_unique<SharedSpace<AdaptedPart<Storage>>>(made);
     }
 
+    template <class Storage>
     std::unique_ptr<ControlSpace> inserted(std::vector<PointSource>& sources,
                                            std::span<const char> is_wanted,
                                            std::span<const Box> boxes, RankReport& about) const {
-        const auto made = std::make_shared<InsertedPart<LeafMetrics>>(options.space, boxes);
+        const auto made = std::make_shared<InsertedPart<Storage>>(options.space, boxes);
         const SourceColumns given = columns_of(sources);
         std::erase_if(sources, [&](const PointSource& source) {
             return is_wanted[octants.tree().find(source.position)] == 0;
@@ -187,13 +230,14 @@ struct DistributedSpace::Impl {
         made->grade(NodeGradation({.ratio = options.space.ratio}, &given, options.space));
         made->finish();
         about.leaves = made->footprint().cells;
-        using Tree = MetricTree<OctreeNode, LeafMetrics>;
+        using Tree = MetricTree<OctreeNode, Storage>;
         return std::make_unique<SharedSpace<Tree>>(made);
     }
 
     mutable Ranks ranks;
     DistributedOptions options;
     Octants octants;
+    bool has_tensors = false;        // any rank
     std::optional<Record> steepest;  // of all sources, if steeper than the ratio
     std::optional<SharedSources> near;
     std::unique_ptr<ControlSpace> own;

@@ -20,7 +20,7 @@
 namespace controlspace {
 
 struct DistributedOptions {
-    std::string structure = "K_oL";     ///< K_oL, or, adapted, K_oV
+    std::string structure = "K_oL";     ///< K_oL or K_oV
     SpaceOptions space = {};            ///< the domain, and how the tree is made
     std::optional<double> target = {};  ///< δ that it is adapted to; none: inserted and graded
     /// Octants with more sources than the mean of so many a rank are cut further, if the tree is.
@@ -36,25 +36,31 @@ struct RankReport {
     std::uint64_t octants = 0, octants_of_all = 0;
     std::uint64_t leaves = 0;  ///< of its tree, with the few outside of its octants
     std::uint64_t bytes_sent = 0, messages_sent = 0;
-    double cpu_s = 0;    ///< of building
-    bool met = true;     ///< whether an adapted tree keeps the target, on all ranks
-    std::string remark;  ///< why not, on the first rank where it does not
+    bool has_tensors = false;  ///< some rank has: answers are not the same to the bit
+    double cpu_s = 0;          ///< of building
+    bool met = true;           ///< whether an adapted tree keeps the target, on all ranks
+    std::string remark;        ///< why not, on the first rank where it does not
 };
 
-/// An octree that is built by all ranks of a communicator, each a part of it, of isotropic sources.
+/// An octree that is built by all ranks of a communicator, each a part of it.
 ///
 /// p4est orders octants of the domain and shares them out. The sources that can matter in a rank's
 /// octants go there in one exchange; then it builds its part of the tree alone. Its answers are
 /// those of make_control_space with all sources in the order of ranks, to the bit, whatever the
-/// number of ranks and however sources are shared out among them.
+/// number of ranks and however sources are shared out among them, as long as all are isotropic.
+///
+/// If some are tensors, bits depend on how the field was searched for. The leaves of an inserted
+/// tree are the same; metrics that are graded to the field are within all cones, and their log det
+/// within 3 ln(1.01) of the best, as the serial ones are, so that the log dets of the two differ by
+/// no more. Adapted, the leaves too may be others: each keeps the target where it was sampled.
 ///
 /// All members that say so are collective: all ranks call them, in the same order. What fails on
 /// one rank throws the same InputError on all.
 class DistributedSpace {
 public:
     /// Collective. `sources` are this rank's; the communicator must outlive it. Throws InputError
-    /// as make_control_space does, for tensors, and for structures that depend on the order in
-    /// which leaves are cut.
+    /// as make_control_space does, for structures that depend on the order in which leaves are cut,
+    /// and for tensors that are to be intersected in turn.
     DistributedSpace(MPI_Comm comm, std::span<const PointSource> sources,
                      const DistributedOptions& options);
     ~DistributedSpace();

@@ -55,6 +55,7 @@ void require_possible(const Case& c) {
     if (c.law != GradationLaw::cone || c.schedule != GradationSchedule::sources) {
         refuse("ranks grade by the sources: leave out --law and --schedule");
     }
+    if (c.max_leaves) refuse("ranks have no limit of leaves: leave out --max-leaves");
     if (c.frozen != Frozen::no) refuse("ranks build no compact form: leave out --frozen");
 }
 
@@ -99,6 +100,19 @@ Workload read_share(Ranks& ranks, const Study& study, const Case& c) {
     return workload;
 }
 
+/// One source of each rank that has some, a tensor if it has one.
+Workload one_of_each(Ranks& ranks, const SourceColumns& sources) {
+    std::vector<PointSource> one;
+    if (!sources.empty()) {
+        const auto tensor = std::ranges::find_if_not(sources.metrics(), is_isotropic);
+        const auto i = sources.are_isotropic() ? 0 : tensor - sources.metrics().begin();
+        one.push_back(sources[static_cast<std::size_t>(i)]);
+    }
+    Workload some;
+    some.sources = columns_of(ranks.gather(one).values);
+    return some;
+}
+
 Made make(Ranks& ranks, const ParallelJob& job) {
     const GivenSettings given = given_settings(job.given);
     Made made;
@@ -113,8 +127,9 @@ Made make(Ranks& ranks, const ParallelJob& job) {
     restart_peak_memory();
     Workload workload = read_share(ranks, made.study, c);
     DistributedOptions options;
+    const Workload some = one_of_each(ranks, workload.sources);
     ranks.together([&] {
-        DefaultTarget(job.input, given).set(c, workload);
+        DefaultTarget(job.input, given).set(c, some);
         options = {.structure = c.structure,
                    .space = space_options(made.study, c, workload),
                    .target = c.target_delta,
@@ -143,9 +158,15 @@ std::string report_text(Ranks& ranks, const DistributedSpace& space) {
 }
 
 int remark(const Ranks& ranks, const DistributedSpace& space) {
-    if (space.report().met) return 0;
+    const RankReport report = space.report();
+    if (report.has_tensors && ranks.rank() == 0) {
+        print_error(
+            "tensors: metrics are those of another number of ranks up to the tolerance of their "
+            "field, and not to the bit\n");
+    }
+    if (report.met) return 0;
     if (ranks.rank() == 0) {
-        print_error(fmt::format("target missed: {}\n", space.report().remark));
+        print_error(fmt::format("target missed: {}\n", report.remark));
     }
     return some_failed;
 }
@@ -212,8 +233,10 @@ constexpr CommandRow commands[] = {
 
 int run(Ranks& ranks, int argc, const char* const* argv) {
     CLI::App app(
-        "Builds a control space of lengths on all ranks of an MPI job, with the same bits for any "
-        "number of ranks: K_oL, or, adapted (--within, --target-delta), K_oV.",
+        "Builds a control space, K_oL or K_oV, on all ranks of an MPI job: of lengths with the "
+        "same "
+        "bits for any number of ranks, of tensors with the same metrics up to the tolerance of "
+        "their field.",
         "controlspace-mpi");
     app.require_subcommand(1);
     app.footer(

@@ -23,7 +23,13 @@ public:
           options_(options),
           records_(records),
           cones_(cones),
-          steepest_(steepest) {}
+          steepest_(steepest) {
+        lengths_.reserve(records.size());
+        for (const Record& r : records) {
+            lengths_.push_back(is_isotropic(r.metric) ? r.metric.xx
+                                                      : eigen_frame(r.metric).lengths[0]);
+        }
+    }
 
     // Cuts octants with many sources, as long as they are cut for certain.
     void run() {
@@ -96,14 +102,13 @@ private:
             const Record& r = records_[k];
             const LeafIndex leaf = leaf_of[k];
             ++s.count[leaf];
-            s.sum_of_lengths[leaf] += r.length;
-            s.least_length[leaf] = std::min(s.least_length[leaf], r.length);
+            s.sum_of_lengths[leaf] += lengths_[k];
+            s.least_length[leaf] = std::min(s.least_length[leaf], lengths_[k]);
             s.least_slope[leaf] = std::min(s.least_slope[leaf], slope_of(r, options_.space.ratio));
             if (options_.target || r.index >= s.opener[leaf] / 2) continue;
-            const Metric m = Metric::isotropic(r.length);
-            if (!calls_for_change(m, largest, options_.space.tolerance)) continue;
+            if (!calls_for_change(r.metric, largest, options_.space.tolerance)) continue;
             s.opener[leaf] =
-                2 * r.index + (cuts.is_too_long(m, octants_.places_[leaf].box) ? 0 : 1);
+                2 * r.index + (cuts.is_too_long(r.metric, octants_.places_[leaf].box) ? 0 : 1);
         }
         ranks_.reduce(s.count, MPI_SUM);
         ranks_.reduce(s.sum_of_lengths, MPI_SUM);  // rounding may depend on ranks_; answers do not
@@ -119,6 +124,13 @@ private:
         if (!options_.target) {
             std::ranges::transform(octants, cut.begin(), [&](std::size_t i) {
                 return octants_.summary_.opener[i] % 2 == 0;
+            });
+            return cut;
+        }
+        if (cones_ == nullptr) {
+            std::ranges::transform(octants, cut.begin(), [&](std::size_t i) {
+                return octants_.places_[i].box.edges().maxCoeff() >
+                       octants_.summary_.least_length[i];
             });
             return cut;
         }
@@ -193,6 +205,7 @@ private:
     std::span<const Record> records_;
     const IsotropicCones* cones_;
     double steepest_;
+    std::vector<double> lengths_;  // the smallest of each source
 };
 
 Octants::Octants(Ranks& ranks, const DistributedOptions& options, std::span<const Record> records,
@@ -208,6 +221,21 @@ std::vector<LeafIndex> Octants::of_rank(int rank) const {
     std::ranges::copy_if(order(), std::back_inserter(octants),
                          [&](LeafIndex octant) { return owner(octant) == rank; });
     return octants;
+}
+
+std::vector<Box> Octants::parts_of(const LeafPlace& octant) const {
+    constexpr int levels = 2;
+    std::vector<Box> boxes{octant.box};
+    for (int k = 0; k < levels; ++k) {
+        std::vector<Box> parts;
+        for (const Box& box : boxes) {
+            const Subdivision cut =
+                OctreeNode::even_subdivision(tree_.domain(), octant.level + k, box);
+            for (int c = 0; c < cut.children(); ++c) parts.push_back(cut.child(c));
+        }
+        boxes = std::move(parts);
+    }
+    return boxes;
 }
 
 }  // namespace controlspace

@@ -26,14 +26,15 @@ inline double distance_between(const Box& a, const Box& b) {
 /// that calls for a change, provided that the box is too long for this source, and its parts hold
 /// M_max again. (If that source is content with the box, it stays one octant.) Adapted to a field,
 /// a box is cut where the bounds of the field in it, or lengths at some places, depart from what it
-/// would hold by more than the target, which the ranks find together.
+/// would hold by more than the target, which the ranks find together. (Adapted to tensors, one is
+/// cut that is longer than the least length in it.)
 class Octants {
 public:
     explicit Octants(const Box& domain) : tree_(domain) {}
 
     /// Collective: cuts octants with many sources, as long as they are cut for certain, and shares
-    /// them out. `records` are this rank's sources, `cones` their field if the tree is adapted;
-    /// `steepest` is the largest ratio of all sources.
+    /// them out. `records` are this rank's sources, `cones` their field if the tree is adapted to
+    /// lengths; `steepest` is the largest ratio of all sources.
     Octants(Ranks& ranks, const DistributedOptions& options, std::span<const Record> records,
             const IsotropicCones* cones, double steepest);
 
@@ -46,6 +47,8 @@ public:
     /// All of them, those of each rank together.
     std::span<const LeafIndex> order() const { return shared_.order; }
     std::vector<LeafIndex> of_rank(int rank) const;
+    /// The boxes that two cuts more would make of one.
+    std::vector<Box> parts_of(const LeafPlace& octant) const;
 
     /// Of the sources in an octant, infinite where there are none.
     double least_length(LeafIndex octant) const { return summary_.least_length[octant]; }

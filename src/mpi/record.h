@@ -9,13 +9,28 @@
 
 namespace controlspace {
 
-/// An isotropic source on its way between ranks.
+/// A source, and its place among those of all ranks.
 struct Record {
     Point position;
-    double length, growth;
-    std::uint64_t index;  ///< among those of all ranks
+    Metric metric;
+    double growth;
+    std::uint64_t index;
 
-    PointSource source() const { return {position, Metric::isotropic(length), growth}; }
+    PointSource source() const { return {position, metric, growth}; }
+};
+
+/// An isotropic one on its way between ranks.
+struct LengthRecord {
+    Point position;
+    double length, growth;
+    std::uint64_t index;
+
+    explicit LengthRecord(const Record& r)
+        : position(r.position), length(r.metric.xx), growth(r.growth), index(r.index) {}
+    LengthRecord() = default;
+    explicit operator Record() const {
+        return {position, Metric::isotropic(length), growth, index};
+    }
 };
 
 inline double slope_of(const Record& r, double ratio) { return cone_growth(r.growth, ratio) - 1; }

@@ -23,12 +23,14 @@ struct SharedSources::Bound {
 };
 
 SharedSources::SharedSources(Ranks& ranks, const Octants& octants,
-                             const DistributedOptions& options, std::vector<Record>&& records)
+                             const DistributedOptions& options, bool has_tensors, double steepest,
+                             std::vector<Record>&& records)
     : ranks_(ranks),
       octants_(octants),
       ratio_(options.space.ratio),
       cap_(largest_metric(options.space).xx),
-      adapted_(options.target.has_value()),
+      takes_centres_(!options.target && options.structure == "K_oL"),
+      has_tensors_(has_tensors),
       records_(std::move(records)),
       own_octants_(octants.of_rank(ranks.rank())) {
     std::vector<std::vector<Record>> to(static_cast<std::size_t>(ranks_.size()));
@@ -36,20 +38,41 @@ SharedSources::SharedSources(Ranks& ranks, const Octants& octants,
         to[static_cast<std::size_t>(octants_.owner_of(r.position))].push_back(r);
     }
     records_ = std::vector<Record>();
-    records_ = ranks_.exchange(to).values;
-    find_bounds();
+    records_ = exchange(to);
+    to.clear();
+    sources_in_.assign(octants_.tree().leaves(), {});
+    for (std::uint32_t k = 0; k < records_.size(); ++k) {
+        sources_in_[octants_.tree().find(records_[k].position)].all.push_back(k);
+    }
+    if (!has_tensors_) {
+        find_bounds();
+        return;
+    }
+    std::vector<std::vector<Box>> boxes;
+    boxes.reserve(own_octants_.size());
+    for (const LeafIndex octant : own_octants_) {
+        boxes.push_back(test_boxes(octants_.places()[octant]));
+    }
+    tensors_ =
+        std::make_unique<TensorNeeds>(ranks_, octants_, options.space, steepest, records_, boxes);
+    kept_ = tensors_->kept();
+}
+
+std::vector<Record> SharedSources::exchange(const std::vector<std::vector<Record>>& to) const {
+    if (has_tensors_) return ranks_.exchange(to).values;
+    std::vector<std::vector<LengthRecord>> lengths;
+    lengths.reserve(to.size());
+    for (const auto& records : to) lengths.emplace_back(records.begin(), records.end());
+    const auto received = ranks_.exchange(lengths).values;
+    return {received.begin(), received.end()};
 }
 
 // Finds the own sources that are not dominated, and lengths that the field does not exceed in
 // boxes which make up the octants.
 void SharedSources::find_bounds() {
-    sources_in_.assign(octants_.tree().leaves(), {});
     std::optional<IsotropicCones> own_cones;
     ranks_.together([&] {
         own_cones.emplace(columns_of(sources_of(records_)), ratio_, cap_);
-        for (std::uint32_t k = 0; k < records_.size(); ++k) {
-            sources_in_[octants_.tree().find(records_[k].position)].all.push_back(k);
-        }
         for (const std::uint32_t k : own_cones->kept()) {
             sources_in_[octants_.tree().find(records_[k].position)].kept.push_back(k);
         }
@@ -59,7 +82,7 @@ void SharedSources::find_bounds() {
     tests_.clear();
     first_test_.assign(1, 0);
     for (const LeafPlace& place : octants_.places()) {
-        add_tests(place, known[place.leaf]);
+        for (const Box& box : test_boxes(place)) tests_.push_back({box, known[place.leaf]});
         first_test_.push_back(tests_.size());
     }
     std::vector<double> most(tests_.size());
@@ -74,7 +97,7 @@ void SharedSources::find_bounds() {
 }
 
 SharedSources::Bound SharedSources::bound_of(const Record& r) const {
-    return {r.position, r.length, slope_of(r, ratio_)};
+    return {r.position, r.metric.xx, slope_of(r, ratio_)};
 }
 
 // In each octant, from one source of each.
@@ -108,42 +131,23 @@ std::vector<double> SharedSources::bounds_of_octants() {
 
 // The smaller the boxes, the fewer sources seem to matter in them. Inserted into, an octant
 // without sources is one leaf, of which the centre alone takes the field.
-void SharedSources::add_tests(const LeafPlace& octant, double most) {
-    if (!adapted_ && octants_.is_empty(octant.leaf)) {
-        const Point centre = octant.box.centre();
-        tests_.push_back({{centre, centre}, most});
-        return;
-    }
-    constexpr int levels = 2;
-    std::vector<Box> boxes{octant.box};
-    for (int k = 0; k < levels; ++k) {
-        std::vector<Box> parts;
-        for (const Box& box : boxes) {
-            const Subdivision cut =
-                OctreeNode::even_subdivision(octants_.tree().domain(), octant.level + k, box);
-            for (int c = 0; c < cut.children(); ++c) parts.push_back(cut.child(c));
-        }
-        boxes = std::move(parts);
-    }
-    for (const Box& box : boxes) tests_.push_back({box, most});
+std::vector<Box> SharedSources::test_boxes(const LeafPlace& octant) const {
+    if (!takes_centres_ || !octants_.is_empty(octant.leaf)) return octants_.parts_of(octant);
+    const Point centre = octant.box.centre();
+    return {{centre, centre}};
 }
 
-/// Calls visit(number) for the own sources that matter in any of some octants, or lie there.
-template <class Visit>
-void SharedSources::for_each_that_matters(std::span<const LeafIndex> in, const Visit& visit) const {
+/// By own source: whether it matters in any of some octants.
+std::vector<std::uint8_t> SharedSources::matter_in(std::span<const LeafIndex> octants) const {
+    if (has_tensors_) return tensors_->matter_in(octants);
     constexpr double safely = 1 + 1e-9;
-    std::vector<char> is_in(octants_.tree().leaves(), 0);
-    for (const LeafIndex leaf : in) is_in[leaf] = 1;
+    std::vector<std::uint8_t> matter(records_.size(), 0);
     std::vector<const Test*> near;
     for (const LeafIndex leaf : own_octants_) {
         const OwnSources& of = sources_in_[leaf];
-        if (is_in[leaf] != 0) {
-            for (const std::uint32_t k : of.all) visit(k);
-            continue;
-        }
         if (of.all.empty()) continue;
         near.clear();
-        for (const LeafIndex other : in) {
+        for (const LeafIndex other : octants) {
             for (const Test& test : tests_of(other)) {
                 const double distance = distance_between(octants_.box(leaf), test.box);
                 const double least =
@@ -155,11 +159,12 @@ void SharedSources::for_each_that_matters(std::span<const LeafIndex> in, const V
             const Record& r = records_[k];
             const auto matters = [&](const Test* test) {
                 const Vector away = nearest_in(test->box, r.position) - r.position;
-                return r.length + slope_of(r, ratio_) * away.norm() <= safely * test->most;
+                return r.metric.xx + slope_of(r, ratio_) * away.norm() <= safely * test->most;
             };
-            if (std::ranges::any_of(near, matters)) visit(k);
+            matter[k] = std::ranges::any_of(near, matters) ? 1 : 0;
         }
     }
+    return matter;
 }
 
 std::span<const SharedSources::Test> SharedSources::tests_of(LeafIndex octant) const {
@@ -168,13 +173,26 @@ std::span<const SharedSources::Test> SharedSources::tests_of(LeafIndex octant) c
 }
 
 std::vector<PointSource> SharedSources::near(const std::vector<std::vector<LeafIndex>>& wanted,
+                                             const std::vector<std::vector<LeafIndex>>& whole,
                                              std::uint64_t& received) const {
     std::vector<std::vector<Record>> to(wanted.size());
     for (std::size_t r = 0; r < wanted.size(); ++r) {
-        for_each_that_matters(wanted[r], [&](std::uint32_t k) { to[r].push_back(records_[k]); });
+        // In octants that are wanted whole there is nothing to be found out.
+        std::vector<std::uint8_t> is_whole(octants_.tree().leaves(), 0);
+        for (const LeafIndex octant : whole[r]) is_whole[octant] = 1;
+        const auto has_more = [&](LeafIndex octant) {
+            return is_whole[octant] == 0 && !sources_in_[octant].all.empty();
+        };
+        std::vector<std::uint8_t> matter(records_.size(), 0);
+        if (std::ranges::any_of(own_octants_, has_more)) matter = matter_in(wanted[r]);
+        for (const LeafIndex octant : own_octants_) {
+            for (const std::uint32_t k : sources_in_[octant].all) {
+                if (is_whole[octant] != 0 || matter[k] != 0) to[r].push_back(records_[k]);
+            }
+        }
     }
     const std::size_t from_self = to[static_cast<std::size_t>(ranks_.rank())].size();
-    std::vector<Record> records = ranks_.exchange(to).values;
+    std::vector<Record> records = exchange(to);
     to.clear();
     received = records.size() - from_self;
     std::vector<PointSource> sources;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -9,28 +9,33 @@
 #include "mpi/exchange.h"
 #include "mpi/octants.h"
 #include "mpi/record.h"
+#include "mpi/tensor_needs.h"
 
 namespace controlspace {
 
 /// The sources of all ranks, each with the owner of its octant, and which of them matter elsewhere.
 ///
-/// The field is the minimum of cones, to the bit, whatever other cones are searched. Some cone
-/// stays below U everywhere in an octant B: what is above U everywhere in B is nowhere the smallest
-/// in it, nor is it in bounds of any box inside of B. All others matter in B, up to rounding.
+/// Of lengths, the field is the minimum of cones, to the bit, whatever other cones are searched.
+/// Some cone stays below U everywhere in an octant B: what is above U everywhere in B is nowhere
+/// the smallest in it, nor is it in bounds of any box inside of B. All others matter in B, up to
+/// rounding. Of tensors: TensorNeeds.
 class SharedSources {
 public:
     /// Collective: sends this rank's sources to the owners of their octants, and finds bounds of
-    /// the field in each octant. `ranks` and `octants` must outlive it.
+    /// the field in each octant. `ranks` and `octants` must outlive it. `has_tensors`: whether any
+    /// rank has; `steepest` is the largest ratio of all sources.
     SharedSources(Ranks& ranks, const Octants& octants, const DistributedOptions& options,
-                  std::vector<Record>&& records);
+                  bool has_tensors, double steepest, std::vector<Record>&& records);
 
     std::size_t owned() const { return records_.size(); }
     /// Of them, those that none of the others there dominates.
     std::size_t kept() const { return kept_; }
 
     /// Collective, the one exchange: the sources that matter in the octants that each rank wants,
-    /// or lie there, in the order that they have in all; `received` are those of other ranks.
+    /// or lie in those that it has `whole`, in the order that they have in all; `received` are
+    /// those of other ranks.
     std::vector<PointSource> near(const std::vector<std::vector<LeafIndex>>& wanted,
+                                  const std::vector<std::vector<LeafIndex>>& whole,
                                   std::uint64_t& received) const;
 
 private:
@@ -44,24 +49,26 @@ private:
         std::vector<std::uint32_t> all, kept;
     };
 
+    std::vector<Record> exchange(const std::vector<std::vector<Record>>& to) const;
+    std::vector<Box> test_boxes(const LeafPlace& octant) const;
     void find_bounds();
     Bound bound_of(const Record& r) const;
     std::vector<double> bounds_of_octants();
-    void add_tests(const LeafPlace& octant, double most);
-    template <class Visit>
-    void for_each_that_matters(std::span<const LeafIndex> in, const Visit& visit) const;
+    std::vector<std::uint8_t> matter_in(std::span<const LeafIndex> octants) const;
     std::span<const Test> tests_of(LeafIndex octant) const;
 
     Ranks& ranks_;
     const Octants& octants_;
     double ratio_, cap_;
-    bool adapted_;
+    bool takes_centres_;  // of octants without sources, the field at the centre alone
+    bool has_tensors_;
     std::vector<Record> records_;  // owned
     std::size_t kept_ = 0;
     std::vector<LeafIndex> own_octants_;
     std::vector<OwnSources> sources_in_;   // of octants
     std::vector<Test> tests_;              // of octants, one after the other
     std::vector<std::size_t> first_test_;  // of each octant, and the end
+    std::unique_ptr<TensorNeeds> tensors_;
 };
 
 }  // namespace controlspace

@@ -4,6 +4,8 @@
 #define MPICH_SKIP_MPICXX 1
 #include "mpi/distributed_space.h"
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -12,7 +14,11 @@
 
 #include "controlspace/error.h"
 #include "controlspace/measure/access_time.h"
+#include "controlspace/measure/reference.h"
+#include "controlspace/metric/intersection.h"
 #include "controlspace/metric/metric.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/sources/cone.h"
 #include "controlspace/space/make_control_space.h"
 #include "geometry/random_fractions.h"
 
@@ -144,10 +150,65 @@ void check_equal(const Scene& scene, const DistributedOptions& options) {
     CHECK(uneven.checksum(places, seed) == expected);
 }
 
+PointSource layer_at(const Point& x, const Vector& normal, double across, double along) {
+    return {x, layer_metric(normal, across, along), 0};
+}
+
+// Layers on a sphere, directions and lengths at random, tensors beside lengths.
+std::vector<Scene> scenes_of_tensors() {
+    RandomFractions fraction(5);
+    const Box cube{Point::Constant(-1), Point::Constant(1)};
+    const auto direction = [&] {
+        const auto along = [&] { return 2 * fraction() - 1; };
+        return Vector(along(), along(), along()).normalized();
+    };
+    const Box upper{Point(-1, -1, 0.9), Point(1, 1, 2.9)};
+    std::vector<Scene> all;
+    Scene sphere{"layers on a sphere", cube, {}};
+    for (int i = 0; i < 900; ++i) {
+        const Vector n = direction();
+        sphere.sources.push_back(layer_at(0.7 * n, n, 0.012, 0.06));
+    }
+    all.push_back(sphere);
+    Scene thin{"thin layers, growths of their own", upper, {}};
+    for (int i = 0; i < 500; ++i) {
+        const Vector n = direction();
+        thin.sources.push_back(layer_at(Point(0, 0, 1.9) + 0.5 * n, n, 0.003, 0.12));
+        if (i % 4 == 0) thin.sources.back().growth = 1 + fraction();
+    }
+    all.push_back(thin);
+    Scene mixed{"some tensors among lengths", cube, {}};
+    for (int i = 0; i < 600; ++i) {
+        const Vector n = direction();
+        const Point x = 0.9 * std::cbrt(fraction()) * direction();
+        mixed.sources.push_back(i % 10 == 0 ? layer_at(x, n, 0.02, 0.2)
+                                            : at(x, 0.05 * std::pow(8.0, fraction())));
+    }
+    all.push_back(mixed);
+    return all;
+}
+
+double log_of_determinant(const Metric& m) { return std::log(m.matrix().determinant()); }
+
+// That a metric is no longer than any cone at x, nor M_max.
+bool is_within_cones(const Metric& m, const Point& x, const Scene& scene,
+                     const SpaceOptions& space) {
+    constexpr double safely = 1 + 1e-6;
+    return is_within(m, safely, largest_metric(space)) &&
+           std::ranges::all_of(scene.sources, [&](const PointSource& s) {
+               return is_within(m, safely * cone_factor(s, space.ratio, x), s.metric);
+           });
+}
+
 }  // namespace
 
 TEST_CASE("ranks answer as one does: inserted and graded") {
-    for (const Scene& scene : scenes()) check_equal(scene, options_for(scene));
+    for (const Scene& scene : scenes()) {
+        DistributedOptions options = options_for(scene);
+        check_equal(scene, options);
+        options.structure = "K_oV";
+        check_equal(scene, options);
+    }
     Scene mixed = scenes()[1];
     DistributedOptions coarse = options_for(mixed);
     coarse.space.l_min = 4;  // leaves inherit metrics that the field does not replace
@@ -168,12 +229,72 @@ TEST_CASE("ranks answer as one does: adapted") {
     }
 }
 
+TEST_CASE("tensors, inserted and graded: metrics are within all cones, and as large as one's") {
+    const World world;
+    for (const Scene& scene : scenes_of_tensors()) {
+        const DistributedOptions options = options_for(scene);
+        CAPTURE(scene.name, world.rank);
+        const auto whole = serial(scene, options);
+        const DistributedSpace space(
+            MPI_COMM_WORLD, share(scene.sources, world.rank, world.rank + 1, world.size), options);
+        CHECK(space.report().has_tensors);
+        // The centres of leaves, which hold what is there.
+        std::vector<Point> x = random_points(scene.domain, 1000, seed);
+        for (Point& place : x) place = whole->cell_at(place)->centre();
+        std::vector<Metric> found(x.size()), expected(x.size());
+        space.sample(x, found);
+        whole->sample(x, expected);
+        const double tolerance = 3 * std::log(1.01) + 1e-6;
+        std::size_t beyond = 0, smaller = 0, of_other_leaves = 0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            beyond += is_within_cones(found[i], x[i], scene, options.space) ? 0u : 1u;
+            const double ratio = log_of_determinant(found[i]) - log_of_determinant(expected[i]);
+            smaller += std::abs(ratio) <= tolerance ? 0u : 1u;
+            const bool is_own = space.owner_of(x[i]) == world.rank;
+            of_other_leaves += is_own && *space.own().cell_at(x[i]) != *whole->cell_at(x[i]);
+        }
+        CHECK(beyond == 0);
+        CHECK(smaller == 0);
+        CHECK(of_other_leaves == 0);
+    }
+}
+
+TEST_CASE("tensors, adapted: the target is kept") {
+    const World world;
+    const Scene scene = scenes_of_tensors()[0];
+    const auto exact =
+        exact_reference(scene.sources, SpaceOptions().ratio, largest_metric(scene.domain), 1e-3);
+    const std::vector<Point> x = random_points(scene.domain, places, seed);
+    std::vector<Metric> expected(x.size()), found(x.size());
+    exact->sample(x, expected);
+    for (const char* structure : {"K_oL", "K_oV"}) {
+        DistributedOptions options = options_for(scene);
+        options.structure = structure;
+        options.target = 0.5;
+        CAPTURE(structure, world.rank);
+        const DistributedSpace space(
+            MPI_COMM_WORLD, share(scene.sources, world.rank, world.rank + 1, world.size), options);
+        CHECK(space.report().met);
+        space.sample(x, found);
+        double worst = 0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            worst = std::max(worst, nonconformity(found[i], expected[i]));
+        }
+        CHECK(worst < 1.1 * *options.target);
+    }
+}
+
 TEST_CASE("the number of octants does not change an answer") {
     const Scene scene = scenes()[1];
     for (const std::uint64_t octants : {1, 8, 1000}) {
         DistributedOptions options = options_for(scene);
         options.octants_per_rank = octants;
         check_equal(scene, options);
+        if (octants == 8) {
+            options.structure = "K_oV";
+            check_equal(scene, options);
+            options.structure = "K_oL";
+        }
         options.target = 0.5;
         check_equal(scene, options);
     }
@@ -201,10 +322,11 @@ TEST_CASE("ranks share octants and sources out") {
 
 TEST_CASE("a rank gets the field of a box of its own") {
     const World world;
-    for (const bool is_adapted : {false, true}) {
+    for (const std::string structure : {"K_oL", "K_oL, adapted", "K_oV"}) {
         const Scene scene = scenes()[1];
         DistributedOptions options = options_for(scene);
-        if (is_adapted) options.target = 0.4;
+        options.structure = structure.substr(0, 4);
+        if (structure.ends_with("adapted")) options.target = 0.4;
         const auto whole = serial(scene, options);
         const DistributedSpace space(
             MPI_COMM_WORLD, share(scene.sources, world.rank, world.rank + 1, world.size), options);
@@ -256,8 +378,12 @@ TEST_CASE("what fails on one rank is thrown on all") {
     CHECK_THAT(message(bad, options_for(scene)), Contains("source " + last));
     bad = own;
     if (world.rank == world.size - 1) bad.back().metric = {1, 2, 3, 0, 0, 0};
-    CHECK_THAT(message(bad, options_for(scene)), Contains(last) && Contains("tensor"));
-    for (const char* structure : {"K_oLB", "K_oV", "K_L", "K_oLA"}) {
+    DistributedOptions in_turn = options_for(scene);
+    in_turn.space.intersection = IntersectionRule::in_turn;
+    CHECK_THAT(message(bad, in_turn), Contains("tensors") && Contains("in-turn"));
+    if (world.rank == world.size - 1) bad.back().metric = {1e-9, 1, 1, 0, 0, 0};
+    CHECK_THAT(message(bad, options_for(scene)), Contains("source " + last));
+    for (const char* structure : {"K_oLB", "K_L", "K_oLA"}) {
         DistributedOptions options = options_for(scene);
         options.structure = structure;
         CHECK_THAT(message(own, options), Contains(structure) && Contains("give K_oL"));

@@ -26,7 +26,8 @@ awk 'BEGIN {
 }' >sources.csv
 printf 'x,y,z\n0.1,0.2,0.3\n-0.9,0.8,0\n3,0,0\n' >places.csv
 
-for setting in "--structures K_oL --target-delta 0" "--structures K_oL --within 1.2" "--structures K_oV"; do
+for setting in "--structures K_oL --target-delta 0" "--structures K_oL --within 1.2" "--structures K_oV" \
+    "--structures K_oV --target-delta 0"; do
     # shellcheck disable=SC2086
     "$serial" query sources.csv places.csv -o expected.csv $setting 2>/dev/null
     # shellcheck disable=SC2086
@@ -76,6 +77,14 @@ expect_failure "bad.csv:" 3 build bad.csv
 expect_failure "K_oLB" 2 build sources.csv --structures K_oLB
 expect_failure "field" 2 build sources.csv --sources ball:0,0,0,r=0.1,h=0.1
 printf 'x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n0,0,0,1,2,3,0,0,0\n1,1,1,1,2,3,0,0,0\n' >tensors.csv
-expect_failure "tensor" 2 build tensors.csv --structures K_oL --target-delta 0
+expect_failure "max-leaves" 2 build sources.csv --within 1.2 --max-leaves 100
+expect_failure "in-turn" 2 build tensors.csv --structures K_oL --target-delta 0 --intersection in-turn
+# More ranks than sources, and the field of tensors by default.
+for setting in "--structures K_oL --target-delta 0" ""; do
+    # shellcheck disable=SC2086
+    on 3 sample tensors.csv places.csv -o found.csv $setting 2>err || fail "tensors $setting: $(cat err)"
+    grep -q "^tensors: .*tolerance" err || fail "no word on the tolerance: $(cat err)"
+    [ "$(wc -l <found.csv)" = 4 ] || fail "tensors $setting: $(cat found.csv)"
+done
 [ ! -e no ] || fail "something was written"
 echo "all as expected"
