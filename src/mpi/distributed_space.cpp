@@ -105,14 +105,14 @@ struct DistributedSpace::Impl {
 
     void require_possible() const {
         const SpaceOptions& space = options.space;
-        const bool is_vertices = options.structure == "K_oV";
-        if ((options.structure != "K_oL" && !is_vertices) ||
-            (is_vertices && !options.target &&
-             (space.vertices_in_turn || space.takes_later_sources))) {
+        const std::string& name = options.structure;
+        const bool is_in_turn = space.vertices_in_turn || space.takes_later_sources;
+        if (name != "K_oL" && !(name == "K_oV" && (options.target || !is_in_turn)) &&
+            !(name == "K_oLB" && !options.target && !is_in_turn)) {
             refuse(
-                "{} depends on the order in which the whole tree is made, and is not built by "
-                "ranks: give K_oL or K_oV",
-                options.structure);
+                "{}{} depends on the order in which the whole tree is made, and is not built by "
+                "ranks: give K_oL, K_oV or, inserted, K_oLB",
+                name, options.target ? ", adapted," : "");
         }
         if (has_tensors && space.intersection == IntersectionRule::in_turn) {
             refuse("ranks intersect tensors without an order: leave out --intersection in-turn");
@@ -153,8 +153,7 @@ struct DistributedSpace::Impl {
     /// The field in the octants that each rank wants, from the sources of all.
     std::unique_ptr<ControlSpace> build(const std::vector<std::vector<LeafIndex>>& wanted,
                                         RankReport& about) {
-        const bool takes_neighbours = !options.target && options.structure == "K_oV";
-        const auto whole = takes_neighbours ? with_neighbours(wanted) : wanted;
+        const auto whole = with_neighbours(wanted);
         std::vector<PointSource> sources = near->near(wanted, whole, about.received);
         std::unique_ptr<ControlSpace> made;
         ranks.together([&] {
@@ -168,7 +167,7 @@ struct DistributedSpace::Impl {
                 made = options.target ? adapted<Storage>(sources, is_wanted, boxes, about)
                                       : inserted<Storage>(sources, is_wanted, boxes, about);
             };
-            if (options.structure == "K_oL") {
+            if (options.structure != "K_oV") {
                 make(std::type_identity<LeafMetrics>());
             } else {
                 make(std::type_identity<VertexValues>());
@@ -177,15 +176,21 @@ struct DistributedSpace::Impl {
         return made;
     }
 
-    // A vertex takes what the leaves around it request.
+    // With the octants whose leaves change something in these. A vertex of K_oV takes what the
+    // leaves around it request. In K_oLB a leaf is cut for another, which was cut for a third and
+    // so on, each half as long as the one before: all of them are nearer than the first is long.
     std::vector<std::vector<LeafIndex>> with_neighbours(
         const std::vector<std::vector<LeafIndex>>& some) const {
+        if (options.target || options.structure == "K_oL") return some;
+        const double reach = options.structure == "K_oLB" ? 1 - 1e-6 : 0;
         std::vector<std::vector<LeafIndex>> all(some.size());
         for (std::size_t r = 0; r < some.size(); ++r) {
             std::vector<char> is_in(octants.tree().leaves(), 0);
             for (const LeafIndex octant : some[r]) {
-                for_each_leaf_around(octants.tree(), octants.box(octant), Neighbourhood::all,
-                                     [&](LeafIndex leaf, const Box&) {
+                const Box& box = octants.box(octant);
+                const Vector beyond = reach * box.edges();
+                for_each_leaf_around(octants.tree(), {box.low - beyond, box.high + beyond},
+                                     Neighbourhood::all, [&](LeafIndex leaf, const Box&) {
                                          if (std::exchange(is_in[leaf], 1) == 0) {
                                              all[r].push_back(leaf);
                                          }
@@ -220,7 +225,8 @@ struct DistributedSpace::Impl {
     std::unique_ptr<ControlSpace> inserted(std::vector<PointSource>& sources,
                                            std::span<const char> is_wanted,
                                            std::span<const Box> boxes, RankReport& about) const {
-        const auto made = std::make_shared<InsertedPart<Storage>>(options.space, boxes);
+        const auto made = std::make_shared<InsertedPart<Storage>>(
+            options.space, options.structure == "K_oLB", boxes);
         const SourceColumns given = columns_of(sources);
         std::erase_if(sources, [&](const PointSource& source) {
             return is_wanted[octants.tree().find(source.position)] == 0;

@@ -233,7 +233,8 @@ constexpr CommandRow commands[] = {
 
 int run(Ranks& ranks, int argc, const char* const* argv) {
     CLI::App app(
-        "Builds a control space, K_oL or K_oV, on all ranks of an MPI job: of lengths with the "
+        "Builds a control space, K_oL, K_oV or K_oLB, on all ranks of an MPI job: of lengths with "
+        "the "
         "same "
         "bits for any number of ranks, of tensors with the same metrics up to the tolerance of "
         "their field.",

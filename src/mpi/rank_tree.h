@@ -28,10 +28,12 @@ void cut_to(std::span<const Box> octants, const Tree& tree, const Split& split) 
 template <class Storage>
 class InsertedPart : public MetricTree<OctreeNode, Storage> {
 public:
-    InsertedPart(const SpaceOptions& options, std::span<const Box> octants)
-        : MetricTree<OctreeNode, Storage>(options) {
+    InsertedPart(const SpaceOptions& options, bool balanced, std::span<const Box> octants)
+        : MetricTree<OctreeNode, Storage>(options, balanced) {
         std::vector<LeafIndex> cut;
+        this->balanced_ = false;  // trees are balanced after insertion
         cut_to(octants, *this, [&](const Box& cell) { this->split_across(cell, {}, cut); });
+        this->balanced_ = balanced;
     }
 };
 

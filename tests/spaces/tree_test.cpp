@@ -1,5 +1,6 @@
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <map>
 #include <random>
 #include <set>
@@ -9,6 +10,7 @@
 #include "controlspace/trees/detail/control_nodes.h"
 #include "controlspace/trees/detail/sample_leaves.h"
 #include "editable_space.h"
+#include "geometry/random_fractions.h"
 #include "spaces/face_pairs.h"
 #include "trees/values/quadratic_values.h"
 #include "trees/values/vertex_values.h"
@@ -274,6 +276,38 @@ TEST_CASE("leaf neighbours: all across the faces, or the nearest across each") {
     for (NodeIndex i = 0; i < faces.size(); ++i) {
         CHECK(sample_at(*space, faces.position(i)) == all.metrics[i]);
     }
+}
+
+TEST_CASE("K_oLB has the metrics of K_oL, in leaves that are balanced after insertion") {
+    RandomFractions fraction(3);
+    const auto place = [&] { return 2 * fraction() - 1; };
+    std::vector<PointSource> sources;
+    for (int i = 0; i < 300; ++i) {
+        const double h = 0.002 * std::pow(100.0, fraction());
+        sources.push_back({Point(place(), place(), place()), Metric::isotropic(h)});
+    }
+    const auto made = [&](const char* structure, bool in_turn, std::size_t first) {
+        const auto builder =
+            tree_named(structure).make({.domain = domain, .vertices_in_turn = in_turn});
+        builder->insert(std::span(sources).first(first));
+        builder->insert(std::span(sources).subspan(first));
+        return builder->build();
+    };
+    std::vector<Point> x(5000);
+    for (Point& p : x) p = Point(place(), place(), place());
+    const auto metrics = [&](const ControlSpace& space) {
+        std::vector<Metric> out(x.size());
+        space.sample(x, out);
+        return out;
+    };
+    const std::vector<Metric> plain = metrics(*made("K_oL", false, 0));
+    const auto balanced = made("K_oLB", false, 0);
+    CHECK(metrics(*balanced) == plain);
+    const auto in_parts = made("K_oLB", false, 100);
+    CHECK(metrics(*in_parts) == plain);
+    CHECK(in_parts->footprint().cells == balanced->footprint().cells);
+    // As published, sources find leaves that were cut for others.
+    CHECK(metrics(*made("K_oLB", true, 0)) != plain);
 }
 
 TEST_CASE("K_oLB is balanced after every insertion, and K_oL is not") {

@@ -47,8 +47,8 @@ public:
     bool is_finished() const { return is_finished_; }
 
 protected:
-    /// With `balanced`, no leaf ever has a neighbour across a face that is more than one level
-    /// coarser (octrees).
+    /// With `balanced`, no leaf has a neighbour across a face that is more than one level coarser
+    /// (octrees).
     explicit GrowingTree(const SpaceOptions& options, bool balanced)
         : options_(options), balanced_(balanced), topology_(options.domain), storage_(options) {
         check_storage<Storage>();
@@ -131,6 +131,14 @@ protected:
         if (cut != nullptr) cut->push_back(place.leaf);
     }
 
+    /// Splits leaves until none has a neighbour across a face that is more than one level coarser:
+    /// the least such tree, whatever the order.
+    void balance() {
+        std::vector<LeafPlace> inner;
+        list_inner({topology_.root(), domain()}, 0, inner);
+        for (const LeafPlace& place : inner) refine_coarser_neighbours(place, nullptr);
+    }
+
     /// Throws InputError where the tree is not to have so many leaves more.
     void make_room_for(std::size_t more) {
         if (topology_.is_full(more)) fail_too_many_leaves();
@@ -179,15 +187,26 @@ protected:
     std::size_t bytes_to_come_ = 0;  // for each leaf, beside gradation
 
 private:
-    // Brings all face neighbours to the leaf's own level at least, so that it may be split.
+    // Those below a part, with it.
+    void list_inner(const TreePart& part, int level, std::vector<LeafPlace>& inner) const {
+        if (part.ref.is_leaf()) return;
+        LeafPlace& place = inner.emplace_back();
+        place.box = part.box;
+        place.level = level;
+        topology_.for_each_child(
+            part, [&](const TreePart& child) { list_inner(child, level + 1, inner); });
+    }
+    // Brings all face neighbours to the level of a leaf or inner node at least, so that it may be
+    // split.
     void refine_coarser_neighbours(const LeafPlace& place, std::vector<LeafIndex>* cut,
                                    auto&&... watched) {
         for (int face = 0; face < 6; ++face) {
             LeafPlace neighbour;
-            if (!locate_across(topology_, place.box, face, place.box.centre(), neighbour)) continue;
-            if (neighbour.level >= place.level) continue;
-            split(neighbour, Node::even_subdivision(domain(), neighbour.level, neighbour.box), cut,
-                  watched...);
+            while (locate_across(topology_, place.box, face, place.box.centre(), neighbour) &&
+                   neighbour.level < place.level) {
+                split(neighbour, Node::even_subdivision(domain(), neighbour.level, neighbour.box),
+                      cut, watched...);
+            }
         }
     }
 

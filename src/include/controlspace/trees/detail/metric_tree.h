@@ -29,7 +29,9 @@ concept HasCursor = requires(const Storage& s, const Topology<Node>& tree) {
 };
 
 /// A tree whose control nodes carry metrics, for SharedBuilder: the cut and the storage are
-/// independent of each other, insertion (paper §3.1) is the same for all.
+/// independent of each other, insertion (paper §3.1) is the same for all. Balanced trees are
+/// balanced after insertion; after every source with SpaceOptions::vertices_in_turn, or where
+/// sources may come later.
 template <class Node, class Storage>
 class MetricTree : public GrowingTree<Node, Storage> {
     using Base = GrowingTree<Node, Storage>;
@@ -38,7 +40,7 @@ class MetricTree : public GrowingTree<Node, Storage> {
 public:
     explicit MetricTree(const SpaceOptions& options, bool balanced = false)
         : Base(options, balanced),
-          collects_(!balanced && !options.vertices_in_turn && !options.takes_later_sources) {}
+          collects_(!options.vertices_in_turn && !options.takes_later_sources) {}
 
     InsertionReport insert(std::span<const PointSource> sources) {
         // Copying everything would be out of proportion to a few sources more.
@@ -46,7 +48,10 @@ public:
         InsertionReport report;
         // A leaf is its own metric alone: leaves grow at the same time.
         if constexpr (HasConstantLeaves<Storage>) {
-            if (!Base::balanced_ && !metrics().keeps_requested()) {
+            // It is balanced later, so that it does not depend on which leaf was cut when.
+            const bool balances = Base::balanced_ && collects_;
+            if (balances) is_finished_ = are_collected_ = false;
+            if (balances || (!Base::balanced_ && !metrics().keeps_requested())) {
                 insert_by_leaf([&] { return metrics().field(); },
                                [&](std::size_t more) { metrics().grow(more); }, sources, report);
             }
@@ -65,7 +70,8 @@ public:
             }
         }
         insert_in_turn(sources, report);
-        if (!is_finished_ && sources.size() > topology_.leaves() / 16) finish();
+        const bool waits = Base::balanced_ && !are_collected_;
+        if (!is_finished_ && !waits && sources.size() > topology_.leaves() / 16) finish();
         return report;
     }
 
@@ -151,19 +157,20 @@ private:
     NodeMetrics& metrics() { return storage_.metrics(); }
     const NodeMetrics& metrics() const { return storage_.metrics(); }
 
-    // Sets the nodes to what the leaves request.
+    // Sets the nodes to what the leaves request, or balances what has grown.
     void collect() {
         if (are_collected_) return;
         if constexpr (CollectsRequests<Storage, Node>) {
             storage_.collect(topology_, requests_);
         }
+        if (Base::balanced_) Base::balance();
         are_collected_ = true;
         Base::bytes_to_come_ = 0;
         Base::require_memory(topology_.leaves());
     }
     // From now on the nodes alone count.
     void end_collection() {
-        collect();
+        if (!are_collected_) finish();
         forget_requests();
     }
     void forget_requests() {
@@ -246,7 +253,8 @@ private:
     }
 
     // As long as nothing but insertion has changed it: what leaves request (of a storage that
-    // collects that; nothing before the first), and whether the nodes have been set to it.
+    // collects that; nothing before the first), and whether the nodes have been set to it, or the
+    // tree is balanced.
     static constexpr std::size_t bytes_collected_per_leaf = 224;
     bool collects_;
     bool are_collected_ = true;
