@@ -41,7 +41,8 @@ struct SampledBlock {
     std::array<std::uint16_t, size> same_as;
 
     static std::size_t index(std::int32_t i, std::int32_t j, std::int32_t k) {
-        return static_cast<std::size_t>((i * side + j) * side + k);
+        return static_cast<std::size_t>(i * side + j) * static_cast<std::size_t>(side) +
+               static_cast<std::size_t>(k);
     }
 };
 
