@@ -8,6 +8,7 @@
 #include <ctime>
 #include <numeric>
 #include <random>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/metric/nonconformity.h"
+#include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/adaptation.h"
 #include "controlspace/space/sample_parallel.h"
 #include "editable_space.h"
@@ -30,11 +32,11 @@ using namespace controlspace;
 namespace {
 
 const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
-constexpr double target = 0.1;
 
 struct Scene {
     std::vector<PointSource> sources;
     double ratio;
+    double target = 0.1;
 };
 
 class Random {
@@ -132,12 +134,23 @@ Scene scene_of_many(std::uint64_t seed) {
     return scene;
 }
 
+// Layers on the paper's surfaces, 0.06 along them: 4:1 and 100:1, at δ 0.1, and with each length
+// within 1.4.
+Scene layers(std::uint64_t k) {
+    constexpr double across[] = {0.25, 0.01};
+    const double s_n = across[k % 2];
+    const double target = k / 2 % 2 == 0 ? 0.1 : nonconformity_along(1.4);
+    return {k / 4 % 2 == 0 ? sample_sphere({.s_a = 4, .s_n = s_n})
+                           : sample_planes({.s_a = 4, .s_n = s_n}),
+            1.25, target};
+}
+
 Point into_domain(const Point& x) { return x.cwiseMax(domain.low).cwiseMin(domain.high); }
 
 // The largest δ that a multistart finds: from random places, from places at all distances from
 // sources, from their projections onto leaves nearby, and from corners of leaves.
-double worst_found(const ControlSpace& space, const ControlSpace& field, const Scene& scene,
-                   std::size_t starts, std::uint64_t seed) {
+std::pair<double, Point> worst_found(const ControlSpace& space, const ControlSpace& field,
+                                     const Scene& scene, std::size_t starts, std::uint64_t seed) {
     Random random(seed + 900001);
     std::vector<Point> x;
     while (x.size() < starts) {
@@ -183,32 +196,39 @@ double worst_found(const ControlSpace& space, const ControlSpace& field, const S
             if (found[i].first > best[i / 4].first) best[i / 4] = found[i];
         }
     }
-    return std::ranges::max(best, {}, [](const auto& b) { return b.first; }).first;
+    return std::ranges::max(best, {}, [](const auto& b) { return b.first; });
 }
 
 struct Outcome {
+    double target = 0;
     std::size_t sources = 0, leaves = 0;
-    double seconds = 0;  // of processor time, to adapt
+    double megabytes = 0, seconds = 0;  // of processor time, to adapt
     bool met = false;
     double reached = 0, worst = 0;  // as reported; as found, where met
+    Point where = Point::Zero();
+    Box leaf = {};  // there
     bool is_broken() const { return worst > target * (1 + 1e-9); }
 };
 
 Outcome outcome_of(const CatalogueEntry& entry, const Scene& scene, std::size_t starts,
                    std::uint64_t seed) {
     const auto space = editable(entry.make({.domain = domain}));
+    Outcome outcome{.target = scene.target, .sources = scene.sources.size()};
     const std::clock_t start = std::clock();
     const AdaptationReport report = space->adapt({.sources = scene.sources,
                                                   .continuous = nullptr,
                                                   .ratio = scene.ratio,
-                                                  .target = target,
+                                                  .target = scene.target,
                                                   .max_leaves = 300000});
-    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    Outcome outcome{scene.sources.size(), space->footprint().cells, seconds, report.met,
-                    report.reached};
+    outcome.seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    outcome.leaves = space->footprint().cells;
+    outcome.megabytes = 1e-6 * static_cast<double>(space->footprint().bytes_total());
+    outcome.met = report.met;
+    outcome.reached = report.reached;
     if (!report.met) return outcome;
     const auto field = exact_reference(scene.sources, scene.ratio, largest_metric(domain), 1e-4);
-    outcome.worst = worst_found(*space, *field, scene, starts, seed);
+    std::tie(outcome.worst, outcome.where) = worst_found(*space, *field, scene, starts, seed);
+    outcome.leaf = *space->cell_at(outcome.where);
     return outcome;
 }
 
@@ -250,9 +270,17 @@ int print_scenes(const CatalogueEntry& entry, const char* kind, Scene (*make)(st
     for (std::uint64_t k = first; k < first + count; ++k) {
         const Outcome outcome = outcome_of(entry, make(k), starts, k);
         broken += outcome.is_broken();
-        std::printf("scene,%s,%s,%llu,%zu,%zu,%.3f,%d,%.6g,%.6g\n", kind, entry.id.c_str(),
-                    static_cast<unsigned long long>(k), outcome.sources, outcome.leaves,
-                    outcome.seconds, outcome.met, outcome.reached, outcome.worst);
+        std::printf("scene,%s,%s,%llu,%.4g,%zu,%zu,%.3f,%.2f,%d,%.6g,%.6g\n", kind,
+                    entry.id.c_str(), static_cast<unsigned long long>(k), outcome.target,
+                    outcome.sources, outcome.leaves, outcome.megabytes, outcome.seconds,
+                    outcome.met, outcome.reached, outcome.worst);
+        if (outcome.is_broken()) {
+            const Vector edges = outcome.leaf.edges();
+            const Vector share = (outcome.where - outcome.leaf.low).cwiseQuotient(edges);
+            std::printf("# at %.9g %.9g %.9g: %.4f %.4f %.4f of a leaf of %.3g %.3g %.3g\n",
+                        outcome.where.x(), outcome.where.y(), outcome.where.z(), share.x(),
+                        share.y(), share.z(), edges.x(), edges.y(), edges.z());
+        }
         std::fflush(stdout);
     }
     return broken;
@@ -288,7 +316,7 @@ CASE_OF_EACH(entry, of_tensors(), "a promise is kept of scenes of tensors") {
 CASE_OF_EACH(entry, nearly_of_tensors(), "a promise is nearly kept of scenes of tensors") {
     const Outcomes outcome = search(entry, tensor_scene, first_scenes(4), 1000);
     CHECK(outcome.met >= 2);
-    CHECK(outcome.worst <= 2 * target);
+    CHECK(outcome.worst <= 0.2);
 }
 
 CASE_OF_EACH(entry, of_isotropic(), "many scenes, isotropic", "[.][promise]") {
@@ -303,6 +331,11 @@ CASE_OF_EACH(entry, of_tensors(), "many scenes, up to 60 tensors", "[.][promise]
 CASE_OF_EACH(entry, of_tensors(), "many scenes, more than 64 tensors", "[.][promise]") {
     const auto starts = number_from("CONTROLSPACE_STARTS", 94000);
     CHECK(print_scenes(entry, "many tensors", scene_of_many, starts) == 0);
+}
+
+CASE_OF_EACH(entry, of_tensors(), "layers", "[.][promise]") {
+    const auto starts = number_from("CONTROLSPACE_STARTS", 1000000);
+    CHECK(print_scenes(entry, "layers", layers, starts) == 0);
 }
 
 CASE_OF_EACH(entry, nearly_of_tensors(), "many scenes, up to 60 tensors, nearly", "[.][promise]") {
