@@ -140,11 +140,19 @@ public:
                 if (found.departure.worst > target_) return;
                 const double near = 0.5 * (1 + static_cast<double>(round) / rounds);
                 if (!(best.worst > near * target_)) break;
-                // Some much nearer: peaks at sources are far narrower than their leaf.
+                // Some much nearer: peaks at sources are far narrower than their leaf. Most stay on
+                // the faces or the edge on which the best lies: creases cross these.
+                const auto is_on_face = [&, at = best.where](Axis a) {
+                    return at[a] == of.box.low[a] || at[a] == of.box.high[a];
+                };
+                const bool is_at_corner = is_on_face(0) && is_on_face(1) && is_on_face(2);
                 for (std::size_t i = 0; i < x.size(); ++i) {
                     const Vector side = i % 2 == 0 ? reach : 0.15 * reach;
                     const Box around{best.where - side, best.where + side};
                     x[i] = nearest_in(of.box, place_in(around, next++));
+                    for (Axis a = 0; a < 3 && i > 1 && !is_at_corner; ++a) {
+                        if (is_on_face(a)) x[i][a] = best.where[a];
+                    }
                 }
                 const double before = best.worst;
                 compare_with(of, nearby, x, false, summit, {});
