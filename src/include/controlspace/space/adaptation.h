@@ -39,7 +39,8 @@ struct AdaptationReport {
     /// infinity where neither could be shown in a leaf that was not to be cut. Otherwise the
     /// largest sampled δ; below 3/4 of the target, a bound of it. Samples are taken at sources and
     /// next to them in the leaves beside them, at places that the structure was not fitted to, and
-    /// by hill climbs from the worst of these; a peak between them may be higher. With up to 64
+    /// by hill climbs from the worst of these, and, of tensors without an order, along edges of
+    /// trilinear leaves where cones are steep; a peak between them may be higher. With up to 64
     /// sources, each leaf is compared with the cone of each, also around their tips, and cut from
     /// 0.97 of the target on. With more tensors, leaves are cut from 0.99 of it on, and most places
     /// far below it are compared with sources close to those that matter nearby; the others with

@@ -299,8 +299,11 @@ private:
         };
         // Where the field has a crease across an edge, the middle of that shows little of it.
         if (is_near(0.1)) judge.at_places_between(l, nearby, found);
+        if constexpr (HasTrilinearLeaves<Storage>) {
+            if (is_near(0)) judge.along_edges(l, nearby, field_.largest_ratio() - 1, found);
+        }
         if (is_near(0.5)) judge.at_sequence(l, nearby, end, end + more, found);
-        judge.climb(l, nearby, is_thorough_ ? Peaks::most : 1, found);
+        judge.climb(l, nearby, is_thorough_, found);
     }
 
     // Sets leaves of a constant value to what is between the bounds of the field in them. Bounds

@@ -82,6 +82,56 @@ public:
         }
     }
 
+    /// Along its edges, where the field is that of the leaf at the corners: in the middle of parts
+    /// of them, as long as some part is so long, in the metrics at its ends, that the target may be
+    /// exceeded in it. The logarithm of a length changes by the slope of cones, at most, per unit.
+    void along_edges(const LeafBox& of, NearbyField& nearby, double slope, Findings& found) const {
+        struct Part {
+            double from, to;
+            std::array<double, 2> logarithm, size;  // at the ends: of a factor; of the whole edge
+            double most(double slope) const {
+                const double units = (to - from) * std::max(size[0], size[1]);
+                return 0.5 * (logarithm[0] + logarithm[1] + slope * units);
+            }
+        };
+        constexpr std::size_t most_parts = 16;
+        const auto logarithm_of = [](double delta) { return std::acosh(1 + 0.5 * delta); };
+        for (int edge = 0; edge < 12; ++edge) {
+            const Axis axis = edge % 3;
+            const int side = edge / 3;
+            Point low = of.box.low;
+            low[(axis + 1) % 3] = ((side & 1) != 0 ? of.box.high : of.box.low)[(axis + 1) % 3];
+            low[(axis + 2) % 3] = ((side & 2) != 0 ? of.box.high : of.box.low)[(axis + 2) % 3];
+            Point high = low;
+            high[axis] = of.box.high[axis];
+            std::array<Metric, 2> ends;
+            values_in(of.leaf, std::array{low, high}, ends);
+            const Vector along = high - low;
+            std::array<Part, most_parts> parts;
+            parts[0] = {
+                0, 1, {0, 0}, {metric_length(ends[0], along), metric_length(ends[1], along)}};
+            for (std::size_t count = 1; count < most_parts; ++count) {
+                Part& part =
+                    *std::ranges::max_element(parts.begin(), parts.begin() + count, {},
+                                              [&](const Part& p) { return p.most(slope); });
+                if (part.most(slope) <= logarithm_of(target_)) break;
+                const double middle = 0.5 * (part.from + part.to);
+                const Point x = low + middle * along;
+                Metric own, field;
+                values_in(of.leaf, {&x, 1}, {&own, 1});
+                const double factor = nearby.evaluate_roughly({&x, 1}, false, {&field, 1});
+                compare(own, field, factor, x, nearby, found);
+                if (found.departure.worst > target_) return;
+                const double logarithm = logarithm_of(directional_nonconformity(own, field));
+                const double size = metric_length(field, along);
+                parts[count] = part;
+                parts[count].from = part.to = middle;
+                parts[count].logarithm[0] = part.logarithm[1] = logarithm;
+                parts[count].size[0] = part.size[1] = size;
+            }
+        }
+    }
+
     /// Of lengths that are trilinear in the leaf: the target, if bounds show that it is kept
     /// everywhere; otherwise more, without bound where they show nothing.
     Departure everywhere(const LeafBox& of, NearbyField& nearby) const {
@@ -122,24 +172,27 @@ public:
         }
     }
 
-    /// Hill climbs from the worst peaks found so far, `most` of them, as long as they come near
+    /// Hill climbs from the worst peak found so far, `thorough` from all, as long as they come near
     /// enough to the target: the nearer, the longer they have taken. At places all around: what is
     /// climbed has creases, where other cones begin to matter.
-    void climb(const LeafBox& of, NearbyField& nearby, std::size_t most, Findings& found) const {
+    void climb(const LeafBox& of, NearbyField& nearby, bool thorough, Findings& found) const {
         constexpr int rounds = 16;
+        constexpr int further_rounds = 32;
         std::array<Point, 6> x;
         std::uint64_t next = 0;
         Peaks starts = found.peaks;
         const std::span<const Peaks::Peak> sorted = starts.sorted();
+        const std::size_t most = thorough ? Peaks::most : 1;
         for (const Peaks::Peak& start : sorted.first(std::min(most, sorted.size()))) {
             Findings summit(of);
             summit.departure.take(start.delta, start.where);
             Departure& best = summit.departure;
             Vector reach = 0.25 * of.box.edges();
-            for (int round = 0; round < rounds; ++round) {
+            for (int round = 0; round < (thorough ? rounds + further_rounds : rounds); ++round) {
                 if (found.departure.worst > target_) return;
-                const double near = 0.5 * (1 + static_cast<double>(round) / rounds);
+                const double near = std::min(0.5 * (1 + static_cast<double>(round) / rounds), 0.9);
                 if (!(best.worst > near * target_)) break;
+                if (round == rounds) reach = 0.1 * of.box.edges();
                 // Some much nearer: peaks at sources are far narrower than their leaf. Most stay on
                 // the faces or the edge on which the best lies: creases cross these.
                 const auto is_on_face = [&, at = best.where](Axis a) {
@@ -156,7 +209,7 @@ public:
                 }
                 const double before = best.worst;
                 compare_with(of, nearby, x, false, summit, {});
-                if (!(best.worst > before)) reach *= 0.6;
+                if (!(best.worst > before)) reach *= round < rounds ? 0.6 : 0.8;
                 found.departure.take(best.worst, best.where);
             }
         }
