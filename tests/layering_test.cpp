@@ -19,8 +19,7 @@ const std::map<std::string, int> layers{
     {"files", 0},    {"geometry", 0}, {"metric", 1}, {"sources", 2}, {"gradation", 2},
     {"cones", 3},    {"space", 4},    {"fields", 5}, {"io", 6},      {"trees", 6},
     {"measure", 7},  {"mesh", 8},     {"gmsh", 9},   {"study", 10},  {"baselines", 7},
-    {"modules", 10}, {"c", 10},       {"cli", 11},   {"mpi", 12},
-    {"cuda", 12}};
+    {"modules", 10}, {"c", 10},       {"cli", 11},   {"mpi", 12},    {"cuda", 12}};
 
 struct Include {
     fs::path file;

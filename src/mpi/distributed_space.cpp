@@ -163,7 +163,8 @@ struct DistributedSpace::Impl {
                 boxes.push_back(octants.box(leaf));
                 is_wanted[leaf] = 1;
             }
-            const auto make = [&]<class Storage>(std::type_identity<Storage>) {
+            const auto make = [&](auto storage) {
+                using Storage = typename decltype(storage)::type;
                 made = options.target ? adapted<Storage>(sources, is_wanted, boxes, about)
                                       : inserted<Storage>(sources, is_wanted, boxes, about);
             };

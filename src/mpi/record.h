@@ -22,8 +22,8 @@ struct Record {
 /// An isotropic one on its way between ranks.
 struct LengthRecord {
     Point position;
-    double length, growth;
-    std::uint64_t index;
+    double length = 0, growth = 0;
+    std::uint64_t index = 0;
 
     explicit LengthRecord(const Record& r)
         : position(r.position), length(r.metric.xx), growth(r.growth), index(r.index) {}
