@@ -103,7 +103,8 @@ bool AllExceeded::add_below(std::uint32_t number, const Exceeding& exceeding) {
     if (tree_.is_leaf(number)) {
         const std::uint32_t first = tree_.first_vector(number);
         for (std::uint32_t v = first; v < first + QuadricTree::vectors_of_leaf; ++v) {
-            const std::size_t begin = std::min<std::size_t>(v * lane_count, is_found_.size());
+            const std::size_t begin =
+                std::min<std::size_t>(std::size_t{v} * lane_count, is_found_.size());
             const std::size_t end = std::min<std::size_t>(begin + lane_count, is_found_.size());
             const auto found = std::span(is_found_).subspan(begin, end - begin);
             if (std::ranges::find(found, 0) == found.end()) continue;
