@@ -71,30 +71,27 @@ void GpuField::start(const double* x, std::size_t count, double* out, CUstream_s
     require(cudaGetLastError());
 }
 
+void GpuField::answer(std::span<const Point> x, void* out) const {
+    static_assert(sizeof(Point) == 3 * sizeof(double) && sizeof(Metric) == 6 * sizeof(double));
+    const std::size_t numbers = x.size() * static_cast<std::size_t>(copy_->numbers);
+    const auto places = copied(x.data(), x.size());
+    const auto answers = allocate<double>(numbers);
+    start(places.get()->data(), x.size(), answers.get(), nullptr);
+    require(cudaMemcpy(out, answers.get(), numbers * sizeof(double), cudaMemcpyDeviceToHost));
+}
+
 void GpuField::sample_lengths(std::span<const Point> x, std::span<double> out) const {
-    if (!answers_lengths())
+    if (!answers_lengths()) {
         refuse("a field of tensors on a GPU answers no lengths: ask for metrics");
-    static_assert(sizeof(Point) == 3 * sizeof(double));
-    const auto places = copied(x.data()->data(), 3 * x.size());
-    const auto lengths = allocate<double>(x.size());
-    start(places.get(), x.size(), lengths.get(), nullptr);
-    require(
-        cudaMemcpy(out.data(), lengths.get(), x.size() * sizeof(double), cudaMemcpyDeviceToHost));
+    }
+    answer(x, out.data());
 }
 
 void GpuField::sample(std::span<const Point> x, std::span<Metric> out) const {
-    if (answers_lengths()) {
-        std::vector<double> lengths(x.size());
-        sample_lengths(x, lengths);
-        std::ranges::transform(lengths, out.begin(), &Metric::isotropic);
-        return;
-    }
-    static_assert(sizeof(Metric) == 6 * sizeof(double));
-    const auto places = copied(x.data()->data(), 3 * x.size());
-    const auto metrics = allocate<double>(6 * x.size());
-    start(places.get(), x.size(), metrics.get(), nullptr);
-    require(
-        cudaMemcpy(out.data(), metrics.get(), x.size() * sizeof(Metric), cudaMemcpyDeviceToHost));
+    if (!answers_lengths()) return answer(x, out.data());
+    std::vector<double> lengths(x.size());
+    answer(x, lengths.data());
+    std::ranges::transform(lengths, out.begin(), &Metric::isotropic);
 }
 
 }  // namespace controlspace

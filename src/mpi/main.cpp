@@ -234,10 +234,8 @@ constexpr CommandRow commands[] = {
 int run(Ranks& ranks, int argc, const char* const* argv) {
     CLI::App app(
         "Builds a control space, K_oL, K_oV or K_oLB, on all ranks of an MPI job: of lengths with "
-        "the "
-        "same "
-        "bits for any number of ranks, of tensors with the same metrics up to the tolerance of "
-        "their field.",
+        "the same bits for any number of ranks, of tensors with the same metrics up to the "
+        "tolerance of their field.",
         "controlspace-mpi");
     app.require_subcommand(1);
     app.footer(

@@ -69,15 +69,15 @@ public:
 
     template <class Node>
     ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
-        const LeafVertices vertices = leaf_vertices(tree);
-        return {vertex_graph(vertices.of_leaves, vertices.positions, neighbourhood),
-                metrics_of(vertices)};
+        const std::vector<Corners> corners = all_corners(tree);
+        return {vertex_graph(corners, vertex_positions(tree, corners, vertices_), neighbourhood),
+                metrics_of(corners)};
     }
     template <class Node>
     void save(const Topology<Node>& tree, StateWriter& state) const {
-        const LeafVertices vertices = leaf_vertices(tree);
-        NodeMetrics::exchange(NodeMetrics(metrics_of(vertices)), state);
-        state("vertices.of_leaves", vertices.of_leaves);
+        const std::vector<Corners> corners = all_corners(tree);
+        NodeMetrics::exchange(NodeMetrics(metrics_of(corners)), state);
+        state("vertices.of_leaves", corners);
     }
     void describe(Footprint& footprint) const {
         Base::describe(footprint);
@@ -90,14 +90,30 @@ public:
     }
 
 private:
-    std::vector<Metric> metrics_of(const LeafVertices& vertices) const {
-        std::vector<Metric> metrics(vertices.positions.size());
-        for (LeafIndex leaf = 0; leaf < leaves_.size(); ++leaf) {
-            for (std::size_t c = 0; c < 8; ++c) {
-                metrics[vertices.of_leaves[leaf][c]] = at_corners(leaf)(c);
-            }
+    // Numbers of vertices, found anew where leaves hold none.
+    template <class Node>
+    std::vector<Corners> all_corners(const Topology<Node>& tree) const {
+        if constexpr (in_leaves<M>) {
+            return leaf_vertices(tree).of_leaves;
+        } else {
+            std::vector<Corners> corners;
+            corners.reserve(leaves_.size());
+            for (const auto& leaf : leaves_) corners.push_back(leaf.corners);
+            return corners;
         }
-        return metrics;
+    }
+    std::vector<Metric> metrics_of(const std::vector<Corners>& corners) const {
+        if constexpr (in_leaves<M>) {
+            std::vector<Metric> metrics(vertices_);
+            for (LeafIndex leaf = 0; leaf < leaves_.size(); ++leaf) {
+                for (std::size_t c = 0; c < 8; ++c) {
+                    metrics[corners[leaf][c]] = leaves_[leaf].corners[c];
+                }
+            }
+            return metrics;
+        } else {
+            return {metrics_.begin(), metrics_.end()};
+        }
     }
 
     std::size_t vertices_;

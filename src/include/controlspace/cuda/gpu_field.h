@@ -39,6 +39,8 @@ public:
     void sample_lengths(std::span<const Point> x, std::span<double> out) const;
 
 private:
+    void answer(std::span<const Point> x, void* out) const;
+
     struct Copy;
     std::unique_ptr<Copy> copy_;
 };

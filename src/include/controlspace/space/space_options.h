@@ -48,11 +48,13 @@ struct SpaceOptions {
     /// later ones: trees search the governing sources of all leaves again, which gives a field
     /// close to that of all at once; `direct` builds its search anew.
     bool takes_later_sources = false;
-    /// Trees with a metric a vertex (K_V, K_oV), as published: sources are inserted one after the
-    /// other, and a new vertex takes what is interpolated there at that moment. Wanted for
-    /// gradation from node to node that is to give the paper's tables; where sources may come later
-    /// it is done in any case. Otherwise leaves request what their sources do, as in K_L and K_oL,
-    /// on all of TBB's threads, and a vertex the intersection of the leaves around it.
+    /// Trees with a metric a vertex (K_V, K_oV) and the balanced one (K_oLB), as published: sources
+    /// are inserted one after the other; a new vertex takes what is interpolated there at that
+    /// moment, and leaves are balanced after each source. Wanted for gradation from node to node
+    /// that is to give the paper's tables; where sources may come later it is done in any case.
+    /// Otherwise leaves request what their sources do, as in K_L and K_oL, on all of TBB's threads;
+    /// a vertex requests the intersection of the leaves around it, and leaves are balanced at the
+    /// end.
     bool vertices_in_turn = false;
     /// Cap on memory, gradation included: grids get coarser, trees that outgrow it throw
     /// InputError. The sources that a builder keeps to grade by them, up to 72 bytes each, and the

@@ -83,6 +83,7 @@ public:
     std::span<const Node> nodes() const { return nodes_; }
     std::size_t leaves() const { return leaves_; }
     std::size_t inner_nodes() const { return nodes_.size(); }
+    const JumpTable<Ref>& jumps() const { return jumps_; }
     std::size_t bytes_of_jumps() const { return jumps_.bytes(); }
     /// Enters what it consists of, and the bytes that it takes.
     void describe(Footprint& footprint) const {

@@ -59,6 +59,64 @@ public:
         return true;
     }
 
+    /// The cells along one axis. The outermost planes are no numbers: nothing lies beyond them.
+    struct AxisCells {
+        double low = 0;
+        double per_length = 0;
+        std::vector<double> planes;
+
+        int count() const { return static_cast<int>(planes.size()) - 1; }
+
+        void cut(double from, double to, int cells) {
+            low = from;
+            per_length = to > from ? cells / (to - from) : 0;
+            planes.resize(static_cast<std::size_t>(cells) + 1);
+            planes.front() = from;
+            planes.back() = to;
+            for (int step = cells; step > 1; step /= 2) {
+                for (int i = 0; i < cells; i += step) {
+                    const double sum = planes[at(i)] + planes[at(i + step)];
+                    planes[at(i + step / 2)] = 0.5 * sum;
+                }
+            }
+            planes.front() = planes.back() = std::numeric_limits<double>::quiet_NaN();
+        }
+
+        /// Most that the quotient at a plane is off from the plane's number.
+        double largest_error() const {
+            double error = 0;
+            for (int i = 1; i < count(); ++i) {
+                error = std::max(error, std::abs((planes[at(i)] - low) * per_length - i));
+            }
+            return error;
+        }
+
+        // The quotient is off by rounding at most, and brought to the planes' own order.
+        int find(double x) const {
+            double guess = (x - low) * per_length;
+            const double most = count() - 1;
+            guess = guess > 0 ? guess : 0;
+            guess = guess < most ? guess : most;
+            const int i = static_cast<int>(guess);
+            return i + (x > planes[at(i + 1)] ? 1 : 0) - (x <= planes[at(i)] ? 1 : 0);
+        }
+
+        /// First cell that begins at `x` or above; the end of the last that ends at `x` or below.
+        int first_from(double x) const {
+            const auto found = std::lower_bound(planes.begin() + 1, planes.end() - 1, x);
+            return static_cast<int>(found - planes.begin());
+        }
+        int last_to(double x) const {
+            const auto found = std::upper_bound(planes.begin() + 1, planes.end() - 1, x);
+            return static_cast<int>(found - planes.begin()) - 1;
+        }
+
+        static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+    };
+
+    const std::array<AxisCells, 3>& axes() const { return axes_; }
+    /// Of the cells, x fastest.
+    std::span<const Ref> refs() const { return refs_; }
     std::size_t cells() const { return refs_.size(); }
     std::size_t bytes() const {
         std::size_t sum = refs_.capacity() * sizeof(Ref);
@@ -114,61 +172,6 @@ private:
         }
         return true;
     }
-
-    /// The cells along one axis. The outermost planes are no numbers: nothing lies beyond them.
-    struct AxisCells {
-        double low = 0;
-        double per_length = 0;
-        std::vector<double> planes;
-
-        int count() const { return static_cast<int>(planes.size()) - 1; }
-
-        void cut(double from, double to, int cells) {
-            low = from;
-            per_length = to > from ? cells / (to - from) : 0;
-            planes.resize(static_cast<std::size_t>(cells) + 1);
-            planes.front() = from;
-            planes.back() = to;
-            for (int step = cells; step > 1; step /= 2) {
-                for (int i = 0; i < cells; i += step) {
-                    const double sum = planes[at(i)] + planes[at(i + step)];
-                    planes[at(i + step / 2)] = 0.5 * sum;
-                }
-            }
-            planes.front() = planes.back() = std::numeric_limits<double>::quiet_NaN();
-        }
-
-        /// Most that the quotient at a plane is off from the plane's number.
-        double largest_error() const {
-            double error = 0;
-            for (int i = 1; i < count(); ++i) {
-                error = std::max(error, std::abs((planes[at(i)] - low) * per_length - i));
-            }
-            return error;
-        }
-
-        // The quotient is off by rounding at most, and brought to the planes' own order.
-        int find(double x) const {
-            double guess = (x - low) * per_length;
-            const double most = count() - 1;
-            guess = guess > 0 ? guess : 0;
-            guess = guess < most ? guess : most;
-            const int i = static_cast<int>(guess);
-            return i + (x > planes[at(i + 1)] ? 1 : 0) - (x <= planes[at(i)] ? 1 : 0);
-        }
-
-        /// First cell that begins at `x` or above; the end of the last that ends at `x` or below.
-        int first_from(double x) const {
-            const auto found = std::lower_bound(planes.begin() + 1, planes.end() - 1, x);
-            return static_cast<int>(found - planes.begin());
-        }
-        int last_to(double x) const {
-            const auto found = std::upper_bound(planes.begin() + 1, planes.end() - 1, x);
-            return static_cast<int>(found - planes.begin()) - 1;
-        }
-
-        static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-    };
 
     struct Range {
         std::array<int, 3> first{};

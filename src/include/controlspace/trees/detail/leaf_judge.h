@@ -95,7 +95,10 @@ public:
             }
         };
         constexpr std::size_t most_parts = 16;
-        const auto logarithm_of = [](double delta) { return std::acosh(1 + 0.5 * delta); };
+        const auto logarithm_of = [](double delta) {
+            return std::log(largest_factor_along(delta));
+        };
+        const double allowed = logarithm_of(target_);
         for (int edge = 0; edge < 12; ++edge) {
             const Axis axis = edge % 3;
             const int side = edge / 3;
@@ -114,7 +117,7 @@ public:
                 Part& part =
                     *std::ranges::max_element(parts.begin(), parts.begin() + count, {},
                                               [&](const Part& p) { return p.most(slope); });
-                if (part.most(slope) <= logarithm_of(target_)) break;
+                if (part.most(slope) <= allowed) break;
                 const double middle = 0.5 * (part.from + part.to);
                 const Point x = low + middle * along;
                 Metric own, field;
