@@ -105,8 +105,9 @@ std::unique_ptr<ControlSpaceBuilder> make_grid(const SpaceOptions& options) {
     GridKind kind{
         .interpolation = interpolation,
         .bytes_for = Storage::bytes_for,
-        .finish = [](std::shared_ptr<const LatticeData> data) -> std::unique_ptr<ControlSpace> {
-            return std::make_unique<GridSpace<Storage, interpolation>>(std::move(data));
+        .finish =
+            [](const std::shared_ptr<const LatticeData>& data) -> std::unique_ptr<ControlSpace> {
+            return std::make_unique<GridSpace<Storage, interpolation>>(data);
         }};
     if constexpr (requires { &Storage::stored; }) kind.stored = Storage::stored;
     return std::make_unique<SharedBuilder<LatticeData>>(options, kind);

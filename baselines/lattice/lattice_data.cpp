@@ -138,10 +138,10 @@ void LatticeData::assign(std::span<const Metric> metrics) {
     later_.requests_isotropic = std::all_of(metrics.begin(), metrics.end(), is_isotropic);
 }
 
-std::unique_ptr<ControlSpace> LatticeData::finished(std::shared_ptr<const LatticeData> data) {
+std::unique_ptr<ControlSpace> LatticeData::finished(
+    const std::shared_ptr<const LatticeData>& data) {
     data->field();
-    const auto finish = data->kind_.finish;
-    return finish(std::move(data));
+    return data->kind_.finish(data);
 }
 
 void save_lattice(const std::vector<Metric>& field, const LaterSources& later, StateWriter& state) {

@@ -31,7 +31,7 @@ struct GridKind {
     Interpolation interpolation;
     /// What the finished grid of so many nodes along x, y and z will allocate.
     double (*bytes_for)(const Vector& nodes);
-    std::unique_ptr<ControlSpace> (*finish)(std::shared_ptr<const LatticeData>);
+    std::unique_ptr<ControlSpace> (*finish)(const std::shared_ptr<const LatticeData>&);
     /// What the grid makes of a metric, if it does not keep all bits. Throws InputError for one
     /// that it cannot keep.
     Metric (*stored)(const Metric&) = nullptr;
@@ -54,7 +54,7 @@ public:
     GradationReport grade(const NodeGradation& gradation);
     ControlNodes control_nodes(Neighbourhood neighbourhood) const;
     void assign(std::span<const Metric> metrics);
-    static std::unique_ptr<ControlSpace> finished(std::shared_ptr<const LatticeData> data);
+    static std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const LatticeData>& data);
 
     void save(StateWriter& state) const { save_lattice(field(), later_, state); }
     void load(const StateReader& state);

@@ -8,10 +8,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
-#include "baselines/lattice/lattice_data.h"
 #include "baselines/lattice/stencil.h"
 #include "controlspace/geometry/point.h"
+#include "controlspace/gradation/node_graph.h"
+#include "controlspace/metric/metric.h"
 #include "controlspace/space/control_space.h"
 
 namespace controlspace {
@@ -34,9 +36,8 @@ inline openvdb::Coord corner_step(std::size_t i) {
 
 /// Makes the voxels of all nodes active, with value_of(metric) of each; on all of TBB's threads.
 template <class Tree, class ValueOf>
-void fill_densely(Tree& tree, const LatticeData& data, ValueOf&& value_of) {
-    const Lattice lattice = data.lattice();
-    const std::vector<Metric>& metrics = data.field();
+void fill_densely(Tree& tree, const Lattice& lattice, std::span<const Metric> metrics,
+                  ValueOf&& value_of) {
     const auto [nx, ny, nz] = lattice.nodes;
     tree.sparseFill({voxel(0, 0, 0), voxel(nx - 1, ny - 1, nz - 1)}, tree.background());
     tree.voxelizeActiveTiles();

@@ -14,7 +14,8 @@ public:
 
     explicit VdbTree(const std::shared_ptr<const LatticeData>& data)
         : tree_(VdbMetric(largest_metric(data->options()))) {
-        fill_densely(tree_, *data, [](const Metric& m) { return VdbMetric(m); });
+        fill_densely(tree_, data->lattice(), data->field(),
+                     [](const Metric& m) { return VdbMetric(m); });
         const double delta = data->options().prune_delta;
         // Voxels that fill up the outermost leaves are inactive, and nobody reads them.
         if (delta > 0) prune_metrics(tree_, delta);

@@ -20,8 +20,8 @@ public:
 
     explicit Vec3sPair(const std::shared_ptr<const LatticeData>& data)
         : diagonals_(diagonal(largest_metric(data->options()))), off_diagonals_(Vec3s(0)) {
-        fill_densely(diagonals_, *data, diagonal);
-        fill_densely(off_diagonals_, *data, off_diagonal);
+        fill_densely(diagonals_, data->lattice(), data->field(), diagonal);
+        fill_densely(off_diagonals_, data->lattice(), data->field(), off_diagonal);
     }
 
     static double bytes_for(const Vector& nodes) { return 2 * dense_bytes<Vec3sTree>(nodes); }

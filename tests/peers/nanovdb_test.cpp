@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 
+#include "baselines/peers/nanovdb/dense_grid.h"
 #include "controlspace/metric/nonconformity.h"
+#include "controlspace/space/control_nodes.h"
 #include "peers/peers.h"
 
 namespace controlspace {
@@ -26,6 +28,32 @@ TEST_CASE("NanoVDB counts its two blocks of memory: floats take half of doubles"
     const Footprint open = finished("openvdb-vec3s-trilinear", work)->footprint();
     CHECK(nano.control_nodes == open.control_nodes);
     CHECK(nano.bytes_payload == open.bytes_payload);
+}
+
+// The kernel's function, called here.
+TEST_CASE("NanoVDB answers on a GPU as here, to the bit") {
+    const Work work = GENERATE(oblong_box(), anisotropic_oblong_box(), flat_box());
+    CAPTURE(work.name);
+    const auto space = finished("nanovdb-trilinear", work);
+    const ControlNodes nodes = control_nodes(*space, Neighbourhood::faces).value();
+    const Lattice& lattice = std::get<Lattice>(nodes.graph);
+    const DenseNanoGrids grids(lattice, nodes.metrics);
+    NanoView view = nano_view(work.domain, lattice);
+    view.diagonals = grids.diagonals.grid<nanovdb::Vec3f>();
+    view.off_diagonals = grids.off_diagonals.grid<nanovdb::Vec3f>();
+
+    auto places = places_in(work);
+    for (std::size_t i = 0, n = places.size(); i < n; ++i) {
+        places.push_back(work.domain.low + 1.5 * (places[i] - work.domain.low));  // outside, too
+    }
+    places.push_back(work.domain.high);
+    std::vector<Metric> answers;
+    for (const Point& x : places) {
+        double m[6];
+        answer(view, x.data(), m);
+        answers.push_back({m[0], m[1], m[2], m[3], m[4], m[5]});
+    }
+    CHECK(differing(answers, answers_at(*space, places)) == 0);
 }
 
 }  // namespace controlspace

@@ -71,7 +71,7 @@ void write(const LatticeData& data, const std::string& path) {
 }
 
 /// The nodes of `uniform-trilinear` as Gmsh's field Structured, which reads a file.
-std::unique_ptr<ControlSpace> finished(std::shared_ptr<const LatticeData> data) {
+std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const LatticeData>& data) {
     const ScratchFile file;  // it is read before the constructor ends
     write(*data, file.path());
     Footprint counts;

@@ -3,17 +3,41 @@
 #include <nanovdb/util/OpenToNanoVDB.h>
 #include <openvdb/Grid.h>
 
+#include <algorithm>
+
 #include "baselines/openvdb/dense_tree.h"
+#include "baselines/openvdb/vec3s_value.h"
+#include "controlspace/geometry/extent.h"
 
 namespace controlspace {
 
-nanovdb::GridHandle<nanovdb::HostBuffer> dense_nano_grid(
-    const LatticeData& data, openvdb::Vec3s (*value_of)(const Metric&)) {
-    using OpenGrid = openvdb::Vec3SGrid;
-    const auto grid = OpenGrid::create(value_of(largest_metric(data.options())));
-    fill_densely(grid->tree(), data, value_of);
-    return nanovdb::openToNanoVDB<nanovdb::HostBuffer, OpenGrid::TreeType>(
+namespace {
+
+nanovdb::GridHandle<nanovdb::HostBuffer> dense_grid(const Lattice& lattice,
+                                                    std::span<const Metric> metrics,
+                                                    openvdb::Vec3s (*value_of)(const Metric&)) {
+    const auto grid = openvdb::Vec3SGrid::create();
+    fill_densely(grid->tree(), lattice, metrics, value_of);
+    return nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::Vec3STree>(
         *grid, nanovdb::StatsMode::Disable, nanovdb::ChecksumMode::Disable);
+}
+
+}  // namespace
+
+DenseNanoGrids::DenseNanoGrids(const Lattice& lattice, std::span<const Metric> metrics)
+    : diagonals(dense_grid(lattice, metrics, diagonal)),
+      off_diagonals(dense_grid(lattice, metrics, off_diagonal)) {}
+
+NanoView nano_view(const Box& domain, const Lattice& lattice) {
+    NanoView view;
+    const Vector edges = divisible_edges(domain);
+    for (Axis a = 0; a < 3; ++a) {
+        view.last[a] = static_cast<int>(lattice.nodes[static_cast<std::size_t>(a)]) - 1;
+        view.cells[a] = std::max(1, view.last[a]);
+        view.low[a] = domain.low[a];
+        view.per_length[a] = view.cells[a] / edges[a];
+    }
+    return view;
 }
 
 double dense_vec3s_bytes(const Vector& nodes) { return dense_bytes<openvdb::Vec3STree>(nodes); }

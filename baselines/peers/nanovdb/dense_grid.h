@@ -1,18 +1,29 @@
 #pragma once
 
 #include <nanovdb/util/GridHandle.h>
-#include <openvdb/Types.h>
 
-#include "baselines/lattice/lattice_data.h"
+#include <span>
+
+#include "baselines/peers/nanovdb/nano_view.h"
+#include "controlspace/geometry/box.h"
+#include "controlspace/gradation/node_graph.h"
+#include "controlspace/metric/metric.h"
 
 namespace controlspace {
 
-/// A dense NanoVDB grid over a lattice, with value_of(metric) of each node: from OpenVDB's, whose
-/// headers take long to compile.
-nanovdb::GridHandle<nanovdb::HostBuffer> dense_nano_grid(const LatticeData& data,
-                                                         openvdb::Vec3s (*value_of)(const Metric&));
+/// Two dense NanoVDB grids over a lattice with the metrics of its nodes in floats: made from
+/// OpenVDB's, whose headers take long to compile.
+struct DenseNanoGrids {
+    DenseNanoGrids(const Lattice& lattice, std::span<const Metric> metrics);
 
-/// Bytes of an OpenVDB grid that it is made from.
+    nanovdb::GridHandle<nanovdb::HostBuffer> diagonals, off_diagonals;
+};
+
+/// How to answer in `domain` from grids whose nodes are the lattice's, from vertex to vertex;
+/// without the grids themselves.
+NanoView nano_view(const Box& domain, const Lattice& lattice);
+
+/// Bytes of an OpenVDB grid that one of them is made from.
 double dense_vec3s_bytes(const Vector& nodes);
 
 }  // namespace controlspace

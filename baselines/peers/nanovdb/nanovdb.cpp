@@ -27,8 +27,7 @@ public:
     static constexpr bool shares_field = false;
 
     explicit NanoPair(const std::shared_ptr<const LatticeData>& data)
-        : diagonals_(dense_nano_grid(*data, diagonal)),
-          off_diagonals_(dense_nano_grid(*data, off_diagonal)) {}
+        : grids_(data->lattice(), data->field()) {}
 
     static double bytes_for(const Vector& nodes) { return 2 * dense_vec3s_bytes(nodes); }
     static Metric stored(const Metric& m) { return in_floats(m); }
@@ -41,8 +40,8 @@ public:
         using Values = std::array<const nanovdb::Vec3f*, corners>;
 
         explicit Reader(const NanoPair& pair)
-            : diagonals_(pair.diagonals_.grid<nanovdb::Vec3f>()->getAccessor()),
-              off_diagonals_(pair.off_diagonals_.grid<nanovdb::Vec3f>()->getAccessor()) {}
+            : diagonals_(pair.grids_.diagonals.grid<nanovdb::Vec3f>()->getAccessor()),
+              off_diagonals_(pair.grids_.off_diagonals.grid<nanovdb::Vec3f>()->getAccessor()) {}
 
         Metric operator()(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
             const nanovdb::Coord ijk(static_cast<int>(i), static_cast<int>(j), static_cast<int>(k));
@@ -91,7 +90,7 @@ public:
     Reader reader() const { return Reader(*this); }
 
     void add_to(Footprint& footprint) const {
-        for (const Handle* handle : {&diagonals_, &off_diagonals_}) {
+        for (const Handle* handle : {&grids_.diagonals, &grids_.off_diagonals}) {
             const std::size_t payload = handle->grid<nanovdb::Vec3f>()->tree().nodeCount(0) *
                                         sizeof(Leaf::DataType::mValues);
             footprint.bytes_payload += payload;
@@ -100,7 +99,7 @@ public:
     }
 
 private:
-    Handle diagonals_, off_diagonals_;
+    DenseNanoGrids grids_;
 };
 
 std::unique_ptr<ControlSpaceBuilder> make(const SpaceOptions& options,

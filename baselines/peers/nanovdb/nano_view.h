@@ -1,0 +1,50 @@
+#pragma once
+
+#include <nanovdb/NanoVDB.h>
+
+#include <cstddef>
+
+namespace controlspace {
+
+/// The two grids of `nanovdb-trilinear` and how to answer from them: the same function on a GPU and
+/// on a processor, where the tests call it. It computes what the structure computes, in the same
+/// order. Pointers are of the side that reads.
+struct NanoView {
+    const nanovdb::NanoGrid<nanovdb::Vec3f>* diagonals = nullptr;      ///< xx, yy, zz
+    const nanovdb::NanoGrid<nanovdb::Vec3f>* off_diagonals = nullptr;  ///< xy, xz, yz
+    double low[3] = {}, per_length[3] = {};
+    int cells[3] = {};
+    int last[3] = {};  ///< node numbers along each axis end here
+};
+
+/// The six numbers of the metric at x.
+__hostdev__ inline void answer(const NanoView& view, const double* x, double* out) {
+    int cell[3];
+    double side[3][2];
+    for (int a = 0; a < 3; ++a) {
+        const double most = view.cells[a];
+        double t = (x[a] - view.low[a]) * view.per_length[a];
+        t = t > 0 ? t : 0;
+        t = t < most ? t : most;
+        cell[a] = static_cast<int>(t < most ? t : most - 1);
+        side[a][1] = t - cell[a];
+        side[a][0] = 1 - side[a][1];
+    }
+    const auto diagonals = view.diagonals->getAccessor();
+    const auto off_diagonals = view.off_diagonals->getAccessor();
+    for (int n = 0; n < 6; ++n) out[n] = 0;
+    for (int c = 0; c < 8; ++c) {
+        nanovdb::Coord node;
+        for (int a = 0; a < 3; ++a) {
+            const int i = cell[a] + (c >> a & 1);
+            node[a] = i < view.last[a] ? i : view.last[a];
+        }
+        const double weight = side[0][c & 1] * side[1][c >> 1 & 1] * side[2][c >> 2];
+        const nanovdb::Vec3f& first = diagonals.getValue(node);
+        const nanovdb::Vec3f& rest = off_diagonals.getValue(node);
+        for (int n = 0; n < 3; ++n) out[n] += weight * first[n];
+        for (int n = 0; n < 3; ++n) out[3 + n] += weight * rest[n];
+    }
+}
+
+}  // namespace controlspace
