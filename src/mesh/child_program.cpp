@@ -63,6 +63,7 @@ ChildOutcome run_child(const std::vector<std::string>& arguments, const fs::path
     }
     const File in = opened("/dev/null", "r"), out = opened(log, "w");
     std::vector<char*> words;
+    words.reserve(arguments.size() + 1);
     for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
     words.push_back(nullptr);
 

@@ -4,7 +4,8 @@
 #include <vector>
 
 // Exported by Gmsh 4.8, but declared in no header that is installed: of each class what is called
-// here, none of which is virtual in the call.
+// here, none of which is virtual in the call. Names are Gmsh's:
+// NOLINTBEGIN(readability-identifier-naming)
 class Field;
 class GEntity;
 class SMetric3 {
@@ -31,3 +32,4 @@ class StructuredField {
 public:
     double operator()(double x, double y, double z, GEntity* entity);
 };
+// NOLINTEND(readability-identifier-naming)

@@ -70,7 +70,7 @@ public:
     }
 
     Footprint footprint() const override {
-        const auto boxes = static_cast<std::size_t>(boxes_().Size());
+        const auto boxes = static_cast<std::size_t>(all_boxes().Size());
         Footprint footprint;
         footprint.tree_nodes = footprint.cells = footprint.control_nodes = boxes;
         footprint.bytes_payload = boxes * sizeof(double);
@@ -87,20 +87,22 @@ protected:
     }
 
 private:
-    const netgen::Array<netgen::GradingBox*>& boxes_() const { return sizes_.*boxes_of(nullptr); }
+    const netgen::Array<netgen::GradingBox*>& all_boxes() const {
+        return sizes_.*boxes_of(nullptr);
+    }
 
     // Every box gets the exact field at its centre.
     void set_exact(const PeerInput& input) {
         const ConeField field(input.sources, input.options.ratio, largest_metric(input.options));
         std::vector<Point> centres;
-        for (netgen::GradingBox* box : boxes_()) {
+        for (netgen::GradingBox* box : all_boxes()) {
             const netgen::Point<3> c = box->PMid();
             centres.push_back(nearest_in(domain(), Point(c(0), c(1), c(2))));
         }
         std::vector<Metric> exact(centres.size());
         field.evaluate(centres, exact);
         for (std::size_t i = 0; i < exact.size(); ++i) {
-            boxes_()[static_cast<int>(i)]->*length_of(nullptr) = exact[i].xx;
+            all_boxes()[static_cast<int>(i)]->*length_of(nullptr) = exact[i].xx;
         }
     }
 
