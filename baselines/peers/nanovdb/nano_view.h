@@ -34,14 +34,15 @@ __hostdev__ inline void answer(const NanoView& view, const double* x, double* ou
     const auto off_diagonals = view.off_diagonals->getAccessor();
     for (int n = 0; n < 6; ++n) out[n] = 0;
     for (int c = 0; c < 8; ++c) {
-        nanovdb::Coord node;
+        int node[3];
         for (int a = 0; a < 3; ++a) {
-            const int i = cell[a] + (c >> a & 1);
-            node[a] = i < view.last[a] ? i : view.last[a];
+            node[a] = cell[a] + (c >> a & 1);
+            if (node[a] > view.last[a]) node[a] = view.last[a];
         }
+        const nanovdb::Coord ijk(node[0], node[1], node[2]);
         const double weight = side[0][c & 1] * side[1][c >> 1 & 1] * side[2][c >> 2];
-        const nanovdb::Vec3f& first = diagonals.getValue(node);
-        const nanovdb::Vec3f& rest = off_diagonals.getValue(node);
+        const nanovdb::Vec3f& first = diagonals.getValue(ijk);
+        const nanovdb::Vec3f& rest = off_diagonals.getValue(ijk);
         for (int n = 0; n < 3; ++n) out[n] += weight * first[n];
         for (int n = 0; n < 3; ++n) out[3 + n] += weight * rest[n];
     }

@@ -95,7 +95,7 @@ private:
     std::string name() {
         text_.expect("\"");
         const std::size_t end = std::min(text_.rest().find_first_of("\"\n"), text_.rest().size());
-        const std::string name(text_.rest().substr(0, end));
+        std::string name(text_.rest().substr(0, end));
         if (!text_.rest().substr(end).starts_with('"')) text_.fail("a name without an end");
         text_.go_to(text_.at() + end + 1);
         return name;
