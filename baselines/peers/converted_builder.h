@@ -37,9 +37,9 @@ private:
 
 /// The row of a system that `Space` makes of what `Space::ours(options)` builds.
 template <class Space>
-CatalogueEntry converted_row(std::string id, std::string description) {
-    return {.id = std::move(id),
-            .description = std::move(description),
+CatalogueEntry converted_row(const std::string& id, const std::string& description) {
+    return {.id = id,
+            .description = description,
             .construct = [](const SpaceOptions& options) -> std::unique_ptr<ControlSpaceBuilder> {
                 return std::make_unique<ConvertedBuilder<Space>>(Space::ours(options));
             },
