@@ -107,12 +107,12 @@ struct DistributedSpace::Impl {
         const SpaceOptions& space = options.space;
         const std::string& name = options.structure;
         const bool is_in_turn = space.vertices_in_turn || space.takes_later_sources;
-        if (name != "K_oL" && !(name == "K_oV" && (options.target || !is_in_turn)) &&
-            !(name == "K_oLB" && !options.target && !is_in_turn)) {
+        const bool has_order = (name == "K_oV" || name == "K_oLB") && !options.target && is_in_turn;
+        if (has_order || (name != "K_oL" && name != "K_oV" && name != "K_oLB")) {
             refuse(
-                "{}{} depends on the order in which the whole tree is made, and is not built by "
-                "ranks: give K_oL, K_oV or, inserted, K_oLB",
-                name, options.target ? ", adapted," : "");
+                "{} depends on the order in which the whole tree is made, and is not built by "
+                "ranks: give K_oL, K_oV or K_oLB",
+                name);
         }
         if (has_tensors && space.intersection == IntersectionRule::in_turn) {
             refuse("ranks intersect tensors without an order: leave out --intersection in-turn");
@@ -154,7 +154,9 @@ struct DistributedSpace::Impl {
     std::unique_ptr<ControlSpace> build(const std::vector<std::vector<LeafIndex>>& wanted,
                                         RankReport& about) {
         const auto whole = with_neighbours(wanted);
-        std::vector<PointSource> sources = near->near(wanted, whole, about.received);
+        // Where leaves follow the field, it must be exact around the octants too.
+        std::vector<PointSource> sources =
+            near->near(options.target ? whole : wanted, whole, about.received);
         std::unique_ptr<ControlSpace> made;
         ranks.together([&] {
             std::vector<Box> boxes;
@@ -177,13 +179,16 @@ struct DistributedSpace::Impl {
         return made;
     }
 
-    // With the octants whose leaves change something in these. A vertex of K_oV takes what the
-    // leaves around it request. In K_oLB a leaf is cut for another, which was cut for a third and
-    // so on, each half as long as the one before: all of them are nearer than the first is long.
+    // With the octants whose leaves change something in these. A vertex of K_oV, inserted, takes
+    // what the leaves around it request. In K_oLB a leaf is cut for another, which was cut for a
+    // third and so on, each half as long as the one before: all of them are nearer than the first
+    // is long. (Adapted to lengths, parts of a leaf within the target are within it too: a leaf
+    // that is cut for another has no part that is cut for the field.)
     std::vector<std::vector<LeafIndex>> with_neighbours(
         const std::vector<std::vector<LeafIndex>>& some) const {
-        if (options.target || options.structure == "K_oL") return some;
-        const double reach = options.structure == "K_oLB" ? 1 - 1e-6 : 0;
+        const bool is_balanced = options.structure == "K_oLB";
+        if (!is_balanced && (options.target || options.structure == "K_oL")) return some;
+        const double reach = is_balanced ? 1 - 1e-6 : 0;
         std::vector<std::vector<LeafIndex>> all(some.size());
         for (std::size_t r = 0; r < some.size(); ++r) {
             std::vector<char> is_in(octants.tree().leaves(), 0);
@@ -206,7 +211,8 @@ struct DistributedSpace::Impl {
                                           std::span<const char> is_wanted,
                                           std::span<const Box> boxes, RankReport& about) const {
         const SpaceOptions& space = options.space;
-        const auto made = std::make_shared<AdaptedPart<Storage>>(space, boxes);
+        const auto made =
+            std::make_shared<AdaptedPart<Storage>>(space, options.structure == "K_oLB", boxes);
         if (steepest) sources.push_back(steepest->source());
         const AdaptationReport outcome =
             made->adapt({.sources = sources,

@@ -20,7 +20,7 @@
 namespace controlspace {
 
 struct DistributedOptions {
-    std::string structure = "K_oL";     ///< K_oL, K_oV or, inserted, K_oLB
+    std::string structure = "K_oL";     ///< K_oL, K_oV or K_oLB
     SpaceOptions space = {};            ///< the domain, and how the tree is made
     std::optional<double> target = {};  ///< δ that it is adapted to; none: inserted and graded
     /// Octants with more sources than the mean of so many a rank are cut further, if the tree is.

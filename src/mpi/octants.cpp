@@ -134,7 +134,7 @@ private:
             });
             return cut;
         }
-        const bool is_constant = options_.structure == "K_oL";
+        const bool is_constant = options_.structure != "K_oV";
         const std::size_t numbers = is_constant ? 2 : grid * grid * grid;
         std::vector<double> of_field;
         of_field.reserve(numbers * octants.size());

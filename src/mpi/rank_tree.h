@@ -37,17 +37,19 @@ public:
     }
 };
 
-/// Adapted to a field in its octants alone.
+/// Adapted to a field in its octants alone, and balanced for what is cut there.
 template <class Storage>
 class AdaptedPart : public GrowingTree<OctreeNode, Storage> {
     using Growing = GrowingTree<OctreeNode, Storage>;
     using Growing::is_negligible, Growing::options_, Growing::storage_, Growing::topology_;
 
 public:
-    AdaptedPart(const SpaceOptions& options, std::span<const Box> octants)
+    AdaptedPart(const SpaceOptions& options, bool balanced, std::span<const Box> octants)
         : Growing(options, false) {
         std::vector<LeafIndex> cut;
         cut_to(octants, *this, [&](const Box& cell) { this->split_across(cell, {}, cut); });
+        this->balanced_ = balanced;
+        if (balanced) this->balance();
     }
 
     /// As GrowingTree's, where is_inside(centre of a box); `reached` is that of all leaves, which

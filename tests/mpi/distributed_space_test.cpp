@@ -234,24 +234,31 @@ TEST_CASE("ranks answer as one does: adapted") {
     for (const Scene& scene : scenes()) {
         DistributedOptions options = options_for(scene);
         options.target = 0.4;
-        check_equal(scene, options);
-        options.structure = "K_oV";
-        check_equal(scene, options);
+        for (const char* structure : {"K_oL", "K_oV", "K_oLB"}) {
+            options.structure = structure;
+            check_equal(scene, options);
+        }
     }
 }
 
 TEST_CASE("tensors, inserted and graded: metrics are within all cones, and as large as one's") {
     const World world;
-    for (const Scene& scene : scenes_of_tensors()) {
-        const DistributedOptions options = options_for(scene);
-        CAPTURE(scene.name, world.rank);
+    const auto scenes = scenes_of_tensors();
+    const std::string structure = GENERATE("K_oL", "K_oV", "K_oLB");
+    for (const Scene& scene : scenes) {
+        DistributedOptions options = options_for(scene);
+        options.structure = structure;
+        CAPTURE(scene.name, structure, world.rank);
         const auto whole = serial(scene, options);
         const DistributedSpace space(
             MPI_COMM_WORLD, share(scene.sources, world.rank, world.rank + 1, world.size), options);
         CHECK(space.report().has_tensors);
-        // The centres of leaves, which hold what is there.
+        // Control nodes, in the leaf that answers there: its centre, or its highest corner.
         std::vector<Point> x = random_points(scene.domain, 1000, seed);
-        for (Point& place : x) place = whole->cell_at(place)->centre();
+        for (Point& place : x) {
+            const Box leaf = *whole->cell_at(place);
+            place = structure == "K_oV" ? leaf.high : leaf.centre();
+        }
         std::vector<Metric> found(x.size()), expected(x.size());
         space.sample(x, found);
         whole->sample(x, expected);
@@ -278,7 +285,7 @@ TEST_CASE("tensors, adapted: the target is kept") {
     const std::vector<Point> x = random_points(scene.domain, places, seed);
     std::vector<Metric> expected(x.size()), found(x.size());
     exact->sample(x, expected);
-    for (const char* structure : {"K_oL", "K_oV"}) {
+    for (const char* structure : {"K_oL", "K_oV", "K_oLB"}) {
         DistributedOptions options = options_for(scene);
         options.structure = structure;
         options.target = 0.5;
@@ -306,10 +313,12 @@ TEST_CASE("the number of octants does not change an answer") {
                 options.structure = structure;
                 check_equal(scene, options);
             }
-            options.structure = "K_oL";
         }
         options.target = 0.5;
-        check_equal(scene, options);
+        for (const char* structure : {"K_oL", "K_oLB"}) {
+            options.structure = structure;
+            check_equal(scene, options);
+        }
     }
 }
 
@@ -335,7 +344,8 @@ TEST_CASE("ranks share octants and sources out") {
 
 TEST_CASE("a rank gets the field of a box of its own") {
     const World world;
-    for (const std::string structure : {"K_oL", "K_oL, adapted", "K_oV", "K_oLB"}) {
+    for (const std::string structure :
+         {"K_oL", "K_oL, adapted", "K_oV", "K_oLB", "K_oLB, adapted"}) {
         const Scene scene = scenes()[1];
         DistributedOptions options = options_for(scene);
         options.structure = structure.substr(0, structure.find(','));
@@ -396,7 +406,7 @@ TEST_CASE("what fails on one rank is thrown on all") {
     CHECK_THAT(message(bad, in_turn), Contains("tensors") && Contains("in-turn"));
     if (world.rank == world.size - 1) bad.back().metric = {1e-9, 1, 1, 0, 0, 0};
     CHECK_THAT(message(bad, options_for(scene)), Contains("source " + last));
-    for (const char* structure : {"K_oLB", "K_L", "K_oLA"}) {
+    for (const char* structure : {"K_oLi", "K_L", "K_oLA"}) {
         DistributedOptions options = options_for(scene);
         options.structure = structure;
         options.target = 0.2;

@@ -27,7 +27,7 @@ awk 'BEGIN {
 printf 'x,y,z\n0.1,0.2,0.3\n-0.9,0.8,0\n3,0,0\n' >places.csv
 
 for setting in "--structures K_oL --target-delta 0" "--structures K_oL --within 1.2" "--structures K_oV" \
-    "--structures K_oV --target-delta 0" "--structures K_oLB --target-delta 0"; do
+    "--structures K_oV --target-delta 0" "--structures K_oLB --target-delta 0" "--structures K_oLB --within 1.2"; do
     # shellcheck disable=SC2086
     "$serial" query sources.csv places.csv -o expected.csv $setting 2>/dev/null
     # shellcheck disable=SC2086
@@ -74,7 +74,7 @@ expect_failure "folder" 3 export sources.csv -o no/folder/field.pctrl
 expect_failure "pctrl" 2 export sources.csv -o field.vtu
 sed '$ s/,[^,]*$/,-1/' sources.csv >bad.csv
 expect_failure "bad.csv:" 3 build bad.csv
-expect_failure "K_oLB, adapted" 2 build sources.csv --structures K_oLB --target-delta 0.2
+expect_failure "K_oLi depends" 2 build sources.csv --structures K_oLi --target-delta 0.2
 expect_failure "field" 2 build sources.csv --sources ball:0,0,0,r=0.1,h=0.1
 printf 'x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n0,0,0,1,2,3,0,0,0\n1,1,1,1,2,3,0,0,0\n' >tensors.csv
 expect_failure "max-leaves" 2 build sources.csv --within 1.2 --max-leaves 100
