@@ -47,13 +47,13 @@ public:
     /// All of them, those of each rank together.
     std::span<const LeafIndex> order() const { return shared_.order; }
     std::vector<LeafIndex> of_rank(int rank) const;
-    /// The boxes that two cuts more would make of one.
+    /// The boxes that two cuts more would make of one, those that the first cut makes together.
     std::vector<Box> parts_of(const LeafPlace& octant) const;
+    static constexpr std::size_t most_parts = 64;
 
     /// Of the sources in an octant, infinite where there are none.
     double least_length(LeafIndex octant) const { return summary_.least_length[octant]; }
     double least_slope(LeafIndex octant) const { return summary_.least_slope[octant]; }
-    bool is_empty(LeafIndex octant) const { return summary_.count[octant] == 0; }
 
 private:
     /// What is known of the sources in each leaf of the octree.

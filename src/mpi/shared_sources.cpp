@@ -10,6 +10,13 @@
 #include "cones/isotropic_cones.h"
 
 namespace controlspace {
+namespace {
+
+bool is_before(const Point& a, const Point& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+}
+
+}  // namespace
 
 /// A cone that bounds the field.
 struct SharedSources::Bound {
@@ -29,7 +36,9 @@ SharedSources::SharedSources(Ranks& ranks, const Octants& octants,
       octants_(octants),
       ratio_(options.space.ratio),
       cap_(largest_metric(options.space).xx),
-      takes_centres_(!options.target && options.structure == "K_oL"),
+      counts_(options.target || options.structure == "K_oLB" ? Counts::everywhere
+              : options.structure == "K_oL"                  ? Counts::at_centres
+                                                             : Counts::at_corners),
       has_tensors_(has_tensors),
       records_(std::move(records)),
       own_octants_(octants.of_rank(ranks.rank())) {
@@ -44,6 +53,7 @@ SharedSources::SharedSources(Ranks& ranks, const Octants& octants,
     for (std::uint32_t k = 0; k < records_.size(); ++k) {
         sources_in_[octants_.tree().find(records_[k].position)].all.push_back(k);
     }
+    if (counts_ != Counts::everywhere) find_filled_parts();
     if (!has_tensors_) {
         find_bounds();
         return;
@@ -129,12 +139,59 @@ std::vector<double> SharedSources::bounds_of_octants() {
     return by_octant;
 }
 
-// The smaller the boxes, the fewer sources seem to matter in them. Inserted into, an octant
-// without sources is one leaf, of which the centre alone takes the field.
+void SharedSources::find_filled_parts() {
+    std::vector<std::bitset<Octants::most_parts>> own;
+    for (const LeafIndex octant : own_octants_) {
+        const std::vector<Box> parts = octants_.parts_of(octants_.places()[octant]);
+        auto& filled = own.emplace_back();
+        for (const std::uint32_t k : sources_in_[octant].all) {
+            // On a plane it is in the part below, which comes first.
+            const auto part = std::ranges::find_if(
+                parts, [&](const Box& box) { return box.contains(records_[k].position); });
+            filled.set(static_cast<std::size_t>(part - parts.begin()));
+        }
+    }
+    const auto all = ranks_.gather(own).values;
+    filled_.resize(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) filled_[octants_.order()[i]] = all[i];
+}
+
+// The smaller the boxes, the fewer sources seem to matter in them. Where an octant is cut for
+// sources alone, parts without any are leaves, of which the centre or the corners alone take the
+// field, or in leaves that were not cut.
 std::vector<Box> SharedSources::test_boxes(const LeafPlace& octant) const {
-    if (!takes_centres_ || !octants_.is_empty(octant.leaf)) return octants_.parts_of(octant);
-    const Point centre = octant.box.centre();
-    return {{centre, centre}};
+    const std::vector<Box> parts = octants_.parts_of(octant);
+    if (counts_ == Counts::everywhere) return parts;
+    std::vector<Point> places;
+    const auto add_leaf = [&](const Box& leaf) {
+        if (counts_ == Counts::at_centres) places.push_back(leaf.centre());
+        for (int c = 0; counts_ == Counts::at_corners && c < 8; ++c) {
+            places.push_back(corner(leaf, c));
+        }
+    };
+    std::vector<Box> boxes;
+    const auto& filled = filled_[octant.leaf];
+    add_leaf(octant.box);
+    const auto siblings = static_cast<std::size_t>(
+        OctreeNode::even_subdivision(octants_.tree().domain(), octant.level + 1, parts[0])
+            .children());
+    for (std::size_t first = 0; filled.any() && first < parts.size(); first += siblings) {
+        const std::size_t end = first + siblings;
+        add_leaf({parts[first].low, parts[end - 1].high});
+        bool is_filled = false;
+        for (std::size_t k = first; k < end; ++k) is_filled = is_filled || filled[k];
+        for (std::size_t k = first; is_filled && k < end; ++k) {
+            if (filled[k]) {
+                boxes.push_back(parts[k]);
+            } else {
+                add_leaf(parts[k]);
+            }
+        }
+    }
+    std::ranges::sort(places, is_before);
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    for (const Point& x : places) boxes.push_back({x, x});
+    return boxes;
 }
 
 /// By own source: whether it matters in any of some octants.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bitset>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -50,6 +51,7 @@ private:
     };
 
     std::vector<Record> exchange(const std::vector<std::vector<Record>>& to) const;
+    void find_filled_parts();
     std::vector<Box> test_boxes(const LeafPlace& octant) const;
     void find_bounds();
     Bound bound_of(const Record& r) const;
@@ -60,14 +62,17 @@ private:
     Ranks& ranks_;
     const Octants& octants_;
     double ratio_, cap_;
-    bool takes_centres_;  // of octants without sources, the field at the centre alone
+    /// Where the field counts: everywhere, or in leaves cut for sources, at centres or corners.
+    enum class Counts : std::uint8_t { everywhere, at_centres, at_corners };
+    Counts counts_;
     bool has_tensors_;
     std::vector<Record> records_;  // owned
     std::size_t kept_ = 0;
     std::vector<LeafIndex> own_octants_;
-    std::vector<OwnSources> sources_in_;   // of octants
-    std::vector<Test> tests_;              // of octants, one after the other
-    std::vector<std::size_t> first_test_;  // of each octant, and the end
+    std::vector<OwnSources> sources_in_;                    // of octants
+    std::vector<std::bitset<Octants::most_parts>> filled_;  // of octants: parts with sources
+    std::vector<Test> tests_;                               // of octants, one after the other
+    std::vector<std::size_t> first_test_;                   // of each octant, and the end
     std::unique_ptr<TensorNeeds> tensors_;
 };
 
