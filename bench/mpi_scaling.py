@@ -10,19 +10,31 @@ import numpy as np
 program, count, folder = os.path.abspath(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
 sweeps = os.path.join(os.path.dirname(program), "mpi_sweeps")
 RANKS = (1, 2, 4)
-KINDS = {"K_oL, inserted": ["--structures", "K_oL", "--target-delta", "0"],
+INSERTED = "K_oL, inserted"
+BOUNDS = 73  # of an octant at most: its parts, or their centres, and those of what is cut into them
+KINDS = {INSERTED: ["--structures", "K_oL", "--target-delta", "0"],
          "K_oL, adapted to 1.2x": ["--structures", "K_oL", "--within", "1.2"]}
+# Of layers: the share of the sources, and how the tree is made.
+OF_LAYERS = {INSERTED: (10, KINDS[INSERTED]),
+             "K_oV, adapted to 1.2x": (100, ["--structures", "K_oV", "--within", "1.2"])}
 
 
-def write_sources(n, path):
-    """On a bumpy sphere, about as far apart as the lengths ask for, three times denser on one side."""
+def write_sources(n, path, is_layered=False):
+    """On a bumpy sphere, about as far apart as the lengths ask for, three times denser on one side; layers are four
+    times shorter across, along the radius."""
     random = np.random.default_rng(1)
     x = random.normal(size=(n, 3))
     x /= np.linalg.norm(x, axis=1)[:, None]
+    radius = x.copy()
     x *= (0.8 + 0.05 * np.sin(9 * x[:, 0]) * np.cos(7 * x[:, 1]))[:, None]
     lengths = 4 / np.sqrt(n) * (1 + 0.5 * x[:, 2])
-    np.savetxt(path, np.column_stack([x, lengths]), delimiter=",", header="x,y,z,h", comments="",
-               fmt="%.9g")
+    columns, names = [x, lengths], "x,y,z,h"
+    if is_layered:
+        shorter = -0.75 * lengths[:, None] * radius
+        names = "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz"
+        columns = [x, lengths[:, None] + shorter * radius] + [
+            (shorter[:, a] * radius[:, b])[:, None] for a, b in ((0, 1), (0, 2), (1, 2))]
+    np.savetxt(path, np.column_stack(columns), delimiter=",", header=names, comments="", fmt="%.9g")
 
 
 def by_ranks(ranks, *command):
@@ -60,8 +72,7 @@ def table(rows):
 
 def model(rows):
     """1e9 sources, 1e10 leaves on 1000 cores, from the inserted tree on 4 ranks."""
-    kind = "K_oL, inserted"
-    four = next(r for r in rows if r["kind"] == kind and r["law"] == "strong" and r["ranks"] == 4)
+    four = next(r for r in rows if r["kind"] == INSERTED and r["law"] == "strong" and r["ranks"] == 4)
     sources, leaves, cores, bandwidth, latency = 1e9, 1e10, 1000, 1e9, 1e-5
     own = sources / cores
     # What crosses a border grows as the border: the square root of the own sources, of a surface.
@@ -70,10 +81,10 @@ def model(rows):
     seconds_per_leaf = four["cpu_s"] / (four["leaves"] / 4)
     build = seconds_per_leaf * leaves / cores
     octants = four["octants"] / 4 * cores
-    # Each rank searches its sources for each of 64 bounds of every octant.
-    bounds = 1e-7 * 64 * octants
+    # Each rank searches its sources for each bound of every octant.
+    bounds = 1e-7 * BOUNDS * octants
     octant_pairs = 1e-8 * octants * octants / cores
-    reduced = octants * 64 * 8 * 2 / bandwidth
+    reduced = octants * BOUNDS * 8 * 2 / bandwidth
     sent = 56 * (own + received) / bandwidth + 50 * cores * latency
     total = build + bounds + octant_pairs + reduced + sent
     return {"sources": sources, "leaves": leaves, "cores": cores, "build_s": build, "bounds_s": bounds,
@@ -85,6 +96,12 @@ def main():
     os.makedirs(folder, exist_ok=True)
     rows, swept = [], []
     with tempfile.TemporaryDirectory() as place:
+        for kind, (share, options) in OF_LAYERS.items():
+            path = os.path.join(place, "layers.csv")
+            write_sources(count // share, path, is_layered=True)
+            for ranks in RANKS:
+                rows.append(row(kind, "layers", ranks, count // share, run(ranks, path, options)))
+                print(rows[-1], flush=True)
         for law in ("strong", "weak"):
             for ranks in RANKS:
                 n = count if law == "strong" else count // 4 * ranks
@@ -92,7 +109,7 @@ def main():
                 if not os.path.exists(path):
                     write_sources(n, path)
                 for kind, options in KINDS.items():
-                    if law == "weak" and kind != "K_oL, inserted":
+                    if law == "weak" and kind != INSERTED:
                         continue
                     rows.append(row(kind, law, ranks, n, run(ranks, path, options)))
                     print(rows[-1], flush=True)
@@ -108,6 +125,7 @@ def write_results(rows, swept):
         file.write("\n")
     strong = [r for r in rows if r["law"] == "strong"]
     weak = [r for r in rows if r["law"] == "weak"]
+    layers = [r for r in rows if r["law"] == "layers"]
     p = predicted
     sweep_lines = "\n".join(
         f"| {r['ranks']} | {r['rounds']} | {r['cpu_s']:.2f} | {r['bytes_sent'] / 1e3:.0f} "
@@ -128,6 +146,13 @@ Weak scaling:
 
 {table(weak)}
 
+Layers, tensors that are four times shorter along the radius:
+
+{table(layers)}
+
+Each rank keeps answers at shared places while it adapts to tensors, up to 125 MB. A process without sources
+takes 20 to 24 MB.
+
 ## Beside it: sweeps over faces
 
 What parallel codes do (`bench/mpi_sweeps.cpp`): the same leaves of K_oL are graded from leaf to leaf, and values of
@@ -145,7 +170,7 @@ centres, which are exact above, are up to {max(r['longest_by'] for r in swept):.
 | part | s | assumption |
 |---|---:|---|
 | build | {p['build_s']:.1f} | {p['seconds_per_leaf'] * 1e6:.2f} µs a leaf as on 4 ranks here, exchange included |
-| bounds | {p['bounds_s']:.1f} | {p['octants_per_rank']:.0f} octants a rank as here, 64 bounds each, 0.1 µs: most searches end at the root |
+| bounds | {p['bounds_s']:.1f} | {p['octants_per_rank']:.0f} octants a rank as here, {BOUNDS} bounds each, 0.1 µs: most searches end at the root |
 | pairs of octants | {p['octant_pairs_s']:.1f} | 10 ns a pair, shared by the ranks |
 | sums over all ranks | {p['reduce_s']:.1f} | 8 bytes a bound, twice, at 1 GB/s |
 | exchange | {p['exchange_s']:.2f} | {p['received_per_rank']:.0f} sources received, as the border of a surface grows; 1 GB/s, 10 µs a message |
