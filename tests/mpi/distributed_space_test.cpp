@@ -250,8 +250,9 @@ TEST_CASE("ranks answer as one does: adapted") {
 
 TEST_CASE("tensors, inserted and graded: metrics are within all cones, and as large as one's") {
     const World world;
-    const auto scenes = scenes_of_tensors();
+    auto scenes = scenes_of_tensors();
     const std::string structure = GENERATE("K_oL", "K_oV", "K_oLB");
+    if (structure == "K_oLB") scenes.resize(1);  // ranks make most of the tree, which takes long
     for (const Scene& scene : scenes) {
         DistributedOptions options = options_for(scene);
         options.structure = structure;
