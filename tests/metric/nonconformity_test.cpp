@@ -85,6 +85,12 @@ TEST_CASE("directional nonconformity bounds each length by itself") {
         CHECK(delta == Approx(directional_nonconformity(b, a)).epsilon(1e-9));
         const double k = std::max(growth(a, b), growth(b, a));
         CHECK(k <= largest_factor_along(delta) * (1 + 1e-9));
+        // The longest factor from singular values, which does not depend on a polynomial.
+        CHECK(delta == Approx(std::max(nonconformity(a, b), nonconformity_along(k))).epsilon(1e-9));
+        const Metric near = Metric::from_matrix(a.matrix() + 0.01 * draw.metric(0.01, 2).matrix());
+        const double k_near = std::max(growth(a, near), growth(near, a));
+        CHECK(directional_nonconformity(a, near) ==
+              Approx(std::max(nonconformity(a, near), nonconformity_along(k_near))).epsilon(1e-7));
         const Metric c = Metric::isotropic(a.xx);
         const Metric d = Metric::isotropic(b.xx);
         CHECK(directional_nonconformity(c, d) == nonconformity(c, d));
