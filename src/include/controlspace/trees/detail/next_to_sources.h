@@ -33,15 +33,23 @@ public:
         : tree_(tree), storage_(storage), field_(field), sources_(sources) {}
 
     /// Before a round of `worst_in`. Few sources are compared with all leaves there, many, here,
-    /// with those leaves beside their own of which `is_wanted(leaf)` holds.
+    /// with those leaves beside their own of which `is_wanted(leaf)` holds: with all that have been
+    /// cut since the last time, at least.
     template <class IsWanted>
     void find_beside(const IsWanted& is_wanted) {
         if (!cones_) cones_.emplace(sources_, field_.ratio(), field_.target());
         if (field_.has_few_sources()) return;
         beside_.assign(tree_.leaves(), {});
         tbb::enumerable_thread_specific<std::vector<std::pair<LeafIndex, Departure>>> found;
+        around_.resize(sources_.size());
         in_parallel(sources_.size(), [&](std::size_t i) {
-            for_each_leaf_beside(sources_[i].position, [&](const LeafPlace& beside) {
+            // A leaf that is cut stays as one of its parts: those not wanted are as they were.
+            if (std::ranges::none_of(around_[i], is_wanted)) return;
+            const LeafPlace own = tree_.locate(sources_[i].position);
+            around_[i].fill(own.leaf);
+            std::size_t next = 1;
+            for_each_leaf_beside(own.box, sources_[i].position, [&](const LeafPlace& beside) {
+                around_[i][next++] = beside.leaf;
                 if (!is_wanted(beside.leaf)) return;
                 const Departure departure =
                     cones_->at_nearest_place(i, beside.box, metric_in(beside.leaf));
@@ -80,10 +88,9 @@ private:
             [this, leaf](const Point& x) { return value_in(tree_, field_of(storage_), leaf, x); };
     }
 
-    // Across the nearest faces, edges and corner of the leaf that holds x.
+    // Across the nearest faces, edges and corner of the box, which holds x.
     template <class Visit>
-    void for_each_leaf_beside(const Point& x, const Visit& visit) const {
-        const Box box = tree_.locate(x).box;
+    void for_each_leaf_beside(const Box& box, const Point& x, const Visit& visit) const {
         const Point centre = box.centre();
         constexpr double infinity = std::numeric_limits<double>::infinity();
         for (int sides = 1; sides < 8; ++sides) {
@@ -101,8 +108,9 @@ private:
     const Storage& storage_;
     const GoalField& field_;
     std::span<const PointSource> sources_;
-    std::optional<SingleCones> cones_;  // once they are needed
-    std::vector<Departure> beside_;     // of the leaves, where sources are many
+    std::optional<SingleCones> cones_;              // once they are needed
+    std::vector<Departure> beside_;                 // of the leaves, where sources are many
+    std::vector<std::array<LeafIndex, 8>> around_;  // each source, then: its leaf and those beside
 };
 
 }  // namespace controlspace
