@@ -37,7 +37,7 @@ public:
     /// The same as a grid of a type; throws for another one.
     template <class Grid>
     typename Grid::Ptr read_as(std::string_view name) const {
-        const auto grid = openvdb::gridPtrCast<Grid>(read(name));
+        auto grid = openvdb::gridPtrCast<Grid>(read(name));
         if (!grid) {
             fail("grid '{}' is not of type {}: it holds {}", name,
                  openvdb::typeNameAsString<typename Grid::ValueType>(), listing());
