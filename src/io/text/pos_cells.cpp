@@ -33,9 +33,11 @@ struct Cell {
 const std::vector<Vector>& places() {
     static const std::vector<Vector> all = [] {
         std::vector<Vector> t;
+        t.reserve(27);
         for (int c = 0; c < 8; ++c) t.emplace_back(c & 1, c >> 1 & 1, c >> 2 & 1);
         for (int i = 0; i < 27; ++i) {
-            const Vector halves(i % 3, i / 3 % 3, i / 9);
+            const int row = i / 3, layer = row / 3;
+            const Vector halves(i % 3, row % 3, layer);
             if ((halves.array() == 1).any()) t.push_back(halves / 2);
         }
         return t;

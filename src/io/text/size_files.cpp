@@ -136,6 +136,7 @@ SizeFile write_netgen_sizes(const std::filesystem::path& path, const ControlSpac
     std::vector<Box> boxes = elements_of(space);
     while (!boxes.empty()) {
         std::vector<Point> centres;
+        centres.reserve(boxes.size());
         for (const Box& box : boxes) centres.push_back(box.centre());
         const Lengths lengths = lengths_at(space, centres);
         has_tensors = has_tensors || lengths.has_tensors;
