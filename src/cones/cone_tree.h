@@ -158,6 +158,37 @@ public:
                indices_.capacity() * sizeof(std::uint32_t);
     }
 
+    /// Nodes and leaves that a search has still to visit, the last one first.
+    class Waiting {
+    public:
+        void add_root() { items_[size_++] = {-std::numeric_limits<double>::infinity(), 0}; }
+        /// Those of eight, number(0) to number(7), whose bounds are below `limit`, the lowest last.
+        template <class Numbers, class Number>
+        void add(const Numbers& bounds, double limit, const Number& number) {
+            const std::size_t floor = size_;
+            unsigned below = 0;
+            for (std::uint32_t c = 0; c < arity; ++c) below |= (bounds[c] < limit ? 1u : 0u) << c;
+            for (; below != 0; below &= below - 1) {
+                const auto c = static_cast<std::uint32_t>(std::countr_zero(below));
+                std::size_t place = size_++;
+                for (; place > floor && items_[place - 1].bound < bounds[c]; --place) {
+                    items_[place] = items_[place - 1];
+                }
+                items_[place] = {bounds[c], number(c)};
+            }
+        }
+
+    private:
+        friend ConeTree;
+        struct Item {
+            double bound;
+            std::uint32_t number;
+        };
+        // Seven siblings wait at each of at most eleven levels, or below two times eight.
+        std::array<Item, 96> items_;
+        std::size_t size_ = 0;
+    };
+
     /// Branch and bound: calls visit_leaf(number) for the leaves, those of the lowest bounds first
     /// in each node, until a call returns false. What lies below children whose lower bound,
     /// bounds(node), is not less than limit() at the time is passed over. Returns whether no call
@@ -165,38 +196,24 @@ public:
     template <class Limit, class Bounds, class VisitLeaf>
     bool search(const Limit& limit, const Bounds& bounds, const VisitLeaf& visit_leaf) const {
         if (empty()) return true;
-        struct Postponed {
-            double bound;
-            std::uint32_t number;
-        };
-        // Seven siblings wait at each of at most eleven levels.
-        std::array<Postponed, 96> stack;
-        std::size_t height = 0;
-        stack[height++] = {-std::numeric_limits<double>::infinity(), 0};
-        while (height > 0) {
-            const Postponed next = stack[--height];
+        Waiting waiting;
+        waiting.add_root();
+        return search(waiting, limit, bounds, visit_leaf);
+    }
+    /// The same below those `waiting` alone.
+    template <class Limit, class Bounds, class VisitLeaf>
+    bool search(Waiting& waiting, const Limit& limit, const Bounds& bounds,
+                const VisitLeaf& visit_leaf) const {
+        while (waiting.size_ > 0) {
+            const auto next = waiting.items_[--waiting.size_];
             if (next.bound >= limit()) continue;
             if (is_leaf(next.number)) {
                 if (!visit_leaf(next.number)) return false;
                 continue;
             }
-            const auto of_children = bounds(nodes_[next.number]);
             const std::uint32_t first = first_child(next.number);
-            const std::size_t floor = height;
-            const double below = limit();
-            unsigned children = 0;
-            for (std::uint32_t c = 0; c < arity; ++c) {
-                children |= (of_children[c] < below ? 1u : 0u) << c;
-            }
-            for (; children != 0; children &= children - 1) {
-                const auto c = static_cast<std::uint32_t>(std::countr_zero(children));
-                // The lowest on top.
-                std::size_t place = height++;
-                for (; place > floor && stack[place - 1].bound < of_children[c]; --place) {
-                    stack[place] = stack[place - 1];
-                }
-                stack[place] = {of_children[c], first + c};
-            }
+            waiting.add(bounds(nodes_[next.number]), limit(),
+                        [&](std::uint32_t c) { return first + c; });
         }
         return true;
     }

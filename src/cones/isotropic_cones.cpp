@@ -53,7 +53,21 @@ Eigen::Index IsotropicCones::lane_of(const Point& p, double smallest, Hint leaf)
 
 double IsotropicCones::search(const Point& p, double cap, double tolerance, Hint& hint) const {
     return search(
-        cap, tolerance, hint, [&](const Node& node) { return lower_bounds(node, p); },
+        cap, tolerance, hint, [](Tree::Waiting& waiting, double) { waiting.add_root(); },
+        [&](const Node& node) { return lower_bounds(node, p); },
+        [&](Hint leaf, double& smallest) { visit_leaf(leaf, p, smallest, hint); });
+}
+
+double IsotropicCones::smallest_length(const Point& p, const Nearby& nearby, Hint& hint) const {
+    return search(
+        cap_, 0, hint,
+        [&](Tree::Waiting& waiting, double below) {
+            for (std::size_t first = 0; first < nearby.size; first += lane_count) {
+                waiting.add(lower_bounds(nearby.bounds[first / lane_count], p), below,
+                            [&](std::uint32_t c) { return nearby.numbers[first + c]; });
+            }
+        },
+        [&](const Node& node) { return lower_bounds(node, p); },
         [&](Hint leaf, double& smallest) { visit_leaf(leaf, p, smallest, hint); });
 }
 
@@ -69,7 +83,7 @@ IsotropicCones::Range IsotropicCones::range_in(const Box& box, Hint& hint) const
     // the centre, and by of_leaf from those between the sources and the centre along an axis.
     const auto smallest_at = [&](double cap, const auto& of_node, const auto& of_leaf) {
         return search(
-            cap, 0, hint,
+            cap, 0, hint, [](Tree::Waiting& waiting, double) { waiting.add_root(); },
             [&](const Node& node) -> Lanes {
                 return safely_ * (node.length + node.slope * of_node(node.distances(centre)));
             },
@@ -95,19 +109,24 @@ IsotropicCones::Range IsotropicCones::range_in(const Box& box, Hint& hint) const
 }
 
 // The smallest of what `visit_leaf` lowers the length to, below `cap`, or up to the fraction
-// `tolerance` more. It starts at the hint.
-template <class LowerBounds, class VisitLeaf>
-double IsotropicCones::search(double cap, double tolerance, Hint& hint,
+// `tolerance` more. It starts at the hint; begin(waiting, length) adds what may hold less.
+template <class Begin, class LowerBounds, class VisitLeaf>
+double IsotropicCones::search(double cap, double tolerance, Hint& hint, const Begin& begin,
                               const LowerBounds& lower_bounds, const VisitLeaf& visit_leaf) const {
     if (tree_.empty()) return cap;
     const double enough = 1 / (1 + tolerance);
     double smallest = cap;
-    visit_leaf(std::min(hint, static_cast<Hint>(tree_.leaves().size() - 1)), smallest);
-    tree_.search([&] { return enough * smallest; }, lower_bounds,
-                 [&](std::uint32_t number) {
-                     visit_leaf(tree_.leaf_number(number), smallest);
-                     return true;
-                 });
+    const Hint first = std::min(hint, static_cast<Hint>(tree_.leaves().size() - 1));
+    visit_leaf(first, smallest);
+    Tree::Waiting waiting;
+    begin(waiting, enough * smallest);
+    tree_.search(
+        waiting, [&] { return enough * smallest; }, lower_bounds,
+        [&](std::uint32_t number) {
+            const Hint leaf = tree_.leaf_number(number);
+            if (leaf != first) visit_leaf(leaf, smallest);
+            return true;
+        });
     return smallest;
 }
 

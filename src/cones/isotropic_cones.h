@@ -35,8 +35,8 @@ public:
     double smallest_length(const Point& p, Hint& hint, double tolerance = 0) const {
         return search(p, cap_, tolerance, hint);
     }
-    /// The same at each of `x`, to the bit, all at once: by far faster where neighbours in `x` are
-    /// near to each other.
+    /// The same at each of `x`, to the bit, all at once: faster where neighbours in `x` are near to
+    /// each other.
     void smallest_lengths(std::span<const Point> x, std::span<double> lengths, Hint& hint) const;
 
     /// Bounds of the smallest length in a box: `least` is met there, up to rounding, and `most` is
@@ -123,16 +123,29 @@ private:
     /// The same of all leaves; `centre` is that of the cover's box.
     template <class Add>
     bool add_all_uncovered(const Point& centre, const ConeCover& cover, const Add& add) const;
-    /// `smallest_lengths` of a few dozen places; false where too many cones matter for them.
-    bool find_together(std::span<const Point> x, std::span<double> lengths, Hint& hint) const;
+    /// Nodes or leaves of one level of the tree, with their bounds: below them are all cones that
+    /// are the smallest at one of some places.
+    struct Nearby {
+        static constexpr std::size_t room = 16;
+
+        std::size_t size = 0;
+        std::array<std::uint32_t, room> numbers;
+        std::array<Node, room / lane_count> bounds;
+
+        void add(std::uint32_t number, const Node& parent, Eigen::Index child);
+    };
+    /// Those of the deepest level at which there is room for all; false where the tree is a leaf,
+    /// or places are not finite.
+    bool find_nearby(std::span<const Point> places, Nearby& nearby, Hint& hint) const;
+    double smallest_length(const Point& p, const Nearby& nearby, Hint& hint) const;
     void visit_leaf(Hint leaf, const Point& p, double& smallest, Hint& hint) const;
     std::optional<Doubt> doubt_of_long(const TrilinearLengths& lengths, double factor) const;
     std::optional<Doubt> doubt_of_short(const TrilinearLengths& lengths, double factor,
                                         Hint& hint) const;
     double search(const Point& p, double cap, double tolerance, Hint& hint) const;
-    template <class LowerBounds, class VisitLeaf>
-    double search(double cap, double tolerance, Hint& hint, const LowerBounds& lower_bounds,
-                  const VisitLeaf& visit_leaf) const;
+    template <class Begin, class LowerBounds, class VisitLeaf>
+    double search(double cap, double tolerance, Hint& hint, const Begin& begin,
+                  const LowerBounds& lower_bounds, const VisitLeaf& visit_leaf) const;
 
     double steepest_;  ///< the largest slope
     double cap_;

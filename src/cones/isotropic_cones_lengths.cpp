@@ -1,7 +1,5 @@
-// What a box needs: the cones that are the smallest in it, found once. Lengths at many places near
-// to each other are those of all of these at every place.
+// What a box needs: the cones that are the smallest in it, or the nodes above them, found once.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -10,56 +8,14 @@
 #include "cones/cone_cover.h"
 #include "cones/isotropic_cones.h"
 #include "geometry/extent_of.h"
-#include "vector_clones.h"
 
 namespace controlspace {
 
 namespace {
 
-constexpr std::size_t group = 64;  // places at once
 constexpr double infinity = std::numeric_limits<double>::infinity();
 // Of lengths, as a fraction: a cone that is longer than another by more is not the smallest.
 constexpr double beyond_rounding = 256 * std::numeric_limits<double>::epsilon();
-using Numbers = std::array<double, group>;
-
-struct Places {
-    Numbers x, y, z;
-};
-
-/// For each place the two smallest lengths of the cones, up to rounding, and the number of the
-/// first one. All loops are over places, so that they become vectors whatever their width.
-struct Least {
-    Numbers first, second, number;
-};
-
-CONTROLSPACE_VECTOR_CLONES
-void find_least(const IsotropicCone* __restrict cones, std::size_t count,
-                const Places& __restrict places, Least& __restrict least) {
-    least.first.fill(infinity);
-    least.second.fill(infinity);
-    least.number.fill(0);
-    for (std::size_t c = 0; c < count; ++c) {
-        const double qx = cones[c].position.x();
-        const double qy = cones[c].position.y();
-        const double qz = cones[c].position.z();
-        const double h = cones[c].length;
-        const double slope = cones[c].slope;
-        const auto number = static_cast<double>(c);
-        for (std::size_t i = 0; i < group; ++i) {
-            const double x = places.x[i] - qx;
-            const double y = places.y[i] - qy;
-            const double z = places.z[i] - qz;
-            const double length = h + slope * std::sqrt(x * x + y * y + z * z);
-            const double first = least.first[i];
-            const double second = least.second[i];
-            const bool is_less = length < first;
-            const double above = is_less ? first : length;
-            least.first[i] = is_less ? length : first;
-            least.second[i] = above < second ? above : second;
-            least.number[i] = is_less ? number : least.number[i];
-        }
-    }
-}
 
 }  // namespace
 
@@ -129,73 +85,64 @@ bool IsotropicCones::gather(const Box& box, ConeList& nearby, Hint& hint) const 
                         });
 }
 
-void IsotropicCones::smallest_lengths(std::span<const Point> x, std::span<double> lengths,
-                                      Hint& hint) const {
-    // How many places have few cones in common is learnt from those before; else one by one.
-    constexpr std::size_t least = 8;
-    constexpr int successes_to_grow = 4;
-    std::size_t together = group;
-    int successes = 0;
-    for (std::size_t done = 0; done < x.size();) {
-        std::size_t count = std::min(together, x.size() - done);
-        if (count >= least && find_together(x.subspan(done, count), lengths.subspan(done), hint)) {
-            if (++successes == successes_to_grow) {
-                together = std::min(2 * together, group);
-                successes = 0;
-            }
-        } else if (count >= 2 * least) {
-            together = count / 2;
-            successes = 0;
-            continue;
-        } else {
-            count = std::min(group, x.size() - done);
-            for (std::size_t i = done; i < done + count; ++i) {
-                lengths[i] = smallest_length(x[i], hint);
-            }
-        }
-        done += count;
-    }
+void IsotropicCones::Nearby::add(std::uint32_t number, const Node& parent, Eigen::Index child) {
+    const auto lane = static_cast<Eigen::Index>(size % lane_count);
+    Node& own = bounds[size / lane_count];
+    if (lane == 0) own = Node();
+    own.centre.set(lane, parent.centre[child]);
+    own.normal.set(lane, parent.normal[child]);
+    own.half_thickness[lane] = parent.half_thickness[child];
+    own.radius[lane] = parent.radius[child];
+    own.length[lane] = parent.length[child];
+    own.slope[lane] = parent.slope[child];
+    numbers[size++] = number;
 }
 
-bool IsotropicCones::find_together(std::span<const Point> x, std::span<double> lengths,
-                                   Hint& hint) const {
-    constexpr std::size_t most_cones = 256;
-    std::array<IsotropicCone, most_cones> cones;
-    std::size_t count = 0;
-    const Box box = extent_of(x);
-    ConeCover cover;
-    if (const auto cone = cover_by_one(box, -beyond_rounding, cover, hint)) cones[count++] = *cone;
-    const auto add = [&](std::uint32_t, const IsotropicCone& cone) {
-        if (count == cones.size()) return false;
-        cones[count++] = cone;
+bool IsotropicCones::find_nearby(std::span<const Point> places, Nearby& nearby, Hint& hint) const {
+    if (tree_.leaves().size() < 2) return false;
+    const Point centre = extent_of(places).centre();
+    double radius = 0;
+    for (const Point& p : places) {
+        const double distance = (p - centre).norm();
+        if (!std::isfinite(distance)) return false;
+        radius = std::max(radius, distance);
+    }
+    // The cone that is the smallest at the centre is no longer than this at any of the places.
+    const double reach = std::min(cap_, smallest_length(centre, hint) + steepest_ * radius);
+    const double beyond = std::nextafter(reach / (safely_ * safely_), infinity);
+    Nearby below;
+    // Returns false where there is no room.
+    const auto add_children = [&](std::uint32_t number) {
+        const Node& node = tree_.node(number);
+        const Lanes bounds = lower_bounds(node, centre, radius);
+        for (std::uint32_t c = 0; c < Tree::arity; ++c) {
+            if (!(bounds[c] < beyond)) continue;
+            if (below.size == Nearby::room) return false;
+            below.add(tree_.first_child(number) + c, node, c);
+        }
         return true;
     };
-    if (!add_all_uncovered(box.centre(), cover, add)) return false;
-
-    Places places;
-    for (std::size_t i = 0; i < group; ++i) {
-        const Point& p = x[std::min(i, x.size() - 1)];
-        places.x[i] = p.x();
-        places.y[i] = p.y();
-        places.z[i] = p.z();
-    }
-    Least least;
-    find_least(cones.data(), count, places, least);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        double smallest = cap_;
-        const double doubtful = least.first[i] / (safely_ * safely_);
-        if (count > 0 && least.second[i] > doubtful) {
-            smallest = std::min(
-                smallest, cones[static_cast<std::size_t>(least.number[i])].exact_length_at(x[i]));
-        } else {
-            for (const IsotropicCone& cone : std::span(cones).first(count)) {
-                if (cone.length_at(x[i]) > doubtful) continue;
-                smallest = std::min(smallest, cone.exact_length_at(x[i]));
-            }
-        }
-        lengths[i] = smallest;
-    }
+    add_children(0);
+    do {
+        nearby = below;
+        below.size = 0;
+    } while (nearby.size > 0 && !tree_.is_leaf(nearby.numbers[0]) &&
+             std::ranges::all_of(std::span(nearby.numbers).first(nearby.size), add_children));
     return true;
+}
+
+void IsotropicCones::smallest_lengths(std::span<const Point> x, std::span<double> lengths,
+                                      Hint& hint) const {
+    constexpr std::size_t together = 32;
+    Nearby nearby;
+    for (std::size_t first = 0; first < x.size(); first += together) {
+        const auto part = x.subspan(first, std::min(together, x.size() - first));
+        const bool is_found = find_nearby(part, nearby, hint);
+        for (std::size_t i = 0; i < part.size(); ++i) {
+            lengths[first + i] =
+                is_found ? smallest_length(part[i], nearby, hint) : smallest_length(part[i], hint);
+        }
+    }
 }
 
 }  // namespace controlspace

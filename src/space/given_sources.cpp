@@ -119,8 +119,9 @@ GradationReport grade_to(const ControlSpace& field, std::span<const Point> x,
                          OrderedMetrics metrics) {
     // Cells larger than the elements that sources in them request keep the request.
     constexpr double too_coarse = 2;
-    // Long blocks: a search remembers the last place. At least some for each thread.
-    const std::size_t block = std::clamp<std::size_t>(x.size() / (8 * threads_allowed()), 64, 2048);
+    // Long blocks: places next to each other share a search. At least some for each thread.
+    const std::size_t block =
+        std::clamp<std::size_t>(x.size() / (8 * threads_allowed()), 64, 16384);
     const auto lower = [&](std::size_t first, std::vector<Metric>& exact) {
         const auto part = x.subspan(first, std::min(block, x.size() - first));
         exact.resize(part.size());

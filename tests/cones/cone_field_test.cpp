@@ -131,6 +131,28 @@ TEST_CASE("Lengths of a batch are those of single searches, to the bit, in any c
     CHECK(std::equal(part.begin(), part.end(), lengths.begin() + 1000));
 }
 
+TEST_CASE("Lengths of a batch, of few sources and many, far from the origin, beside no numbers") {
+    Draw draw(12);
+    const int count = GENERATE(1, 16, 17, 128, 129, 1500);
+    // So far that coordinates are multiples of 0.002.
+    const double offset = GENERATE(0.0, 1e13);
+    std::vector<PointSource> sources;
+    for (const Point& q : places(draw, count)) {
+        sources.push_back({q + Point::Constant(offset), Metric::isotropic(0.05)});
+    }
+    const ConeField field(sources, g, wide);
+    std::vector<Point> x;
+    for (const Point& p : places(draw, 500)) x.push_back(p + Point::Constant(offset));
+    const auto expected = by_definition(sources, x);
+    CHECK(evaluated(field, x) == expected);
+
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    x.front() = Point(none, none, none);
+    x.back() = Point(1e300, 0, 0);
+    const auto found = evaluated(field, x);
+    CHECK(std::equal(found.begin() + 1, found.end() - 1, expected.begin() + 1));
+}
+
 TEST_CASE("A source in a steeper cone is dropped only where that stays below it up to the cap") {
     const PointSource steep{Point::Zero(), Metric::isotropic(0.1), 2};
     const auto dropped = [&](const PointSource& other) {
