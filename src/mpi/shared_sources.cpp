@@ -160,7 +160,7 @@ void SharedSources::find_filled_parts() {
 // sources alone, parts without any are leaves, of which the centre or the corners alone take the
 // field, or in leaves that were not cut.
 std::vector<Box> SharedSources::test_boxes(const LeafPlace& octant) const {
-    const std::vector<Box> parts = octants_.parts_of(octant);
+    std::vector<Box> parts = octants_.parts_of(octant);
     if (counts_ == Counts::everywhere) return parts;
     std::vector<Point> places;
     const auto add_leaf = [&](const Box& leaf) {
