@@ -6,6 +6,12 @@
 
 namespace controlspace {
 
+namespace {
+
+constexpr auto from_root = [](auto& waiting, double) { waiting.add_root(); };
+
+}  // namespace
+
 Lanes IsotropicCones::Node::distances(const Point& p) const {
     const auto [x, y, z] = displacements(centre, p);
     const Lanes along = x * normal.x + y * normal.y + z * normal.z;
@@ -53,8 +59,7 @@ Eigen::Index IsotropicCones::lane_of(const Point& p, double smallest, Hint leaf)
 
 double IsotropicCones::search(const Point& p, double cap, double tolerance, Hint& hint) const {
     return search(
-        cap, tolerance, hint, [](Tree::Waiting& waiting, double) { waiting.add_root(); },
-        [&](const Node& node) { return lower_bounds(node, p); },
+        cap, tolerance, hint, from_root, [&](const Node& node) { return lower_bounds(node, p); },
         [&](Hint leaf, double& smallest) { visit_leaf(leaf, p, smallest, hint); });
 }
 
@@ -83,7 +88,7 @@ IsotropicCones::Range IsotropicCones::range_in(const Box& box, Hint& hint) const
     // the centre, and by of_leaf from those between the sources and the centre along an axis.
     const auto smallest_at = [&](double cap, const auto& of_node, const auto& of_leaf) {
         return search(
-            cap, 0, hint, [](Tree::Waiting& waiting, double) { waiting.add_root(); },
+            cap, 0, hint, from_root,
             [&](const Node& node) -> Lanes {
                 return safely_ * (node.length + node.slope * of_node(node.distances(centre)));
             },

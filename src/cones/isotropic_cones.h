@@ -120,9 +120,6 @@ private:
     /// returns false.
     template <class Add>
     bool add_uncovered(std::uint32_t number, const ConeCover& cover, const Add& add) const;
-    /// The same of all leaves; `centre` is that of the cover's box.
-    template <class Add>
-    bool add_all_uncovered(const Point& centre, const ConeCover& cover, const Add& add) const;
     /// Nodes or leaves of one level of the tree, with their bounds: below them are all cones that
     /// are the smallest at one of some places.
     struct Nearby {

@@ -42,20 +42,15 @@ bool IsotropicCones::add_uncovered(std::uint32_t number, const ConeCover& cover,
     return true;
 }
 
-template <class Add>
-bool IsotropicCones::add_all_uncovered(const Point& centre, const ConeCover& cover,
-                                       const Add& add) const {
-    return tree_.search([] { return infinity; },
-                        [&](const Node& node) { return node.uncovered(cover, centre); },
-                        [&](std::uint32_t number) { return add_uncovered(number, cover, add); });
-}
-
 bool IsotropicCones::cover(const Box& box, double tolerance, ConeCover& cover, Hint& hint) const {
     cover_by_one(box, tolerance, cover, hint);
-    return add_all_uncovered(box.centre(), cover,
-                             [&](std::uint32_t source, const IsotropicCone& cone) {
-                                 return cover.give(source, cone);
-                             }) &&
+    const Point centre = box.centre();
+    const auto give = [&](std::uint32_t source, const IsotropicCone& cone) {
+        return cover.give(source, cone);
+    };
+    return tree_.search([] { return infinity; },
+                        [&](const Node& node) { return node.uncovered(cover, centre); },
+                        [&](std::uint32_t number) { return add_uncovered(number, cover, give); }) &&
            cover.complete();
 }
 

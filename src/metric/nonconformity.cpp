@@ -1,10 +1,8 @@
 #include "controlspace/metric/nonconformity.h"
 
-#include <Eigen/LU>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <utility>
 
 #include "controlspace/metric/intersection.h"
 #include "metric/decompose.h"
@@ -20,24 +18,15 @@ double norm_of_excess(double x, double y, double z) {
     return std::sqrt(excess(x) * excess(x) + excess(y) * excess(y) + excess(z) * excess(z));
 }
 
-// The least and the greatest, from the characteristic polynomial, to round-off of the greatest.
-std::pair<double, double> outer_eigenvalues(const Eigen::Matrix3d& symmetric) {
-    const double mean = symmetric.trace() / 3;
-    const Eigen::Matrix3d rest = symmetric - mean * Eigen::Matrix3d::Identity();
-    const double spread = std::sqrt(rest.squaredNorm() / 6);
-    const double cubed = spread * spread * spread;
-    if (!(cubed > 0)) return {mean, mean};
-    const double angle = std::acos(std::clamp(0.5 * rest.determinant() / cubed, -1.0, 1.0)) / 3;
-    constexpr double third = 2 * std::numbers::pi / 3;
-    return {mean + 2 * spread * std::cos(angle + third), mean + 2 * spread * std::cos(angle)};
-}
-
 // Of lengths along one direction: at least 1.
 double largest_ratio(const Metric& a, const Metric& b) {
     if (is_axis_aligned(a) && is_axis_aligned(b)) return std::max(growth(a, b), growth(b, a));
     const Eigen::Matrix3d seen = Cholesky(b).solve(a.matrix());
-    const auto [least, greatest] = outer_eigenvalues(seen.transpose() * seen);
-    constexpr double most_far_apart = 1e4;  // of squared lengths
+    // In closed form, to round-off of the greatest.
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> squared;
+    squared.computeDirect(seen.transpose() * seen, Eigen::EigenvaluesOnly);
+    const double least = squared.eigenvalues()[0], greatest = squared.eigenvalues()[2];
+    constexpr double most_far_apart = 1e4;
     if (least > 0 && greatest < most_far_apart * least) {
         return std::sqrt(std::max(greatest, 1 / least));
     }
