@@ -11,7 +11,11 @@ namespace controlspace {
 
 ConeField::ConeField(std::span<const PointSource> sources, double g, const Metric& largest,
                      double tolerance, IntersectionRule rule)
-    : ConeField(columns_of(sources), g, largest, tolerance, rule) {}
+    : largest_(largest),
+      longest_(eigen_frame(largest).lengths[2]),
+      tolerance_(tolerance),
+      rule_(rule),
+      cones_(make_cones(sources, g)) {}
 
 ConeField::ConeField(const SourceColumns& sources, double g, const Metric& largest,
                      double tolerance, IntersectionRule rule)
@@ -21,11 +25,20 @@ ConeField::ConeField(const SourceColumns& sources, double g, const Metric& large
       rule_(rule),
       cones_(make_cones(sources, g)) {}
 
+ConeField::Cones ConeField::make_cones(std::span<const PointSource> sources, double g) const {
+    const auto has_length = [](const PointSource& s) {
+        return controlspace::is_isotropic(s.metric);
+    };
+    if (std::ranges::all_of(sources, has_length)) {
+        return IsotropicCones(columns_of(sources), g, longest_);
+    }
+    if (rule_ == IntersectionRule::in_turn) return AnisotropicCones(sources, g, longest_);
+    return OrderFreeCones(sources, g, largest_, tolerance_);
+}
+
 ConeField::Cones ConeField::make_cones(const SourceColumns& sources, double g) const {
     if (sources.are_isotropic()) return IsotropicCones(sources, g, longest_);
-    const std::vector<PointSource> tensors = sources.all();
-    if (rule_ == IntersectionRule::in_turn) return AnisotropicCones(tensors, g, longest_);
-    return OrderFreeCones(tensors, g, largest_, tolerance_);
+    return make_cones(sources.all(), g);
 }
 
 Metric ConeField::at(const Point& x, const Metric* further, Memory& memory) const {

@@ -102,6 +102,7 @@ public:
 private:
     using Cones = std::variant<IsotropicCones, AnisotropicCones, OrderFreeCones>;
     Metric at(const Point& x, const Metric* further, Memory& memory) const;
+    Cones make_cones(std::span<const PointSource> sources, double g) const;
     Cones make_cones(const SourceColumns& sources, double g) const;
 
     Metric largest_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <iterator>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -214,6 +215,7 @@ struct DistributedSpace::Impl {
         const auto made =
             std::make_shared<AdaptedPart<Storage>>(space, options.structure == "K_oLB", boxes);
         if (steepest) sources.push_back(steepest->source());
+        constexpr std::size_t answers_of_all = 500'000;  // all ranks
         const AdaptationReport outcome =
             made->adapt({.sources = sources,
                          .continuous = nullptr,
@@ -221,6 +223,7 @@ struct DistributedSpace::Impl {
                          .target = *options.target,
                          .intersection = space.intersection,
                          .h_max = space.h_max},
+                        answers_of_all / static_cast<std::size_t>(ranks.size()),
                         [&](const Point& x) { return is_wanted[octants.tree().find(x)] != 0; });
         about.met = outcome.met;
         about.remark = outcome.shortfall;
@@ -229,18 +232,18 @@ struct DistributedSpace::Impl {
     }
 
     template <class Storage>
-    std::unique_ptr<ControlSpace> inserted(std::vector<PointSource>& sources,
+    std::unique_ptr<ControlSpace> inserted(std::span<const PointSource> sources,
                                            std::span<const char> is_wanted,
                                            std::span<const Box> boxes, RankReport& about) const {
         const auto made = std::make_shared<InsertedPart<Storage>>(
             options.space, options.structure == "K_oLB", boxes);
-        const SourceColumns given = columns_of(sources);
-        std::erase_if(sources, [&](const PointSource& source) {
-            return is_wanted[octants.tree().find(source.position)] == 0;
+        std::vector<PointSource> inside;
+        std::ranges::copy_if(sources, std::back_inserter(inside), [&](const PointSource& source) {
+            return is_wanted[octants.tree().find(source.position)] != 0;
         });
-        made->insert(sources);
-        sources = std::vector<PointSource>();
-        made->grade(NodeGradation({.ratio = options.space.ratio}, &given, options.space));
+        made->insert(inside);
+        inside = std::vector<PointSource>();
+        made->grade(NodeGradation(options.space.ratio, sources, options.space));
         made->finish();
         about.leaves = made->footprint().cells;
         using Tree = MetricTree<OctreeNode, Storage>;

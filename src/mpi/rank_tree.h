@@ -52,11 +52,11 @@ public:
         if (balanced) this->balance();
     }
 
-    /// As GrowingTree's, where is_inside(centre of a box); `reached` is that of all leaves, which
-    /// says nothing, `met` that of those inside.
-    AdaptationReport adapt(const AdaptationGoal& goal,
+    /// As GrowingTree's, by a GoalField that keeps `most_answers`, where is_inside(centre of a
+    /// box); `reached` is that of all leaves, which says nothing, `met` that of those inside.
+    AdaptationReport adapt(const AdaptationGoal& goal, std::size_t most_answers,
                            const std::function<bool(const Point&)>& is_inside) {
-        const GoalField field(goal, this->domain());
+        const GoalField field(goal, this->domain(), most_answers);
         AdaptationReport report;
         TreeAdaptation adaptation(topology_, storage_, field, goal);
         adaptation.run(true, [&](const Box& box, const auto& along, auto& cut) {

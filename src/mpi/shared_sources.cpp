@@ -34,6 +34,8 @@ SharedSources::SharedSources(Ranks& ranks, const Octants& octants,
                              std::vector<Record>&& records)
     : ranks_(ranks),
       octants_(octants),
+      space_(options.space),
+      steepest_(steepest),
       ratio_(options.space.ratio),
       cap_(largest_metric(options.space).xx),
       counts_(options.target || options.structure == "K_oLB" ? Counts::everywhere
@@ -58,14 +60,18 @@ SharedSources::SharedSources(Ranks& ranks, const Octants& octants,
         find_bounds();
         return;
     }
+    find_needs();
+    kept_ = tensors_->kept();
+}
+
+void SharedSources::find_needs() {
+    if (!has_tensors_ || tensors_) return;
     std::vector<std::vector<Box>> boxes;
     boxes.reserve(own_octants_.size());
     for (const LeafIndex octant : own_octants_) {
         boxes.push_back(test_boxes(octants_.places()[octant]));
     }
-    tensors_ =
-        std::make_unique<TensorNeeds>(ranks_, octants_, options.space, steepest, records_, boxes);
-    kept_ = tensors_->kept();
+    tensors_ = std::make_unique<TensorNeeds>(ranks_, octants_, space_, steepest_, records_, boxes);
 }
 
 std::vector<Record> SharedSources::exchange(const std::vector<std::vector<Record>>& to) const {
@@ -231,7 +237,8 @@ std::span<const SharedSources::Test> SharedSources::tests_of(LeafIndex octant) c
 
 std::vector<PointSource> SharedSources::near(const std::vector<std::vector<LeafIndex>>& wanted,
                                              const std::vector<std::vector<LeafIndex>>& whole,
-                                             std::uint64_t& received) const {
+                                             std::uint64_t& received) {
+    find_needs();
     std::vector<std::vector<Record>> to(wanted.size());
     for (std::size_t r = 0; r < wanted.size(); ++r) {
         // In octants that are wanted whole there is nothing to be found out.
@@ -248,6 +255,7 @@ std::vector<PointSource> SharedSources::near(const std::vector<std::vector<LeafI
             }
         }
     }
+    tensors_.reset();  // as much memory as the sources: found again for the next exchange
     const std::size_t from_self = to[static_cast<std::size_t>(ranks_.rank())].size();
     std::vector<Record> records = exchange(to);
     to.clear();

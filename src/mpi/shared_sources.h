@@ -37,7 +37,7 @@ public:
     /// those of other ranks.
     std::vector<PointSource> near(const std::vector<std::vector<LeafIndex>>& wanted,
                                   const std::vector<std::vector<LeafIndex>>& whole,
-                                  std::uint64_t& received) const;
+                                  std::uint64_t& received);
 
 private:
     struct Bound;
@@ -54,6 +54,7 @@ private:
     void find_filled_parts();
     std::vector<Box> test_boxes(const LeafPlace& octant) const;
     void find_bounds();
+    void find_needs();  // collective
     Bound bound_of(const Record& r) const;
     std::vector<double> bounds_of_octants();
     std::vector<std::uint8_t> matter_in(std::span<const LeafIndex> octants) const;
@@ -61,7 +62,8 @@ private:
 
     Ranks& ranks_;
     const Octants& octants_;
-    double ratio_, cap_;
+    SpaceOptions space_;
+    double steepest_, ratio_, cap_;
     /// Where the field counts: everywhere, or in leaves cut for sources, at centres or corners.
     enum class Counts : std::uint8_t { everywhere, at_centres, at_corners };
     Counts counts_;

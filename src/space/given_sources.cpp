@@ -22,7 +22,8 @@ namespace {
 
 class SourceField final : public ControlSpace {
 public:
-    SourceField(const SourceColumns& given, double ratio, const SpaceOptions& space)
+    template <class Sources>
+    SourceField(const Sources& given, double ratio, const SpaceOptions& space)
         : cones_(given, ratio, largest_metric(space), tolerance, space.intersection) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
@@ -113,6 +114,13 @@ NodeGradation::NodeGradation(const GradationOptions& wanted, const SourceColumns
             "`sources`");
     }
     if (options.schedule == GradationSchedule::sources) options.schedule = GradationSchedule::queue;
+}
+
+NodeGradation::NodeGradation(double ratio, std::span<const PointSource> given,
+                             const SpaceOptions& space)
+    : options{.ratio = ratio}, largest_ratio(std::max(ratio, largest_growth(given, ratio))) {
+    require_valid(options);
+    field = std::make_unique<SourceField>(given, ratio, space);
 }
 
 GradationReport grade_to(const ControlSpace& field, std::span<const Point> x,

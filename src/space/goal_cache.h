@@ -19,6 +19,8 @@ namespace controlspace {
 /// Thread-safe, but for `forget_if_full`.
 class GoalCache {
 public:
+    explicit GoalCache(std::size_t most_answers) : most_answers_(most_answers) {}
+
     struct Answer {
         Metric metric;
         OrderFreeCones::Start start;  ///< for places nearby, if it has members
@@ -31,7 +33,7 @@ public:
         return true;
     }
     bool has(const Point& x) const { return answers_.contains({x.x(), x.y(), x.z()}); }
-    bool has_room_for(std::size_t more) const { return answers_.size() + more < most_answers; }
+    bool has_room_for(std::size_t more) const { return answers_.size() + more < most_answers_; }
     void remember(const Point& x, const Answer& answer) {
         if (is_full()) return;
         answers_.emplace(std::array{x.x(), x.y(), x.z()}, answer);
@@ -55,12 +57,12 @@ public:
     }
 
 private:
-    static constexpr std::size_t most_answers = 500000;  // 250 bytes each
-    bool is_full() const { return answers_.size() >= most_answers; }
+    bool is_full() const { return answers_.size() >= most_answers_; }
 
     struct Hash {
         std::size_t operator()(const std::array<double, 3>& x) const { return hash_of_words(x); }
     };
+    std::size_t most_answers_;
     tbb::concurrent_unordered_map<std::array<double, 3>, Answer, Hash> answers_;
     tbb::concurrent_queue<OrderFreeCones::Search> searches_;
 };

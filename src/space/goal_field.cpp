@@ -46,7 +46,7 @@ double tolerance_for(const AdaptationGoal& goal) {
 
 }  // namespace
 
-GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
+GoalField::GoalField(const AdaptationGoal& goal, const Box& domain, std::size_t most_answers)
     : target_(require_valid(goal, domain).target),
       ratio_(goal.ratio),
       largest_ratio_(std::max(goal.ratio, largest_growth(goal.sources, goal.ratio))),
@@ -55,7 +55,7 @@ GoalField::GoalField(const AdaptationGoal& goal, const Box& domain)
       largest_(largest_metric(domain, goal.h_max)),
       cones_(std::make_unique<ConeField>(goal.sources, goal.ratio, largest_, tolerance_for(goal),
                                          goal.intersection)),
-      cache_(std::make_unique<GoalCache>()) {}
+      cache_(std::make_unique<GoalCache>(most_answers)) {}
 
 GoalField::~GoalField() = default;
 

@@ -38,6 +38,8 @@ struct NodeGradation {
     /// and for sources with ratios of their own if they are not to be graded by the exact field.
     NodeGradation(const GradationOptions& options, const SourceColumns* given,
                   const SpaceOptions& space);
+    /// By the exact field of `given`.
+    NodeGradation(double ratio, std::span<const PointSource> given, const SpaceOptions& space);
 
     GradationOptions options;  ///< `schedule` is `sources` only with a field
     std::unique_ptr<const ControlSpace> field;

@@ -21,8 +21,9 @@ class GoalCache;
 class GoalField final : public ControlSpace {
 public:
     /// Throws InputError for sources outside of `domain` or with bad metrics, a ratio below 1, a
-    /// target that is not positive.
-    GoalField(const AdaptationGoal& goal, const Box& domain);
+    /// target that is not positive. So many answers at most, of some 230 bytes each, are kept from
+    /// leaf to leaf, of tensors.
+    GoalField(const AdaptationGoal& goal, const Box& domain, std::size_t most_answers = 500'000);
     ~GoalField() override;
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override;
@@ -48,9 +49,11 @@ public:
     const ConeField& cones() const { return *cones_; }
     /// Whether tensors are intersected without an order.
     bool is_order_free() const;
-    /// Whether there are sources, and so few that all can be compared with every leaf: then the
-    /// field is evaluated closely everywhere.
-    bool has_few_sources() const { return !sources_.empty() && sources_.size() <= few_sources; }
+    /// Whether there are sources, and so few that the field can be evaluated closely everywhere.
+    bool has_few_sources() const { return has_sources_up_to(few_sources); }
+    bool has_sources_up_to(std::size_t most) const {
+        return !sources_.empty() && sources_.size() <= most;
+    }
     /// Relative shortening of lengths that is left out.
     double negligible() const;
     const Metric& largest() const { return largest_; }
@@ -60,7 +63,7 @@ public:
     /// The largest of all sources' and that one.
     double largest_ratio() const { return largest_ratio_; }
 
-    static constexpr std::size_t few_sources = 64;
+    static constexpr std::size_t few_sources = 512;
 
 private:
     double target_;

@@ -38,7 +38,7 @@ public:
     template <class IsWanted>
     void find_beside(const IsWanted& is_wanted) {
         if (!cones_) cones_.emplace(sources_, field_.ratio(), field_.target());
-        if (field_.has_few_sources()) return;
+        if (are_few()) return;
         beside_.assign(tree_.leaves(), {});
         tbb::enumerable_thread_specific<std::vector<std::pair<LeafIndex, Departure>>> found;
         around_.resize(sources_.size());
@@ -65,7 +65,7 @@ public:
     /// the field there; nothing if that is far below the target. Of few sources, appends to
     /// `further` where it exceeds cones, and places around the tips of cones.
     Departure worst_in(const LeafBox& of, std::vector<Point>& further) const {
-        if (!field_.has_few_sources()) return beside_[of.leaf];
+        if (!are_few()) return beside_[of.leaf];
         cones_->append_around_tips(of.box, further);
         Departure worst;
         if constexpr (HasTrilinearLeaves<Storage>) {
@@ -83,6 +83,11 @@ public:
     }
 
 private:
+    // Whether all are compared with every leaf, which takes less time where leaves are trilinear.
+    bool are_few() const {
+        return field_.has_sources_up_to(HasTrilinearLeaves<Storage> ? GoalField::few_sources : 64);
+    }
+
     auto metric_in(LeafIndex leaf) const {
         return
             [this, leaf](const Point& x) { return value_in(tree_, field_of(storage_), leaf, x); };
