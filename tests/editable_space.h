@@ -38,6 +38,9 @@ public:
     ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
         return controlspace::control_nodes(built(), neighbourhood).value();
     }
+    double largest_gradation(Neighbourhood neighbourhood, GradationLaw law) const override {
+        return controlspace::largest_gradation(built(), neighbourhood, law).value();
+    }
 
     Insertion insert(const PointSource& source) { return changed().insert(source); }
     InsertionReport insert(std::span<const PointSource> sources) {

@@ -67,7 +67,6 @@ FilledSpace made_or_loaded(const std::filesystem::path& input, const std::filesy
             return filled;
         }
         SavedControlSpace saved = open_control_space(input, structures());
-        filled.builder = std::move(saved.builder);
         filled.space = std::move(saved.space);
         filled.structure = std::move(saved.recipe.structure);
         filled.remark = filled.space->footprint().remark;
@@ -81,7 +80,6 @@ FilledSpace made_or_loaded(const std::filesystem::path& input, const std::filesy
     const bool is_by_default = DefaultTarget(input, given).set(c, workload);
     Filled made = make_and_fill(study, c, program_rows(), workload, observer);
     filled.space = made.build(c);
-    filled.builder = std::move(made.builder);
     filled.structure = c.structure;
     filled.remark = remark_on(made.creation, filled.space->footprint());
     filled.missed_target = !is_by_default && !made.creation.shortfall.empty();

@@ -12,7 +12,6 @@
 #include "cli/options.h"
 #include "cli/progress.h"
 #include "controlspace/space/control_space.h"
-#include "controlspace/space/control_space_builder.h"
 #include "controlspace/study/run.h"
 
 namespace controlspace {
@@ -25,7 +24,6 @@ struct Origin {
 };
 
 struct FilledSpace {
-    std::unique_ptr<ControlSpaceBuilder> builder;  ///< none of a compact form that was loaded
     std::unique_ptr<ControlSpace> space;
     std::string structure;  ///< id in the catalogue
     std::string remark;     ///< as remark_on

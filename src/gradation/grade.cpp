@@ -73,10 +73,7 @@ double largest_gradation_of(const ControlGraph& graph, const Metrics& metrics, G
         for (NodeIndex i = range.begin(); i < range.end(); ++i) {
             const Metric& from = metrics[i];
             nodes.for_each_link(i, [&](NodeIndex j, const Vector& v) {
-                const Metric& to = metrics[j];
-                const bool shrinks = is_isotropic(from) && is_isotropic(to) && to.xx <= from.xx;
-                if (shrinks) return;  // half of all pairs
-                largest = std::max(largest, growth_between(law, from, to, v).gradation());
+                largest = std::max(largest, gradation_between(law, from, metrics[j], v));
             });
         }
         return largest;

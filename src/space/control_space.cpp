@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 
+#include "controlspace/gradation/grade.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/detail/plain_cursor.h"
 
@@ -73,6 +74,18 @@ std::optional<ControlNodes> control_nodes(const ControlSpace& space, Neighbourho
     const auto* nodes = dynamic_cast<const HasControlNodes*>(&space);
     if (nodes == nullptr) return std::nullopt;
     return nodes->control_nodes(neighbourhood);
+}
+
+std::optional<double> largest_gradation(const ControlSpace& space, Neighbourhood neighbourhood,
+                                        GradationLaw law) {
+    const auto* nodes = dynamic_cast<const HasControlNodes*>(&space);
+    if (nodes == nullptr) return std::nullopt;
+    return nodes->largest_gradation(neighbourhood, law);
+}
+
+double HasControlNodes::largest_gradation(Neighbourhood neighbourhood, GradationLaw law) const {
+    const ControlNodes nodes = control_nodes(neighbourhood);
+    return controlspace::largest_gradation(nodes.graph, nodes.metrics, law);
 }
 
 }  // namespace controlspace

@@ -69,9 +69,8 @@ void adapt(Filled& filled, const Case& c, const Workload& workload,
 
 void add_largest_ratio(GradationReport& gradation, const ControlSpace& space, GradationLaw law,
                        Neighbourhood neighbourhood) {
-    if (const auto nodes = control_nodes(space, neighbourhood)) {
-        gradation.largest_ratio_left = largest_gradation(nodes->graph, nodes->metrics, law);
-    }
+    double& left = gradation.largest_ratio_left;
+    left = largest_gradation(space, neighbourhood, law).value_or(left);
 }
 
 /// On what gradation left and on settings without effect.

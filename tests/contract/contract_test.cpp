@@ -101,6 +101,11 @@ STRUCTURE_CASE(does_not_round,
     // Three sources cannot stand for all tensors that cut a leaf.
     const bool holds = keeps_values(*structure.entry) || work.isotropic();
     if (holds) CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
+    for (const auto neighbourhood : {Neighbourhood::faces, Neighbourhood::all}) {
+        const ControlNodes nodes = space->control_nodes(neighbourhood);
+        CHECK(space->largest_gradation(neighbourhood, law) ==
+              largest_gradation(nodes.graph, nodes.metrics, law));
+    }
     const std::vector<Metric> after = answers(*space, x);
     std::size_t larger = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {

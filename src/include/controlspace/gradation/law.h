@@ -49,6 +49,13 @@ struct Growth {
 ///   mean_length: ratio over the eigenvectors of both; length = (|from^-1 v| + |to^-1 v|) / 2
 Growth growth_between(GradationLaw law, const Metric& from, const Metric& to, const Vector& v);
 
+/// Its gradation ratio.
+inline double gradation_between(GradationLaw law, const Metric& from, const Metric& to,
+                                const Vector& v) {
+    const bool shrinks = is_isotropic(from) && is_isotropic(to) && to.xx <= from.xx;
+    return shrinks ? 1 : growth_between(law, from, to, v).gradation();
+}
+
 /// Which of two metrics was made smaller.
 struct Limited {
     bool first = false;

@@ -63,6 +63,12 @@ public:
     ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
         return data_->control_nodes(neighbourhood);
     }
+    double largest_gradation(Neighbourhood neighbourhood, GradationLaw law) const override {
+        if constexpr (requires { data_->largest_gradation(neighbourhood, law); }) {
+            return data_->largest_gradation(neighbourhood, law);
+        }
+        return HasControlNodes::largest_gradation(neighbourhood, law);
+    }
     void save(StateWriter& state) const override { data_->save(state); }
 
 private:

@@ -1,12 +1,16 @@
 #pragma once
 
+#include <tbb/combinable.h>
+
 #include <algorithm>
 #include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "controlspace/geometry/detail/large_pages.h"
 #include "controlspace/gradation/grade.h"
+#include "controlspace/gradation/law.h"
 #include "controlspace/space/control_space_builder.h"
 #include "controlspace/space/detail/given_sources.h"
 #include "controlspace/space/detail/goal_field.h"
@@ -41,6 +45,31 @@ ControlNodes nodes_of_tree(const Topology<Node>& tree, const Storage& storage,
     return {std::move(nodes.graph), std::move(metrics)};
 }
 
+/// The largest gradation ratio of the control nodes. Leaves across faces are not listed as a graph,
+/// which takes twice the memory of the metrics.
+template <class Node, class Storage>
+double largest_gradation_of_tree(const Topology<Node>& tree, const Storage& storage,
+                                 Neighbourhood neighbourhood, GradationLaw law) {
+    if constexpr (nodes_per_leaf<Storage> == 1) {
+        if (neighbourhood == Neighbourhood::faces) {
+            std::vector<Point> centres = large_array<Point>(tree.leaves());
+            tree.for_each_leaf(
+                [&](LeafIndex leaf, const Box& box) { centres[leaf] = box.centre(); });
+            const std::span<const Metric> metrics = storage.metrics().field();
+            tbb::combinable<double> largest([] { return 1.0; });
+            for_each_face_pair(tree, parts_of(tree), [&](LeafIndex a, LeafIndex b) {
+                double& own = largest.local();
+                const Vector v = centres[b] - centres[a];
+                own = std::max({own, gradation_between(law, metrics[a], metrics[b], v),
+                                gradation_between(law, metrics[b], metrics[a], -v)});
+            });
+            return largest.combine([](double a, double b) { return std::max(a, b); });
+        }
+    }
+    const ControlNodes nodes = nodes_of_tree(tree, storage, neighbourhood);
+    return largest_gradation(nodes.graph, nodes.metrics, law);
+}
+
 /// Throws InputError for a wrong number.
 template <class Node, class Storage>
 void assign_nodes(const Topology<Node>& tree, Storage& storage, std::span<const Metric> metrics) {
@@ -62,15 +91,23 @@ GradationReport grade_nodes_to(const ControlSpace& field, const Topology<Node>& 
                                Storage& storage) {
     const std::span<Metric> metrics = storage.metrics().field();
     if constexpr (nodes_per_leaf<Storage> == 1) {
+        // Some at a time: in all they would take half as much memory as the metrics.
+        constexpr std::size_t most = std::size_t{1} << 20;
+        GradationReport report;
         std::vector<Point> x;
         std::vector<LeafIndex> order;
-        x.reserve(tree.leaves());
-        order.reserve(tree.leaves());
+        x.reserve(std::min(most, tree.leaves()));
+        order.reserve(std::min(most, tree.leaves()));
+        std::size_t left = tree.leaves();
         tree.for_each_leaf([&](LeafIndex leaf, const Box& box) {
             x.push_back(box.centre());
             order.push_back(leaf);
+            if (--left > 0 && x.size() < most) return;
+            report.operations += grade_to(field, x, {metrics, order}).operations;
+            x.clear();
+            order.clear();
         });
-        return grade_to(field, x, {metrics, order});
+        return report;
     } else {
         return grade_to(field, storage.positions(), metrics);
     }

@@ -59,7 +59,9 @@ protected:
     /// Empties the tree and cuts it until it follows the field; `begin` may prepare the storage.
     template <class Begin>
     AdaptationReport adapt(const AdaptationGoal& goal, Begin&& begin) {
+        constexpr std::size_t bytes_of_adaptation = 240;  // for each leaf
         const GoalField field(goal, domain());
+        bytes_to_come_ = bytes_of_adaptation;
         topology_ = Topology<Node>(domain());
         storage_ = Storage(options_);
         begin();
@@ -79,6 +81,7 @@ protected:
             too_deep = too_deep || !done;
             return done;
         });
+        bytes_to_come_ = 0;
         report.met = report.reached <= goal.target;
         report.is_bound = report.met && adaptation.shows_bounds();
         if (report.met) {
@@ -148,15 +151,19 @@ protected:
 
     /// Stops a tree of so many leaves that outgrows the cap, long before the system stops the
     /// program.
-    void require_memory(std::size_t leaves, Neighbourhood neighbourhood = Neighbourhood::faces) {
-        // Gradation copies the nodes and links them: over faces 145 bytes for a leaf, 290 for its
-        // vertices; with all neighbours up to 640.
-        const std::size_t gradation_bytes_per_leaf =
-            neighbourhood == Neighbourhood::all ? 700 : 300;
-        const std::size_t bytes =
-            footprint().bytes_total() + leaves * (gradation_bytes_per_leaf + bytes_to_come_);
-        if (bytes > options_.max_bytes) fail_too_large(bytes, options_.max_bytes);
+    void require_memory(std::size_t leaves) {
+        // While an array grows, and while the finished tree is compared and packed.
+        constexpr std::size_t bytes_beside = 64;
+        const std::size_t bytes = footprint().bytes_total();
+        require_bytes(bytes + std::min(bytes, most_bytes_twice) + bytes_aside_ +
+                      leaves * (bytes_beside + bytes_to_come_));
         next_check_ = leaves + leaves / 16;
+    }
+    /// The same of gradation from node to node, which copies the nodes and links them.
+    void require_memory_to_grade(Neighbourhood neighbourhood) const {
+        // Over faces 145 bytes for a leaf, 290 for its vertices; with all neighbours up to 640.
+        const std::size_t bytes_per_leaf = neighbourhood == Neighbourhood::all ? 700 : 300;
+        require_bytes(footprint().bytes_total() + topology_.leaves() * bytes_per_leaf);
     }
 
     /// Gives back what only growing needs, and makes what only answers need.
@@ -184,9 +191,13 @@ protected:
     Topology<Node> topology_;
     Storage storage_;
     bool is_finished_ = false;       // nothing has grown since `settle`
-    std::size_t bytes_to_come_ = 0;  // for each leaf, beside gradation
+    std::size_t bytes_to_come_ = 0;  // for each leaf, beside what it takes already
+    std::size_t bytes_aside_ = 0;    // of what is to be entered into the tree
 
 private:
+    void require_bytes(std::size_t bytes) const {
+        if (bytes > options_.max_bytes) fail_too_large(bytes, options_.max_bytes);
+    }
     // Those below a part, with it.
     void list_inner(const TreePart& part, int level, std::vector<LeafPlace>& inner) const {
         if (part.ref.is_leaf()) return;

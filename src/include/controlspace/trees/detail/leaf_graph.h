@@ -74,26 +74,20 @@ void number_leaves(const Topology<Node>& tree, const TreeParts& all, LeafGraph& 
     });
 }
 
-/// Links across faces. Parts have no nodes in common, nor have inner nodes of one level above them,
-/// so all of them at the same time, and then what lies between the children of inner nodes, level
-/// after level, fill each row in the order of one walk through the whole tree.
-template <class Node>
-void link_across_faces(const Topology<Node>& tree, const TreeParts& all,
-                       const std::vector<NodeIndex>& rank, NodeGraph& graph) {
-    link(graph, rank.size(), [&](const auto& enter) {
-        const auto visit = [&](LeafIndex a, LeafIndex b) {
-            enter(rank[a], rank[b]);
-            enter(rank[b], rank[a]);
-        };
-        tbb::parallel_for(std::size_t{0}, all.parts.size(), [&](std::size_t p) {
-            FacePairs<Node, decltype(visit)>(tree, visit).within(all.parts[p]);
-        });
-        for (auto level = all.above.rbegin(); level != all.above.rend(); ++level) {
-            tbb::parallel_for(std::size_t{0}, level->size(), [&](std::size_t i) {
-                FacePairs<Node, decltype(visit)>(tree, visit).between_children((*level)[i]);
-            });
-        }
+/// Calls visit(leaf, leaf) for all pairs across faces, on all of TBB's threads. Parts have no
+/// leaves in common, nor have inner nodes of one level above them, so all of them at the same time,
+/// and then what lies between the children of inner nodes, level after level, visit the pairs of
+/// each leaf in the order of one walk through the whole tree, one at a time.
+template <class Node, class Visit>
+void for_each_face_pair(const Topology<Node>& tree, const TreeParts& all, const Visit& visit) {
+    tbb::parallel_for(std::size_t{0}, all.parts.size(), [&](std::size_t p) {
+        FacePairs<Node, const Visit>(tree, visit).within(all.parts[p]);
     });
+    for (auto level = all.above.rbegin(); level != all.above.rend(); ++level) {
+        tbb::parallel_for(std::size_t{0}, level->size(), [&](std::size_t i) {
+            FacePairs<Node, const Visit>(tree, visit).between_children((*level)[i]);
+        });
+    }
 }
 
 template <class Node>
@@ -106,7 +100,12 @@ LeafGraph leaf_graph(const Topology<Node>& tree, Neighbourhood neighbourhood) {
 
     NodeGraph& graph = leaves.graph;
     if (neighbourhood == Neighbourhood::faces) {
-        link_across_faces(tree, all, rank, graph);
+        link(graph, rank.size(), [&](const auto& enter) {
+            for_each_face_pair(tree, all, [&](LeafIndex a, LeafIndex b) {
+                enter(rank[a], rank[b]);
+                enter(rank[b], rank[a]);
+            });
+        });
     } else if (neighbourhood == Neighbourhood::all) {
         std::vector<std::pair<NodeIndex, NodeIndex>> pairs;
         for_each_touching_pair(

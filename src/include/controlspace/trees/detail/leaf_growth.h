@@ -72,6 +72,13 @@ public:
             [](std::uint64_t sum, const Share& share) { return sum + share.inserted; });
     }
 
+    /// Bytes of what has grown aside.
+    std::size_t bytes() const {
+        return std::accumulate(
+            shares_.begin(), shares_.end(), std::size_t{0},
+            [](std::size_t sum, const Share& share) { return sum + share.bytes(); });
+    }
+
     /// Enters what has grown into the tree, which has got room for it, and into the metrics.
     void enter(Topology<Node>& tree, std::span<Metric> metrics) {
         for (const Share& share : shares_) tree.deepen_to(share.deepest);
@@ -101,6 +108,12 @@ private:
         std::uint64_t inserted = 0;
         int deepest = 0;
 
+        std::size_t bytes() const {
+            return roots.capacity() * sizeof(Root) + nodes.capacity() * sizeof(Node) +
+                   metrics.capacity() * sizeof(Metric) +
+                   (numbers.capacity() + leaves.capacity() + makers.capacity()) *
+                       sizeof(std::uint32_t);
+        }
         void clear() {
             roots.clear();
             nodes.clear();

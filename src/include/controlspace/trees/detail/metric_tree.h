@@ -79,6 +79,10 @@ public:
         if (!are_collected_) return collected().control_nodes(neighbourhood);
         return nodes_of_tree(topology_, storage_, neighbourhood);
     }
+    double largest_gradation(Neighbourhood neighbourhood, GradationLaw law) const {
+        if (!are_collected_) return collected().largest_gradation(neighbourhood, law);
+        return largest_gradation_of_tree(topology_, storage_, neighbourhood, law);
+    }
     void assign(std::span<const Metric> metrics) {
         end_collection();
         assign_nodes(topology_, storage_, metrics);
@@ -86,10 +90,8 @@ public:
     }
 
     GradationReport grade(const NodeGradation& gradation) {
-        if (!gradation.field && gradation.options.neighbourhood == Neighbourhood::all) {
-            Base::require_memory(topology_.leaves(), Neighbourhood::all);
-        }
         end_collection();
+        if (!gradation.field) Base::require_memory_to_grade(gradation.options.neighbourhood);
         topology_.fit_jumps();
         return options_.takes_later_sources ? grade_beside_requested(gradation)
                                             : grade_nodes(topology_, storage_, gradation);
@@ -131,7 +133,7 @@ public:
 
     std::unique_ptr<ControlSpace> pack(Precision precision) const {
         if (!are_collected_) return collected().pack(precision);
-        return pack_tree(topology_, storage_, precision);
+        return pack_tree(topology_, storage_, options_, precision);
     }
 
     void save(StateWriter& state) const {
@@ -195,6 +197,7 @@ private:
             const auto batch = growth.next_batch(sources.subspan(report.sources));
             const std::size_t valid = growth.grow(topology_, field(), batch);
             if (valid == 0) require_valid(batch.front(), report.sources, Base::domain());
+            Base::bytes_aside_ = growth.bytes();
             Base::make_room_for(growth.leaves_made());
             topology_.grow(growth.cuts_made(), growth.leaves_made());
             grow(growth.leaves_made());
@@ -203,6 +206,7 @@ private:
             report.sources += valid;
             report.inserted += growth.inserted();
         }
+        Base::bytes_aside_ = 0;
     }
 
     // One after the other, those left after the report's.

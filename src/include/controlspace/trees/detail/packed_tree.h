@@ -12,6 +12,7 @@
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/detail/plain_cursor.h"
 #include "controlspace/space/detail/saved.h"
+#include "controlspace/space/space_options.h"
 #include "controlspace/trees/detail/leaf_graph.h"
 #include "controlspace/trees/detail/sample_leaves.h"
 #include "controlspace/trees/detail/storage_state.h"
@@ -51,10 +52,11 @@ class PackedValues {
 public:
     static constexpr bool are_lengths = is_stored_length<M>;
 
-    /// `former` are the former numbers of the leaves.
-    PackedValues(const Storage& storage, std::span<const LeafIndex> former)
-        : storage_(storage), metrics_(stored_metrics<M>(storage.metrics().field(), former)) {
-        storage_.metrics() = NodeMetrics(0, Metric());
+    /// Of a storage made with `options`; `former` are the former numbers of the leaves.
+    PackedValues(const Storage& storage, const SpaceOptions& options,
+                 std::span<const LeafIndex> former)
+        : storage_(without_metrics(storage, options)),
+          metrics_(stored_metrics<M>(storage.metrics().field(), former)) {
         for_each_array(storage_, [&](std::string_view, auto& array) {
             auto ordered = std::remove_cvref_t<decltype(array)>();
             ordered.reserve(former.size());
@@ -84,6 +86,12 @@ public:
     }
 
 private:
+    static Storage without_metrics(const Storage& storage, const SpaceOptions& options) {
+        // Metrics take most of the memory: a copy would hold them twice.
+        Storage copy = HasData<Storage> ? storage : Storage(options);
+        copy.metrics() = NodeMetrics(0, Metric());
+        return copy;
+    }
     NodeField<Storage, M> field() const { return {storage_, {metrics_}}; }
 
     Storage storage_;  // without metrics
@@ -154,7 +162,7 @@ concept HasDerivedData = requires(Storage& s, const Topology<Node>& tree) {
 /// The compact form of a tree.
 template <class Node, class Storage>
 std::unique_ptr<ControlSpace> pack_tree(const Topology<Node>& tree, const Storage& storage,
-                                        Precision precision) {
+                                        const SpaceOptions& options, Precision precision) {
     if constexpr (requires { storage.pack(tree, precision); }) {
         return storage.pack(tree, precision);
     } else {
@@ -168,7 +176,7 @@ std::unique_ptr<ControlSpace> pack_tree(const Topology<Node>& tree, const Storag
             [&]<class M>(std::type_identity<M>) -> std::unique_ptr<ControlSpace> {
                 using Packed = PackedValues<Storage, M>;
                 return std::make_unique<PackedTree<Node, Packed>>(std::move(ordered),
-                                                                  Packed(storage, former));
+                                                                  Packed(storage, options, former));
             });
     }
 }
