@@ -57,7 +57,9 @@ struct GpuField::Copy {
 
 GpuField::GpuField(const ControlSpace& field, Precision precision)
     : copy_(precision == Precision::floats ? std::make_unique<Copy>(OctreeArrays<float>(field))
-                                           : std::make_unique<Copy>(OctreeArrays<double>(field))) {}
+                                           : std::make_unique<Copy>(OctreeArrays<double>(field))) {
+    if (precision == Precision::shorts) refuse("a GPU holds no shorts: use floats or doubles");
+}
 GpuField::~GpuField() = default;
 GpuField::GpuField(GpuField&&) noexcept = default;
 GpuField& GpuField::operator=(GpuField&&) noexcept = default;

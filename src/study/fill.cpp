@@ -154,8 +154,11 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
 
 std::unique_ptr<ControlSpace> Filled::build(const Case& c) const {
     if (c.frozen == Frozen::no) return builder->build();
-    return builder->build(
-        {.precision = c.frozen == Frozen::floats ? Precision::floats : Precision::doubles});
+    const auto compact = [&](Precision precision) {
+        return builder->build({.precision = precision});
+    };
+    if (c.frozen == Frozen::shorts) return compact(Precision::shorts);
+    return compact(c.frozen == Frozen::floats ? Precision::floats : Precision::doubles);
 }
 
 }  // namespace controlspace

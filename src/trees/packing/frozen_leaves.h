@@ -21,7 +21,7 @@ class FrozenLeaves {
 public:
     static constexpr bool are_lengths = is_stored_length<M>;
 
-    FrozenLeaves(CutPlanes planes, std::vector<M> metrics)
+    FrozenLeaves(CutPlanes planes, StoredMetrics<M> metrics)
         : planes_(std::move(planes)), metrics_(std::move(metrics)) {}
 
     void prefetch(LeafIndex leaf) const { __builtin_prefetch(&leaves_[leaf]); }
@@ -30,13 +30,13 @@ public:
     }
     void describe(Footprint& footprint) const {
         footprint.control_nodes = metrics_.size();
-        footprint.bytes_payload = metrics_.capacity() * sizeof(M);
+        footprint.bytes_payload = metrics_.bytes();
         footprint.bytes_topology += leaves_.capacity() * sizeof(Leaf) + planes_.bytes();
     }
 
 protected:
     CutPlanes planes_;
-    std::vector<M> metrics_;
+    StoredMetrics<M> metrics_;
     std::vector<Leaf> leaves_;
 };
 

@@ -25,7 +25,7 @@ class FrozenQuadratic : public FrozenLeaves<M, QuadraticLeaf<Plane>> {
 
 public:
     template <class Node>
-    FrozenQuadratic(const Topology<Node>& tree, CutPlanes planes, std::vector<M> metrics,
+    FrozenQuadratic(const Topology<Node>& tree, CutPlanes planes, StoredMetrics<M> metrics,
                     const QuadraticRule& rule)
         : Base(std::move(planes), std::move(metrics)), rule_(rule) {
         leaves_.reserve(tree.leaves());
@@ -35,8 +35,7 @@ public:
         for_each_parts_across(tree, [&](LeafIndex leaf, const Box&, const PartsAcross& across) {
             leaves_[leaf].across = across;
         });
-        isotropic_ = std::ranges::all_of(
-            metrics_, [](const M& m) { return is_stored_length<M> || is_isotropic(m); });
+        isotropic_ = is_stored_length<M> || std::ranges::all_of(metrics_.metrics(), is_isotropic);
     }
 
     template <class Node, class Value>
@@ -49,7 +48,7 @@ public:
         return leaves_[leaf].across;
     }
     Metric metric(LeafIndex leaf) const { return metrics_[leaf]; }
-    void prefetch_metric(LeafIndex leaf) const { __builtin_prefetch(&metrics_[leaf]); }
+    void prefetch_metric(LeafIndex leaf) const { __builtin_prefetch(metrics_.items() + leaf); }
     double length(LeafIndex leaf) const { return length_of(metrics_[leaf]); }
     bool all_isotropic() const { return isotropic_; }
     double slope() const { return rule_.slope; }
@@ -57,11 +56,11 @@ public:
 
     template <class Node>
     ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
-        return {leaf_graph(tree, neighbourhood).graph, {metrics_.begin(), metrics_.end()}};
+        return {leaf_graph(tree, neighbourhood).graph, metrics_.metrics()};
     }
     template <class Node>
     void save(const Topology<Node>&, StateWriter& state) const {
-        NodeMetrics::exchange(NodeMetrics({metrics_.begin(), metrics_.end()}), state);
+        NodeMetrics::exchange(saved_metrics<M>(metrics_.metrics()), state);
         state("quadratic.slope", rule_.slope);
     }
 
@@ -80,7 +79,7 @@ std::unique_ptr<ControlSpace> freeze_quadratic(const Topology<Node>& tree,
     return with_stored<true>(precision, metrics, [&]<class M>(std::type_identity<M>) {
         return with_plane(planes, [&]<class Plane>(Plane) {
             FrozenQuadratic<M, Plane> values(ordered, std::move(planes),
-                                             stored_metrics<M>(metrics, order), rule);
+                                             StoredMetrics<M>(metrics, order), rule);
             return frozen(std::move(ordered), std::move(values));
         });
     });

@@ -15,11 +15,11 @@ namespace {
 /// Whether leaves hold the metrics at their corners themselves: they take no more bytes than their
 /// numbers.
 template <class M>
-constexpr bool in_leaves = sizeof(M) <= sizeof(NodeIndex);
+constexpr bool in_leaves = sizeof(typename Packing<M>::Item) <= sizeof(NodeIndex);
 
 template <class M, class Plane>
 struct VertexLeaf {
-    std::conditional_t<in_leaves<M>, std::array<M, 8>, Corners> corners;
+    std::conditional_t<in_leaves<M>, std::array<typename Packing<M>::Item, 8>, Corners> corners;
     Faces<Plane> faces;
 };
 
@@ -33,20 +33,20 @@ public:
     /// `corners` are those of the tree's leaves, whose numbers point into `metrics`.
     template <class Node>
     FrozenVertices(const Topology<Node>& tree, CutPlanes planes,
-                   const std::vector<Corners>& corners, std::vector<M> metrics)
+                   const std::vector<Corners>& corners, StoredMetrics<M> metrics)
         : Base(std::move(planes), std::move(metrics)), vertices_(metrics_.size()) {
         leaves_.reserve(tree.leaves());
         for_each_faces<Plane>(tree, planes_, [&](LeafIndex leaf, const Faces<Plane>& faces) {
             auto& added = leaves_.emplace_back(VertexLeaf<M, Plane>{{}, faces});
             for (std::size_t c = 0; c < 8; ++c) {
                 if constexpr (in_leaves<M>) {
-                    added.corners[c] = metrics_[corners[leaf][c]];
+                    added.corners[c] = metrics_.items()[corners[leaf][c]];
                 } else {
                     added.corners[c] = corners[leaf][c];
                 }
             }
         });
-        if constexpr (in_leaves<M>) metrics_ = std::vector<M>();
+        if constexpr (in_leaves<M>) metrics_.drop_items();
     }
 
     template <class Node, class Value>
@@ -61,9 +61,11 @@ public:
     auto at_corners(LeafIndex leaf) const {
         const auto& corners = leaves_[leaf].corners;
         if constexpr (in_leaves<M>) {
-            return [&](std::size_t c) -> const M& { return corners[c]; };
+            return [&corners, packing = metrics_.packing()](std::size_t c) -> decltype(auto) {
+                return packing(corners[c]);
+            };
         } else {
-            return AtCorners<M>{corners, metrics_.data()};
+            return AtCorners<M>{corners, metrics_.items()};
         }
     }
 
@@ -76,7 +78,7 @@ public:
     template <class Node>
     void save(const Topology<Node>& tree, StateWriter& state) const {
         const std::vector<Corners> corners = all_corners(tree);
-        NodeMetrics::exchange(NodeMetrics(metrics_of(corners)), state);
+        NodeMetrics::exchange(saved_metrics<M>(metrics_of(corners)), state);
         state("vertices.of_leaves", corners);
     }
     void describe(Footprint& footprint) const {
@@ -107,12 +109,12 @@ private:
             std::vector<Metric> metrics(vertices_);
             for (LeafIndex leaf = 0; leaf < leaves_.size(); ++leaf) {
                 for (std::size_t c = 0; c < 8; ++c) {
-                    metrics[corners[leaf][c]] = leaves_[leaf].corners[c];
+                    metrics[corners[leaf][c]] = metrics_.packing()(leaves_[leaf].corners[c]);
                 }
             }
             return metrics;
         } else {
-            return {metrics_.begin(), metrics_.end()};
+            return metrics_.metrics();
         }
     }
 
@@ -151,7 +153,7 @@ std::unique_ptr<ControlSpace> freeze_vertices(const Topology<Node>& tree,
     return with_stored<true>(precision, metrics, [&]<class M>(std::type_identity<M>) {
         return with_plane(planes, [&]<class Plane>(Plane) {
             FrozenVertices<M, Plane> values(ordered, std::move(planes), ordered_corners,
-                                            stored_metrics<M>(metrics, vertices));
+                                            StoredMetrics<M>(metrics, vertices));
             return frozen(std::move(ordered), std::move(values));
         });
     });

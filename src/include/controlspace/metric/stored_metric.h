@@ -1,13 +1,17 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <type_traits>
 
 #include "controlspace/metric/metric.h"
 
 namespace controlspace {
 
-/// Type of the numbers in the metrics of a compact form.
-enum class Precision { doubles, floats };
+/// Type of the numbers in the metrics of a compact form; shorts: lengths in 16 bits, where all
+/// metrics are isotropic.
+enum class Precision { doubles, floats, shorts };
 
 /// A metric in six numbers of another type; floats round each by a relative 6e-8 at most.
 template <class Number>
@@ -33,6 +37,48 @@ struct StoredLength {
     StoredLength() = default;
     explicit StoredLength(const Metric& isotropic) : h(static_cast<Number>(isotropic.xx)) {}
     operator Metric() const { return Metric::isotropic(h); }
+};
+
+/// A length that is kept in 16 bits (Packing), as it is read from there.
+template <>
+struct StoredLength<std::uint16_t> : StoredLength<double> {
+    using StoredLength<double>::StoredLength;
+};
+
+/// How arrays of a compact form keep metrics of type M: as they are.
+template <class M>
+struct Packing {
+    using Item = M;
+
+    const M& operator()(const M& item) const { return item; }
+};
+
+/// Lengths in 16 bits: the shortest one times a power of `step`, rounded by a relative
+/// sqrt(step) - 1 < 1e-4; the longest is up to 4.9e5 times the shortest. They are products of two
+/// tables, which are made by multiplication alone: the same bits on every machine.
+template <>
+struct Packing<StoredLength<std::uint16_t>> {
+    using Item = std::uint16_t;
+
+    static constexpr double step = 1.0002;
+    static constexpr std::size_t fine_steps = 256;
+    /// Powers of the step.
+    static constexpr std::array<double, fine_steps + 1> fine = [] {
+        std::array<double, fine_steps + 1> powers{};
+        double next = 1;
+        for (double& power : powers) {
+            power = next;
+            next *= step;
+        }
+        return powers;
+    }();
+
+    const double* coarse = nullptr;  ///< lengths `fine_steps` steps apart, from the shortest on
+
+    StoredLength<std::uint16_t> operator()(Item code) const {
+        return StoredLength<std::uint16_t>(
+            Metric::isotropic(coarse[code / fine_steps] * fine[code % fine_steps]));
+    }
 };
 
 template <class M>

@@ -20,7 +20,8 @@ namespace controlspace {
 struct BuildOptions {
     /// The compact form, for a CatalogueEntry that has CompactForm: answers alike in less memory;
     /// isotropic metrics are kept as lengths.
-    /// With doubles it answers the same bits; floats round the metrics by 6e-8.
+    /// With doubles it answers the same bits; floats round the metrics by 6e-8; shorts, for
+    /// isotropic fields alone, round lengths by a relative 1e-4.
     std::optional<Precision> precision = {};
 };
 
@@ -56,7 +57,8 @@ public:
     /// The control space made so far. It stays as it is while the builder goes on; both share their
     /// data until then, so that this costs no copy. Throws InputError where a compact form is
     /// requested of a structure that has none, and for metrics that floats cannot hold (beyond
-    /// 1e-38 to 3e38, or with lengths in ratios above about 1e4).
+    /// 1e-38 to 3e38, or with lengths in ratios above about 1e4) or shorts (tensors, or lengths of
+    /// more than 4.9e5 times the shortest).
     virtual std::unique_ptr<ControlSpace> build(const BuildOptions& options = {}) = 0;
 
     virtual Box domain() const = 0;

@@ -33,7 +33,7 @@ struct ReferenceKind {
 const ReferenceKind& exact_reference_kind();
 
 /// Whether a structure is built in its compact form (BuildOptions::precision).
-enum class Frozen { no, doubles, floats };
+enum class Frozen { no, doubles, floats, shorts };
 
 /// One structure under one setting, which gives one row of results. Its members are set by the rows
 /// of case_parameters(). What does not apply to the structure is none, or has its default.
@@ -108,7 +108,8 @@ struct Words<Frozen> {
     static constexpr Word<Frozen> table[] = {
         {Frozen::no, "no", "trees as they are made"},
         {Frozen::doubles, "doubles", "compact and read-only, the same bits"},
-        {Frozen::floats, "floats", "compact, metrics rounded by 6e-8"}};
+        {Frozen::floats, "floats", "compact, metrics rounded by 6e-8"},
+        {Frozen::shorts, "shorts", "compact, isotropic lengths in 16 bits, rounded by 1e-4"}};
 };
 
 }  // namespace controlspace

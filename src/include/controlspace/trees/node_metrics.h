@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "controlspace/metric/metric.h"
+#include "controlspace/metric/stored_metric.h"
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/detail/state.h"
 
@@ -15,10 +16,11 @@ namespace controlspace {
 /// field's, or the requested ones. `M` is Metric, or in compact forms what converts to it.
 template <class M>
 struct NodeView {
-    std::span<const M> metrics;
+    std::span<const typename Packing<M>::Item> metrics;
     bool are_requested = false;  ///< by the sources, before gradation
+    [[no_unique_address]] Packing<M> packing = {};
 
-    const M& operator[](std::size_t node) const { return metrics[node]; }
+    decltype(auto) operator[](std::size_t node) const { return packing(metrics[node]); }
 };
 
 /// Metrics of the control nodes of a structure: the field, which gradation makes smaller; and,

@@ -25,9 +25,55 @@ namespace controlspace {
 // lengths. With doubles they answer as the tree does, to the bit. They are saved as the tree is,
 // with nodes and leaves in their order.
 
-/// The metrics with these numbers, in their order. Throws InputError where floats cannot hold one.
+/// The metrics of a compact form.
 template <class M>
-std::vector<M> stored_metrics(std::span<const Metric> metrics, std::span<const NodeIndex> numbers);
+class StoredMetrics {
+public:
+    using Item = typename Packing<M>::Item;
+
+    /// The metrics with these numbers, in their order. Throws InputError where one cannot be held.
+    StoredMetrics(std::span<const Metric> metrics, std::span<const NodeIndex> numbers);
+
+    std::size_t size() const { return items_.size(); }
+    decltype(auto) operator[](std::size_t i) const { return packing()(items_[i]); }
+    const Item* items() const { return items_.data(); }
+    Packing<M> packing() const {
+        if constexpr (requires(Packing<M> p) { p.coarse; }) {
+            return {coarse_.data()};
+        } else {
+            return {};
+        }
+    }
+    NodeView<M> values() const { return {items_, false, packing()}; }
+    std::vector<Metric> metrics() const {
+        std::vector<Metric> all;
+        all.reserve(size());
+        for (const Item& item : items_) all.push_back(packing()(item));
+        return all;
+    }
+    std::size_t bytes() const {
+        return items_.capacity() * sizeof(Item) + coarse_.capacity() * sizeof(double);
+    }
+    /// Leaves no items, only how they are packed.
+    void drop_items() { items_ = std::vector<Item>(); }
+
+private:
+    std::vector<Item> items_;
+    std::vector<double> coarse_;  // see Packing
+};
+
+/// The metrics of a compact form for a file: shorts as floats, which take less room there and are
+/// rounded to the same shorts again.
+template <class M>
+NodeMetrics saved_metrics(std::vector<Metric> metrics) {
+    if constexpr (std::is_same_v<M, StoredLength<std::uint16_t>>) {
+        for (Metric& m : metrics) m = StoredLength<float>(m);
+    }
+    return NodeMetrics(std::move(metrics));
+}
+
+/// Throws InputError: shorts hold lengths only.
+[[noreturn]] void refuse_shorts();
 
 /// pack(std::type_identity<M>()) for the type that metrics are stored in, which is that of lengths
 /// where all are isotropic, if it `may_be_lengths`.
@@ -37,10 +83,14 @@ std::unique_ptr<ControlSpace> with_stored(Precision precision, std::span<const M
     const bool floats = precision == Precision::floats;
     if constexpr (may_be_lengths) {
         if (std::ranges::all_of(metrics, is_isotropic)) {
+            if (precision == Precision::shorts) {
+                return pack(std::type_identity<StoredLength<std::uint16_t>>());
+            }
             return floats ? pack(std::type_identity<StoredLength<float>>())
                           : pack(std::type_identity<StoredLength<double>>());
         }
     }
+    if (precision == Precision::shorts) refuse_shorts();
     return floats ? pack(std::type_identity<StoredMetric<float>>())
                   : pack(std::type_identity<StoredMetric<double>>());
 }
@@ -55,8 +105,7 @@ public:
     /// Of a storage made with `options`; `former` are the former numbers of the leaves.
     PackedValues(const Storage& storage, const SpaceOptions& options,
                  std::span<const LeafIndex> former)
-        : storage_(without_metrics(storage, options)),
-          metrics_(stored_metrics<M>(storage.metrics().field(), former)) {
+        : storage_(without_metrics(storage, options)), metrics_(storage.metrics().field(), former) {
         for_each_array(storage_, [&](std::string_view, auto& array) {
             auto ordered = std::remove_cvref_t<decltype(array)>();
             ordered.reserve(former.size());
@@ -73,16 +122,16 @@ public:
     }
     template <class Node>
     ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
-        return {leaf_graph(tree, neighbourhood).graph, {metrics_.begin(), metrics_.end()}};
+        return {leaf_graph(tree, neighbourhood).graph, metrics_.metrics()};
     }
     void describe(Footprint& footprint) const {
         describe_storage(storage_, footprint);
         footprint.control_nodes = metrics_.size();
-        footprint.bytes_payload += metrics_.capacity() * sizeof(M);
+        footprint.bytes_payload += metrics_.bytes();
     }
     template <class Node>
     void save(const Topology<Node>&, StateWriter& state) const {
-        save_storage(storage_, NodeMetrics({metrics_.begin(), metrics_.end()}), state);
+        save_storage(storage_, saved_metrics<M>(metrics_.metrics()), state);
     }
 
 private:
@@ -92,10 +141,10 @@ private:
         copy.metrics() = NodeMetrics(0, Metric());
         return copy;
     }
-    NodeField<Storage, M> field() const { return {storage_, {metrics_}}; }
+    NodeField<Storage, M> field() const { return {storage_, metrics_.values()}; }
 
     Storage storage_;  // without metrics
-    std::vector<M> metrics_;
+    StoredMetrics<M> metrics_;
 };
 
 /// A tree whose leaves, numbered depth first, hold `Values`: see PackedValues.
