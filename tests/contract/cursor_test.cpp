@@ -73,6 +73,7 @@ STRUCTURE_CASE(every_structure, "a cursor answers as the space, in its compact f
     if (!structure.entry->has<CompactForm>()) return;
     require_same(*space->compact(Precision::doubles));
     require_same(*space->compact(Precision::floats));
+    if (work.isotropic()) require_same(*space->compact(Precision::shorts));
 }
 
 TEST_CASE("a space that comes to lie where another one lay is asked anew, in every thread",

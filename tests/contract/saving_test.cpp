@@ -75,7 +75,8 @@ STRUCTURE_CASE(has_compact_form,
                "a frozen control space is frozen again after loading, with the same bits") {
     const ScratchDirectory scratch("saving");
     const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere(), flat_box());
-    const Precision precision = GENERATE(Precision::doubles, Precision::floats);
+    const Precision precision = GENERATE(Precision::doubles, Precision::floats, Precision::shorts);
+    if (precision == Precision::shorts && !work.isotropic()) return;
     CAPTURE(work.name, static_cast<int>(precision));
     const auto frozen = work.graded(structure)->compact(precision);
     save_control_space(scratch / "frozen.ctrl", *frozen);

@@ -28,12 +28,12 @@ namespace {
 
 const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
 
-std::unique_ptr<EditableSpace> small_tree(std::string_view id) {
+std::unique_ptr<EditableSpace> small_tree(std::string_view id, bool isotropic = false) {
     for (const CatalogueEntry& entry : structures()) {
         if (entry.id != id) continue;
         auto space = editable(entry.make({.domain = domain, .finest_length = 0.1}));
         space->insert({Point(0.3, 0.2, 0.1), Metric::isotropic(0.1)});
-        space->insert({Point(-0.3, 0.2, 0.1), {0.1, 0.2, 0.3, 0.01, 0.02, 0.03}});
+        if (!isotropic) space->insert({Point(-0.3, 0.2, 0.1), {0.1, 0.2, 0.3, 0.01, 0.02, 0.03}});
         space->grade({});
         return space;
     }
@@ -134,7 +134,9 @@ CASE_OF_EACH(entry, structures(),
     };
     const auto space = small_tree(entry.id);
     check(*space);
-    if (entry.has<CompactForm>()) check(*space->compact(Precision::floats));
+    if (!entry.has<CompactForm>()) return;
+    check(*space->compact(Precision::floats));
+    check(*small_tree(entry.id, true)->compact(Precision::shorts));
 }
 
 TEST_CASE("files are the same to the bit however many threads there are, and read by any number",

@@ -82,8 +82,9 @@ CASE_OF_EACH(tree, trees(),
         const std::vector<Metric> expected = answers(*space, x);
         CHECK(checksum(answers(*doubles, x)) == checksum(expected));
         if (s_n == 1) {
+            const auto shorts = space->compact(Precision::shorts);
             for (const ControlSpace* form : std::initializer_list<const ControlSpace*>{
-                     &space->built(), doubles.get(), floats.get()}) {
+                     &space->built(), doubles.get(), floats.get(), shorts.get()}) {
                 std::vector<double> lengths(x.size());
                 form->sample_lengths(x, lengths);
                 const std::vector<Metric> metrics = answers(*form, x);
@@ -115,6 +116,27 @@ CASE_OF_EACH(tree, trees(),
     }
 }
 
+CASE_OF_EACH(entry, tree_catalogue(), "shorts round lengths by 1e-4 at a million places") {
+    const auto space = TreeUnderTest{&entry, SplitRule::middle}.graded(sphere(1));
+    const bool interpolates = entry.order < 2;  // with weights from 0 to 1
+    if (interpolates) {
+        std::vector<Metric> lengths = space->control_nodes(Neighbourhood::faces).metrics;
+        RandomFractions fraction(5);
+        for (Metric& m : lengths) m = Metric::isotropic(1e-3 * std::pow(4.9e5, fraction()));
+        space->assign(lengths);
+    }
+    const std::vector<Point> x = random_points(domain, 1'000'000, 9);
+    std::vector<double> expected(x.size()), rounded(x.size());
+    space->compact(Precision::doubles)->sample_lengths(x, expected);
+    space->compact(Precision::shorts)->sample_lengths(x, rounded);
+    double most = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        most = std::max(most, std::abs(rounded[i] / expected[i] - 1));
+    }
+    CHECK(most > 5e-5);
+    CHECK(most <= (interpolates ? 1e-4 : 2e-4));
+}
+
 CASE_OF_EACH(tree, trees(), "frozen trees have the same control nodes and links as before") {
     using Entered = std::tuple<double, double, double, double, std::size_t>;
     const auto entered = [](const ControlSpace& space, Neighbourhood neighbourhood) {
@@ -144,7 +166,8 @@ CASE_OF_EACH(tree, trees(),
     const std::vector<PointSource> sources = sphere(s_n);
     const auto space = tree.graded(sources);
     const Footprint full = space->footprint();
-    for (const Precision precision : {Precision::doubles, Precision::floats}) {
+    for (const Precision precision : {Precision::doubles, Precision::floats, Precision::shorts}) {
+        if (precision == Precision::shorts && numbers > 1) continue;
         const std::size_t before = live_bytes();
         const auto frozen = space->compact(precision);
         const std::size_t allocated = live_bytes() - before;
@@ -156,25 +179,35 @@ CASE_OF_EACH(tree, trees(),
         CHECK(footprint.depth == full.depth);
         CHECK(footprint.control_nodes == full.control_nodes);
         // Lengths in floats take no more than numbers of vertices: leaves hold them.
-        const bool floats = precision == Precision::floats;
-        const bool in_leaves = tree.entry->id.ends_with("V") && floats && numbers == 1;
-        CHECK(footprint.bytes_payload ==
-              (in_leaves ? 8 * footprint.cells : footprint.control_nodes) *
-                  static_cast<std::size_t>(numbers) * (floats ? sizeof(float) : sizeof(double)));
+        const bool in_leaves =
+            tree.entry->id.ends_with("V") && numbers == 1 && precision != Precision::doubles;
+        const std::size_t number = precision == Precision::doubles  ? sizeof(double)
+                                   : precision == Precision::floats ? sizeof(float)
+                                                                    : sizeof(std::uint16_t);
+        const std::size_t payload = (in_leaves ? 8 * footprint.cells : footprint.control_nodes) *
+                                    static_cast<std::size_t>(numbers) * number;
+        const std::size_t table = precision == Precision::shorts ? 256 * sizeof(double) : 0;
+        CHECK(footprint.bytes_payload >= payload);
+        CHECK(footprint.bytes_payload <= payload + table);
         CHECK(footprint.bytes_auxiliary <= full.bytes_auxiliary);
     }
 }
 
-TEST_CASE("lengths in floats take few bytes a leaf, beside the lookup grid") {
+TEST_CASE("lengths in floats and shorts take few bytes a leaf, beside the lookup grid") {
     const std::vector<PointSource> sources = sphere(1);
-    const std::pair<const char*, double> most[] = {
-        {"K_L", 21}, {"K_oL", 14}, {"K_V", 61}, {"K_oV", 54}};
-    for (const auto& [id, bytes] : most) {
+    const std::tuple<const char*, double, double> most[] = {
+        {"K_L", 21, 19}, {"K_oL", 14, 12}, {"K_V", 61, 45}, {"K_oV", 54, 38}};
+    for (const auto& [id, floats, shorts] : most) {
         CAPTURE(id);
-        const TreeUnderTest tree{find_entry(tree_catalogue(), id), SplitRule::middle};
-        const Footprint f = tree.graded(sources)->compact(Precision::floats)->footprint();
-        CHECK(static_cast<double>(f.bytes_payload + f.bytes_topology) <=
-              bytes * static_cast<double>(f.cells));
+        const auto space =
+            TreeUnderTest{find_entry(tree_catalogue(), id), SplitRule::middle}.graded(sources);
+        const auto bytes_per_leaf = [&](Precision precision) {
+            const Footprint f = space->compact(precision)->footprint();
+            return static_cast<double>(f.bytes_payload + f.bytes_topology) /
+                   static_cast<double>(f.cells);
+        };
+        CHECK(bytes_per_leaf(Precision::floats) <= floats);
+        CHECK(bytes_per_leaf(Precision::shorts) <= shorts);
     }
 }
 
@@ -198,9 +231,11 @@ CASE_OF_EACH(tree, trees(), "lengths of a tree that meets its first tensor are t
 }
 
 CASE_OF_EACH(entry, tree_catalogue(), "a tree of one leaf is frozen like any other") {
-    const auto frozen = editable(entry.make({.domain = domain}))->compact(Precision::floats);
     const double all = largest_metric(domain).xx;
-    CHECK(sample_at(*frozen, Point(0.3, 0.1, 0.2)).xx == Approx(all).epsilon(1e-7));
+    for (const Precision precision : {Precision::floats, Precision::shorts}) {
+        const auto frozen = editable(entry.make({.domain = domain}))->compact(precision);
+        CHECK(sample_at(*frozen, Point(0.3, 0.1, 0.2)).xx == Approx(all).epsilon(1e-7));
+    }
 }
 
 TEST_CASE("trees with more planes than 16 bits can number are frozen too") {
@@ -234,7 +269,13 @@ TEST_CASE("what cannot be frozen is refused, with what would help") {
         CHECK_THROWS_WITH(space->compact(Precision::floats), Contains("use doubles"));
         CHECK_NOTHROW(space->compact(Precision::doubles));
     }
-    CHECK_NOTHROW(with(layer_metric(slanted, 1e-3, 1))->compact(Precision::floats));
+    const auto slab = with(layer_metric(slanted, 1e-3, 1));
+    CHECK_NOTHROW(slab->compact(Precision::floats));
+    CHECK_THROWS_WITH(slab->compact(Precision::shorts), Contains("isotropic: use floats"));
+    const double longest = largest_metric(domain).xx;
+    CHECK_NOTHROW(with(Metric::isotropic(longest / 4.9e5))->compact(Precision::shorts));
+    CHECK_THROWS_WITH(with(Metric::isotropic(longest / 5e5))->compact(Precision::shorts),
+                      Contains("use floats"));
     const auto anchored = editable(tree_named("K_LA").make({.domain = domain}));
     CHECK_THROWS_WITH(anchored->compact(Precision::doubles), Contains("choose a tree"));
 }

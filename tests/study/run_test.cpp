@@ -178,15 +178,16 @@ TEST_CASE(
 
 TEST_CASE("frozen trees answer alike, in less memory, and what cannot be frozen is as it was") {
     Study study = small_study({"K_oV", "K_LA"});
-    study.runs[0]["frozen"] = {"no", "doubles", "floats"};
+    study.runs[0]["frozen"] = {"no", "doubles", "floats", "shorts"};
     const auto trees = tree_catalogue();
     std::vector<CatalogueEntry> catalogue(trees.begin(), trees.end());
     const auto anchored = anchored_catalogue();
     catalogue.insert(catalogue.end(), anchored.begin(), anchored.end());
     const auto rows = run(study, catalogue);
-    REQUIRE(rows.size() == 4);
+    REQUIRE(rows.size() == 5);
     for (const Row& row : rows) REQUIRE(row.is_measured());
     CHECK(structure_label(rows[2].setting) == "K_oV, frozen with floats");
+    CHECK(structure_label(rows[3].setting) == "K_oV, frozen with shorts");
     const auto bytes = [&](std::size_t i) { return rows[i].number("bytes_total"); };
     const auto sum = [&](std::size_t i) { return rows[i].values.at("checksum"); };
     CHECK(sum(1) == sum(0));
@@ -194,7 +195,8 @@ TEST_CASE("frozen trees answer alike, in less memory, and what cannot be frozen 
     CHECK(rows[2].number("delta_R_max") == Approx(rows[0].number("delta_R_max")).epsilon(1e-4));
     CHECK(bytes(1) < bytes(0));
     CHECK(bytes(2) < bytes(1));
-    CHECK(rows[3].setting.structure == "K_LA");
+    CHECK(bytes(3) < bytes(2));
+    CHECK(rows[4].setting.structure == "K_LA");
 }
 
 TEST_CASE("graded by the sources, structures err between nodes only") {
