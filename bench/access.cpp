@@ -3,9 +3,9 @@
 // batch: a gather of the same metrics with precomputed indices, or of eight that are blended.
 //
 // Names: access/STRUCTURE/WORK/ORDER, and so with length, cursor and limit. STRUCTURE is a row of
-// the catalogue, -s_G with that split, -frozen and -floats in the forms that are only read, -fine a
-// grid whose voxels are as small as the octree's smallest leaf. Counters: bytes for a leaf (for a
-// cell of a grid). One WORK at a time (--benchmark_filter) keeps memory low.
+// the catalogue, -s_G with that split, -frozen, -floats and -shorts in the forms that are only
+// read, -fine a grid whose voxels are as small as the octree's smallest leaf. Counters: bytes for a
+// leaf (for a cell of a grid). One WORK at a time (--benchmark_filter) keeps memory low.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -66,6 +66,9 @@ std::vector<Row> rows_of(const Work& work) {
         if (is_tree) {
             rows.push_back({.name = entry.id + "-frozen", .frozen = Precision::doubles});
             rows.push_back({.name = entry.id + "-floats", .frozen = Precision::floats});
+            if (work.sampling.s_n == 1) {  // isotropic
+                rows.push_back({.name = entry.id + "-shorts", .frozen = Precision::shorts});
+            }
         }
         if (first && entry.id == "K_L") {
             const auto make = [&](const Work& w) { return graded(entry, w, SplitRule::golden); };
