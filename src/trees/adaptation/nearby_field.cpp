@@ -73,6 +73,7 @@ struct NearbyField::Search {
     bool are_few = false;
     std::size_t evaluated = 0;    // places of the box that no other leaf shares
     bool is_close_enough = true;  // cones close to those nearby were all that mattered at them
+    std::vector<std::pair<Point, OrderFreeCones::Start>> close = {};  // of the last places
 
     bool takes_long() const { return !field.cones().is_isotropic(); }
     void gather() {
@@ -89,7 +90,9 @@ struct NearbyField::Search {
         const double tolerance = std::min(0.01 * field.target(), 0.1);
         for (std::size_t i = 0; i < x.size(); ++i) {
             const Metric* own_further = further.empty() ? nullptr : &further[i];
-            out[i] = answer(x[i], own_further, trail.nearest(x[i]), tolerance).metric;
+            const auto known = std::ranges::find(close, x[i], &decltype(close)::value_type::first);
+            const auto* near = known != close.end() ? &known->second : trail.nearest(x[i]);
+            out[i] = answer(x[i], own_further, near, tolerance).metric;
         }
     }
     // A search of all sources takes most of the time, and where the field is known at some places
@@ -98,6 +101,7 @@ struct NearbyField::Search {
     void by_close_cones(std::span<const Point> x, std::span<Metric> out) {
         constexpr std::size_t few = 8;
         const std::vector<Metric> further = field.continuous_at(x);
+        close.clear();
         for (std::size_t i = 0; i < x.size(); ++i) {
             const Metric* own_further = further.empty() ? nullptr : &further[i];
             const OrderFreeCones::Start* near = trail.nearest(x[i]);
@@ -105,12 +109,12 @@ struct NearbyField::Search {
                 out[i] = answer(x[i], own_further, near).metric;
                 continue;
             }
-            GoalCache::Answer close;
-            close.metric = field.cones().evaluate_close(x[i], own_further, *near, close.start);
-            out[i] = close.metric;
+            OrderFreeCones::Start& start = close.emplace_back(x[i], *near).second;
+            out[i] = field.cones().evaluate_close(x[i], own_further, *near, start);
             if (evaluated++ % few == 0) {
-                out[i] = answer(x[i], own_further, &close.start).metric;
-                is_close_enough = nonconformity(out[i], close.metric) < 0.1 * field.target();
+                const Metric found = out[i];
+                out[i] = answer(x[i], own_further, &start).metric;
+                is_close_enough = nonconformity(out[i], found) < 0.1 * field.target();
             }
         }
     }
@@ -158,6 +162,7 @@ void NearbyField::enter(const Box& box, bool at_many_points) {
     search_->box = box;
     search_->memory.hint = 0;
     search_->trail.clear();
+    search_->close.clear();
     search_->is_gathered = !at_many_points;
     search_->are_few = false;
     search_->evaluated = 0;

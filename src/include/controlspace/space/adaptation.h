@@ -40,11 +40,11 @@ struct AdaptationReport {
     /// largest sampled δ; below 3/4 of the target, a bound of it. Samples are taken at sources and
     /// next to them in the leaves beside them, at places that the structure was not fitted to, and
     /// by hill climbs from the worst of these, and, of tensors without an order, along edges of
-    /// trilinear leaves where cones are steep; a peak between them may be higher. With up to 64
-    /// sources, each leaf is compared with the cone of each, also around their tips, and cut from
-    /// 0.97 of the target on. With more tensors, leaves are cut from 0.99 of it on, and most places
-    /// far below it are compared with sources close to those that matter nearby; the others with
-    /// all, to a hundredth of the target.
+    /// trilinear leaves where cones are steep; a peak between them may be higher. With up to 512
+    /// sources, leaves are cut from 0.97 of the target on, and trilinear ones are compared with the
+    /// cone of each source, also around their tips; others are with up to 64. With more tensors,
+    /// leaves are cut from 0.99 of it on, and most places far below it are compared with sources
+    /// close to those that matter nearby; the others with all, to a hundredth of the target.
     double reached = 0;
     bool is_bound = false;  ///< `reached` is kept everywhere; otherwise it was sampled
     bool met = false;       ///< reached <= target
