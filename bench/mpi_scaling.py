@@ -150,8 +150,8 @@ Layers, tensors that are four times shorter along the radius:
 
 {table(layers)}
 
-Each rank keeps answers at shared places while it adapts to tensors, up to 125 MB. A process without sources
-takes 20 to 24 MB.
+While they adapt to tensors, ranks keep answers at shared places, up to 125 MB in all. A process without sources takes
+20 to 24 MB.
 
 ## Beside it: sweeps over faces
 
