@@ -78,13 +78,16 @@ FilledSpace made_or_loaded(const std::filesystem::path& input, const std::filesy
     Case c = only_case(study);
     Workload workload = make_workload(study, c.sources, file_readers());
     const bool is_by_default = DefaultTarget(input, given).set(c, workload);
-    Filled made = make_and_fill(study, c, program_rows(), workload, observer);
+    const bool is_exact_field = c.structure == "direct";
+    // Millions of sources need not be there twice.
+    const std::function<void()> forget = [&] { workload.sources = {}; };
+    Filled made = make_and_fill(study, c, program_rows(), workload, observer,
+                                is_exact_field ? forget : nullptr);
     filled.space = made.build(c);
     filled.structure = c.structure;
     filled.remark = remark_on(made.creation, filled.space->footprint());
     filled.missed_target = !is_by_default && !made.creation.shortfall.empty();
     filled.origin = Origin{std::move(study), c, std::move(workload)};
-    const bool is_exact_field = c.structure == "direct";
     if (!c.target_delta && !has_field(c.sources) && !is_exact_field) {
         if (observer.phase_started) observer.phase_started("comparing");
         filled.within = largest_factor(*filled.origin, *filled.space);

@@ -101,7 +101,8 @@ bool has_long_leaf(const ControlSpace& space, const SourceColumns& sources, doub
 }  // namespace
 
 Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
-                     const Workload& workload, const StudyObserver& observer) {
+                     const Workload& workload, const StudyObserver& observer,
+                     const std::function<void()>& inserted) {
     const CatalogueEntry& entry = entry_of(c, rows.structures);
     const bool is_adapted = c.target_delta || has_field(c.sources);
     if (is_adapted) require_follows(c, entry);
@@ -132,6 +133,7 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
         insertion += time.seconds();
     }
     creation.insert_s = {insertion};
+    if (inserted) inserted();
 
     time = phase("gradation");
     creation.gradation = filled.builder->grade(
