@@ -58,6 +58,14 @@ std::size_t chunk_elements(std::size_t element_size) {
 
 std::size_t chunks_at_once() { return 2 * threads_allowed(); }
 
+// Blosc works in two blocks, each no larger than what it is given, and in some memory more, and
+// does not look whether it gets them: throws std::bad_alloc where they are not there.
+void require_room_for_blosc(std::size_t size) {
+    constexpr std::size_t more = std::size_t{1} << 16;
+    const auto room = std::make_unique_for_overwrite<std::byte[]>(2 * size + more);
+    *static_cast<volatile std::byte*>(room.get()) = {};  // or no memory is asked for
+}
+
 // Calls make(i) on all threads and, in the order of i, take(i) on one at a time; their results are
 // exchanged in `room` places i % room.
 template <class Make, class Take>
@@ -103,6 +111,7 @@ void StateWriter::append(std::string_view name, NumberKind kind, std::size_t ele
         const std::size_t size = std::min(step, elements - first) * element_size;
         std::string& out = compressed[chunk % compressed.size()];
         out.resize(size + BLOSC_MAX_OVERHEAD);
+        require_room_for_blosc(size);
         constexpr int level = 5;
         constexpr int threads = 1;
         const int stored = blosc_compress_ctx(level, BLOSC_SHUFFLE, element_size, size,
@@ -185,6 +194,7 @@ void StateReader::decompress(std::string_view name, const Array& array,
     }
     const auto decompress_one = [&](std::size_t chunk) {
         const std::size_t size = elements(chunk) * array.element_size;
+        require_room_for_blosc(size);
         constexpr int threads = 1;
         const int got = blosc_decompress_ctx(array.chunks[chunk].data(),
                                              pieces[chunk % pieces.size()].get(), size, threads);
