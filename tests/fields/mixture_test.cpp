@@ -1,6 +1,9 @@
 #include "controlspace/fields/mixture.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <memory>
+#include <span>
 
 #include "controlspace/error.h"
 #include "controlspace/fields/surface_fields.h"
@@ -44,3 +47,20 @@ TEST_CASE("a mixture with itself, or with one that never matters, is the field")
 }
 
 TEST_CASE("a mixture needs a field") { CHECK_THROWS_AS(mixture({}), InputError); }
+
+TEST_CASE("a mixture is defined where all its fields are") {
+    struct Within final : ControlSpace {
+        explicit Within(const Box& where) : box(where) {}
+        void sample(std::span<const Point>, std::span<Metric> out) const override {
+            std::ranges::fill(out, Metric::isotropic(1));
+        }
+        Box domain() const override { return box; }
+        Box box;
+    };
+    const auto field = [](const Point& low, const Point& high) {
+        return std::make_shared<Within>(Box{low, high});
+    };
+    const auto mixed = mixture({field({0, -1, 2}, {4, 3, 9}), field({1, -2, 5}, {6, 2, 8})});
+    CHECK(mixed->domain().low == Point(1, -1, 5));
+    CHECK(mixed->domain().high == Point(4, 2, 8));
+}
