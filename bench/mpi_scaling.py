@@ -15,7 +15,7 @@ BOUNDS = 73  # of an octant at most: its parts, or their centres, and those of w
 KINDS = {INSERTED: ["--structures", "K_oL", "--target-delta", "0"],
          "K_oL, adapted to 1.2x": ["--structures", "K_oL", "--within", "1.2"]}
 # Of layers: the share of the sources, and how the tree is made.
-OF_LAYERS = {INSERTED: (4, KINDS[INSERTED]),
+OF_LAYERS = {INSERTED: (10, KINDS[INSERTED]),
              "K_oV, adapted to 1.2x": (100, ["--structures", "K_oV", "--within", "1.2"])}
 
 

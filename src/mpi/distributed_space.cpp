@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <ctime>
-#include <iterator>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -232,18 +231,22 @@ struct DistributedSpace::Impl {
     }
 
     template <class Storage>
-    std::unique_ptr<ControlSpace> inserted(std::span<const PointSource> sources,
+    std::unique_ptr<ControlSpace> inserted(std::vector<PointSource>& sources,
                                            std::span<const char> is_wanted,
                                            std::span<const Box> boxes, RankReport& about) const {
         const auto made = std::make_shared<InsertedPart<Storage>>(
             options.space, options.structure == "K_oLB", boxes);
-        std::vector<PointSource> inside;
-        std::ranges::copy_if(sources, std::back_inserter(inside), [&](const PointSource& source) {
-            return is_wanted[octants.tree().find(source.position)] != 0;
+        // Tensors are given to the field as they are, lengths in a third of the memory.
+        const std::vector<PointSource> tensors = has_tensors ? sources : std::vector<PointSource>();
+        const SourceColumns lengths = has_tensors ? SourceColumns() : columns_of(sources);
+        std::erase_if(sources, [&](const PointSource& source) {
+            return is_wanted[octants.tree().find(source.position)] == 0;
         });
-        made->insert(inside);
-        inside = std::vector<PointSource>();
-        made->grade(NodeGradation(options.space.ratio, sources, options.space));
+        made->insert(sources);
+        sources = std::vector<PointSource>();
+        made->grade(has_tensors
+                        ? NodeGradation(options.space.ratio, tensors, options.space)
+                        : NodeGradation({.ratio = options.space.ratio}, &lengths, options.space));
         made->finish();
         about.leaves = made->footprint().cells;
         using Tree = MetricTree<OctreeNode, Storage>;
