@@ -7,7 +7,12 @@
 namespace controlspace {
 namespace {
 
-constexpr std::uintptr_t page = 4096;
+constexpr std::size_t page = 4096;
+
+std::size_t bytes_to_next_page(const void* begin) {
+    const std::size_t before = reinterpret_cast<std::uintptr_t>(begin) % page;
+    return before == 0 ? 0 : page - before;
+}
 
 }  // namespace
 
@@ -15,18 +20,17 @@ void request_large_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::siz
 #ifdef MADV_HUGEPAGE
     constexpr std::size_t worthwhile = std::size_t{4} << 20;
     if (bytes < worthwhile) return;
-    const std::size_t before = reinterpret_cast<std::uintptr_t>(begin) % page;
-    const std::size_t skipped = before == 0 ? 0 : page - before;
+    const std::size_t skipped = bytes_to_next_page(begin);
     // No matter if it refuses.
     madvise(static_cast<char*>(begin) + skipped, bytes - skipped, MADV_HUGEPAGE);
 #endif
 }
 
 void give_back(void* begin, std::size_t bytes) {
-    const auto first = (reinterpret_cast<std::uintptr_t>(begin) + page - 1) / page * page;
-    const auto end = (reinterpret_cast<std::uintptr_t>(begin) + bytes) / page * page;
+    const std::size_t skipped = bytes_to_next_page(begin);
+    if (bytes < skipped + page) return;
     // No matter if it refuses.
-    if (first < end) madvise(reinterpret_cast<void*>(first), end - first, MADV_DONTNEED);
+    madvise(static_cast<char*>(begin) + skipped, (bytes - skipped) / page * page, MADV_DONTNEED);
 }
 
 }  // namespace controlspace
