@@ -55,10 +55,10 @@ struct GpuField::Copy {
           })) {}
 };
 
-GpuField::GpuField(const ControlSpace& field, Precision precision)
-    : copy_(precision == Precision::floats ? std::make_unique<Copy>(OctreeArrays<float>(field))
-                                           : std::make_unique<Copy>(OctreeArrays<double>(field))) {
+GpuField::GpuField(const ControlSpace& field, Precision precision) {
     if (precision == Precision::shorts) refuse("a GPU holds no shorts: use floats or doubles");
+    copy_ = precision == Precision::floats ? std::make_unique<Copy>(OctreeArrays<float>(field))
+                                           : std::make_unique<Copy>(OctreeArrays<double>(field));
 }
 GpuField::~GpuField() = default;
 GpuField::GpuField(GpuField&&) noexcept = default;

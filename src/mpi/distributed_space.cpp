@@ -236,7 +236,7 @@ struct DistributedSpace::Impl {
                                            std::span<const Box> boxes, RankReport& about) const {
         const auto made = std::make_shared<InsertedPart<Storage>>(
             options.space, options.structure == "K_oLB", boxes);
-        // Tensors are given to the field as they are, lengths in a third of the memory.
+        // Tensors are given to the field as they are, lengths as columns: 32 bytes in place of 80.
         const std::vector<PointSource> tensors = has_tensors ? sources : std::vector<PointSource>();
         const SourceColumns lengths = has_tensors ? SourceColumns() : columns_of(sources);
         std::erase_if(sources, [&](const PointSource& source) {
