@@ -35,11 +35,16 @@ public:
         // A source that is refused leaves those before it.
         std::size_t valid = 0;
         while (valid < sources.size() && is_valid(sources[valid], domain_)) ++valid;
-        if (sources_.size() + valid > most) {
-            refuse("sources kept as they are: give fewer than 2^31");
-        }
+        if (sources_.size() + valid > most) refuse_more();
         sources_.add(sources.first(valid));
         if (valid < sources.size()) require_valid(sources[valid], valid, domain_);
+        return {sources.size(), sources.size()};
+    }
+    InsertionReport insert(const SourceColumns& sources) {
+        require_valid(sources, domain_);
+        search_.reset();
+        if (sources_.size() + sources.size() > most) refuse_more();
+        sources_.add(sources);
         return {sources.size(), sources.size()};
     }
     GradationReport grade(const GradationOptions& options) {
@@ -82,8 +87,7 @@ public:
         state("sources.intersection", intersection_, IntersectionRule::in_turn);
         require_valid(GradationOptions{.ratio = ratio_});
         sources_ = {};
-        constexpr std::size_t at_once = 65536;
-        for (std::size_t i = 0; i < loaded.size(); i += at_once) insert(loaded.part(i, at_once));
+        insert(loaded);
     }
 
     const Box& domain() const { return domain_; }
@@ -104,6 +108,10 @@ public:
     }
 
 private:
+    [[noreturn]] static void refuse_more() {
+        refuse("sources kept as they are: give fewer than 2^31");
+    }
+
     static constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max() / 2;
 
     Box domain_;

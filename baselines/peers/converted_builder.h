@@ -18,9 +18,11 @@ class ConvertedBuilder final : public ControlSpaceBuilder {
 public:
     explicit ConvertedBuilder(std::unique_ptr<ControlSpaceBuilder> ours) : ours_(std::move(ours)) {}
 
+    using ControlSpaceBuilder::insert;
     InsertionReport insert(std::span<const PointSource> sources) override {
         return ours_->insert(sources);
     }
+    InsertionReport insert(const SourceColumns& sources) override { return ours_->insert(sources); }
     GradationReport grade(const GradationOptions& options) override {
         return ours_->grade(options);
     }

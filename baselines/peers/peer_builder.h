@@ -39,6 +39,7 @@ public:
         require_valid(options);
     }
 
+    using ControlSpaceBuilder::insert;
     InsertionReport insert(std::span<const PointSource> sources) override {
         for (std::size_t i = 0; i < sources.size(); ++i) append(sources[i], i);
         return {sources.size(), sources.size()};

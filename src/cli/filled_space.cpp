@@ -79,10 +79,7 @@ FilledSpace made_or_loaded(const std::filesystem::path& input, const std::filesy
     Workload workload = make_workload(study, c.sources, file_readers());
     const bool is_by_default = DefaultTarget(input, given).set(c, workload);
     const bool is_exact_field = c.structure == "direct";
-    // Millions of sources need not be there twice.
-    const std::function<void()> forget = [&] { workload.sources = {}; };
-    Filled made = make_and_fill(study, c, program_rows(), workload, observer,
-                                is_exact_field ? forget : nullptr);
+    Filled made = make_and_fill(study, c, program_rows(), workload, observer);
     filled.space = made.build(c);
     filled.structure = c.structure;
     filled.remark = remark_on(made.creation, filled.space->footprint());

@@ -236,21 +236,26 @@ struct DistributedSpace::Impl {
                                            std::span<const Box> boxes, RankReport& about) const {
         const auto made = std::make_shared<InsertedPart<Storage>>(
             options.space, options.structure == "K_oLB", boxes);
-        // Tensors are given to the field as they are, lengths as columns: 32 bytes in place of 80.
-        const std::vector<PointSource> tensors = has_tensors ? sources : std::vector<PointSource>();
-        const SourceColumns lengths = has_tensors ? SourceColumns() : columns_of(sources);
+        // The field is made first: it needs sources that are not inserted here.
+        const NodeGradation by_sources = gradation_by(sources);
         std::erase_if(sources, [&](const PointSource& source) {
             return is_wanted[octants.tree().find(source.position)] == 0;
         });
+        sources.shrink_to_fit();
         made->insert(sources);
         sources = std::vector<PointSource>();
-        made->grade(has_tensors
-                        ? NodeGradation(options.space.ratio, tensors, options.space)
-                        : NodeGradation({.ratio = options.space.ratio}, &lengths, options.space));
+        made->grade(by_sources);
         made->finish();
         about.leaves = made->footprint().cells;
         using Tree = MetricTree<OctreeNode, Storage>;
         return std::make_unique<SharedSpace<Tree>>(made);
+    }
+
+    NodeGradation gradation_by(std::span<const PointSource> sources) const {
+        const SpaceOptions& space = options.space;
+        if (has_tensors) return {space.ratio, sources, space};
+        const SourceColumns lengths = columns_of(sources);
+        return {{.ratio = space.ratio}, &lengths, space};
     }
 
     mutable Ranks ranks;

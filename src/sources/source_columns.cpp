@@ -1,33 +1,56 @@
 #include "controlspace/sources/source_columns.h"
 
 #include <algorithm>
+#include <atomic>
+#include <utility>
 
 #include "refuse.h"
 
 namespace controlspace {
 
+SourceColumns::SourceColumns(std::vector<Point> positions, std::vector<double> lengths,
+                             std::vector<Metric> metrics, OwnGrowths growths)
+    : columns_(std::make_shared<Columns>(Columns{std::move(positions), std::move(lengths),
+                                                 std::move(metrics), std::move(growths)})) {}
+
 void SourceColumns::add(std::span<const PointSource> sources) {
+    if (columns_.use_count() > 1) {
+        columns_ = std::make_shared<Columns>(*columns_);
+    } else {
+        // What the last of those that shared them has read, perhaps in another thread, is behind
+        // us.
+        std::atomic_thread_fence(std::memory_order_acquire);
+    }
+    auto& [positions, lengths, metrics, growths] = *columns_;
     const auto is_isotropic = [](const PointSource& s) {
         return controlspace::is_isotropic(s.metric);
     };
-    const bool are_lengths = metrics_.empty() && std::ranges::all_of(sources, is_isotropic);
-    if (!are_lengths && metrics_.empty()) {
-        for (const double h : lengths_) metrics_.push_back(Metric::isotropic(h));
-        lengths_ = std::vector<double>();  // its memory too
+    const bool are_lengths = metrics.empty() && std::ranges::all_of(sources, is_isotropic);
+    if (!are_lengths && metrics.empty()) {
+        for (const double h : lengths) metrics.push_back(Metric::isotropic(h));
+        lengths = std::vector<double>();  // its memory too
     }
-    if (positions_.empty()) {
-        positions_.reserve(sources.size());
-        are_lengths ? lengths_.reserve(sources.size()) : metrics_.reserve(sources.size());
+    if (positions.empty()) {
+        positions.reserve(sources.size());
+        are_lengths ? lengths.reserve(sources.size()) : metrics.reserve(sources.size());
     }
     for (const PointSource& source : sources) {
-        growths_.add(positions_.size(), source.growth);
-        positions_.push_back(source.position);
+        growths.add(positions.size(), source.growth);
+        positions.push_back(source.position);
         if (are_lengths) {
-            lengths_.push_back(source.metric.xx);
+            lengths.push_back(source.metric.xx);
         } else {
-            metrics_.push_back(source.metric);
+            metrics.push_back(source.metric);
         }
     }
+}
+
+void SourceColumns::add(SourceColumns sources) {
+    if (empty()) {
+        *this = std::move(sources);
+        return;
+    }
+    for_each_part(sources, [&](std::span<const PointSource> part) { add(part); });
 }
 
 std::vector<PointSource> SourceColumns::part(std::size_t first, std::size_t count) const {
@@ -37,8 +60,9 @@ std::vector<PointSource> SourceColumns::part(std::size_t first, std::size_t coun
 }
 
 std::size_t SourceColumns::bytes() const {
-    return positions_.capacity() * sizeof(Point) + lengths_.capacity() * sizeof(double) +
-           metrics_.capacity() * sizeof(Metric) + growths_.bytes();
+    const Columns& c = *columns_;
+    return c.positions.capacity() * sizeof(Point) + c.lengths.capacity() * sizeof(double) +
+           c.metrics.capacity() * sizeof(Metric) + c.growths.bytes();
 }
 
 SourceColumns columns_of(std::span<const PointSource> sources) {

@@ -13,6 +13,13 @@ Insertion ControlSpaceBuilder::insert(const PointSource& source) {
                                                       : Insertion::already_met;
 }
 
+InsertionReport ControlSpaceBuilder::insert(const SourceColumns& sources) {
+    require_valid(sources, domain());
+    InsertionReport report;
+    for_each_part(sources, [&](std::span<const PointSource> part) { report += insert(part); });
+    return report;
+}
+
 GradationReport NodeBuilder::grade(const GradationOptions& options) {
     ControlNodes nodes = control_nodes(neighbourhood_of(options));
     const GradationReport report = controlspace::grade(nodes.graph, nodes.metrics, options);
@@ -61,6 +68,10 @@ void require_valid(const PointSource& source, std::size_t index, const std::stri
             fmt::format(" has the gradation ratio {}: give one from 1 to 1e6, or 0 for that of the "
                         "field",
                         source.growth));
+}
+
+void require_valid(const SourceColumns& sources, const Box& domain) {
+    for (std::size_t i = 0; i < sources.size(); ++i) require_valid(sources[i], i, domain);
 }
 
 bool is_valid(const PointSource& source, const Box& domain) {

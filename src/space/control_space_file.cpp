@@ -86,9 +86,8 @@ void fill(const CatalogueEntry& entry, const StateReader& state, SavedControlSpa
     own->set_recipe(saved.recipe);
     own->load(state);
     constexpr std::string_view given = "given";
-    own->set_given(has_sources(state, given)
-                       ? std::make_shared<SourceColumns>(load_sources(state, given))
-                       : nullptr);
+    own->set_given(has_sources(state, given) ? std::optional(load_sources(state, given))
+                                             : std::nullopt);
     own->set_grows_apart(state.has(grows_apart));
     saved.space = builder->build({.precision = saved.recipe.precision});
     if (!saved.recipe.precision) saved.builder = std::move(builder);

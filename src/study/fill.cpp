@@ -15,8 +15,6 @@
 namespace controlspace {
 namespace {
 
-constexpr std::size_t sources_at_once = std::size_t{1} << 22;  // of insertion
-
 /// A field is followed by adaptation; without a target only what keeps its cells can follow it.
 void require_follows(const Case& c, const CatalogueEntry& entry) {
     if (c.target_delta || !entry.has<SourceLeaves>()) return;
@@ -101,8 +99,7 @@ bool has_long_leaf(const ControlSpace& space, const SourceColumns& sources, doub
 }  // namespace
 
 Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
-                     const Workload& workload, const StudyObserver& observer,
-                     const std::function<void()>& inserted) {
+                     const Workload& workload, const StudyObserver& observer) {
     const CatalogueEntry& entry = entry_of(c, rows.structures);
     const bool is_adapted = c.target_delta || has_field(c.sources);
     if (is_adapted) require_follows(c, entry);
@@ -125,15 +122,8 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
         return filled;
     }
     const SourceColumns& sources = workload.sources;
-    double insertion = time.seconds();
-    for (std::size_t i = 0; i < sources.size(); i += sources_at_once) {
-        const std::vector<PointSource> part = sources.part(i, sources_at_once);
-        time = {};
-        creation.sources_inserted += filled.builder->insert(part).inserted;
-        insertion += time.seconds();
-    }
-    creation.insert_s = {insertion};
-    if (inserted) inserted();
+    creation.sources_inserted = filled.builder->insert(sources).inserted;
+    creation.insert_s = {time.seconds()};
 
     time = phase("gradation");
     creation.gradation = filled.builder->grade(

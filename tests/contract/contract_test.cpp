@@ -1,4 +1,6 @@
 // What every structure of the catalogue promises (spaces/control_space.h), whichever it is.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
@@ -73,6 +75,39 @@ STRUCTURE_CASE(does_not_round,
     CHECK(all_positive());
     space->grade({});
     CHECK(all_positive());
+}
+
+STRUCTURE_CASE(every_structure,
+               "columns of sources are inserted as an array is, and stay as they are") {
+    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+    CAPTURE(work.name);
+    const std::size_t half = work.sources.size() / 2;
+    const auto sources = std::span(work.sources).first(half);
+    const auto more = std::span(work.sources).subspan(half);
+    const SourceColumns columns = columns_of(sources);
+    const auto by_columns = structure.entry->make(work.options(structure.split));
+    const auto by_array = structure.entry->make(work.options(structure.split));
+    const auto require_same = [&] {
+        const std::vector<Point> x = random_points(work.domain, 1000, 3);
+        CHECK(answers(*by_columns->build(), x) == answers(*by_array->build(), x));
+    };
+    const InsertionReport report = by_columns->insert(columns);
+    const InsertionReport expected = by_array->insert(sources);
+    CHECK(report.sources == expected.sources);
+    CHECK(report.inserted == expected.inserted);
+    require_same();
+    by_columns->insert(columns_of(more));
+    by_array->insert(more);
+    by_columns->grade({.ratio = g});
+    by_array->grade({.ratio = g});
+    require_same();
+    CHECK(std::ranges::equal(columns.all(), sources));
+
+    SourceColumns refused = columns_of(sources);
+    refused.add(std::vector<PointSource>{{work.domain.high + Vector(1, 0, 0), {}}});
+    CHECK_THROWS_WITH(by_columns->insert(refused), Contains(fmt::format("source {} at", half)));
+    by_columns->grade({.ratio = g});
+    require_same();
 }
 
 STRUCTURE_CASE(does_not_round,

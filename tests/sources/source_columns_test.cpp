@@ -52,6 +52,25 @@ TEST_CASE("columns of isotropic sources take 32 bytes each") {
     CHECK(columns.lengths().capacity() == 0);
 }
 
+TEST_CASE("copies of columns share their memory until one of them is added to") {
+    const bool tensors = GENERATE(false, true);
+    const auto sources = drawn(100, tensors, true);
+    const auto more = drawn(50, true, true);
+    const SourceColumns first = columns_of(sources);
+    SourceColumns second;
+    second.add(first);
+    CHECK(second.positions().data() == first.positions().data());
+    second.add(columns_of(more));
+    CHECK(first.all() == sources);
+    auto both = sources;
+    both.insert(both.end(), more.begin(), more.end());
+    CHECK(second.all() == both);
+    const SourceColumns third = second;
+    second.add(second);
+    CHECK(third.all() == both);
+    CHECK(second.part(150, 150) == both);
+}
+
 TEST_CASE("columns without sources have no finest length") {
     CHECK_THROWS_WITH(finest_length(SourceColumns()), Catch::Contains("give at least one"));
 }

@@ -10,6 +10,7 @@
 #include "controlspace/metric/metric.h"
 #include "controlspace/metric/stored_metric.h"
 #include "controlspace/sources/point_source.h"
+#include "controlspace/sources/source_columns.h"
 #include "controlspace/space/adaptation.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/control_space.h"
@@ -38,6 +39,9 @@ public:
     virtual InsertionReport insert(std::span<const PointSource> sources) = 0;
     /// One source.
     Insertion insert(const PointSource& source);
+    /// Many sources, which are not copied where a builder keeps those it is given. None is inserted
+    /// where one is refused.
+    virtual InsertionReport insert(const SourceColumns& sources);
 
     /// Makes the field grow smoothly (paper §3.2). Structures whose control nodes carry metrics are
     /// graded alike: by default the nodes keep to the exact field of all sources so far, for
@@ -82,6 +86,8 @@ void require_valid(const PointSource& source, std::size_t index, const Box& doma
 /// The same for a source of any name: "source 3 (a.csv, line 5)".
 void require_valid(const PointSource& source, std::size_t index, const std::string& name,
                    const Box& domain);
+/// The same for each source.
+void require_valid(const SourceColumns& sources, const Box& domain);
 /// Whether it does not.
 bool is_valid(const PointSource& source, const Box& domain);
 /// Throws InputError unless there is one metric for each control node.

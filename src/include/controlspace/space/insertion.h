@@ -15,6 +15,12 @@ enum class Insertion {
 struct InsertionReport {
     std::uint64_t sources = 0;
     std::uint64_t inserted = 0;
+
+    InsertionReport& operator+=(const InsertionReport& other) {
+        sources += other.sources;
+        inserted += other.inserted;
+        return *this;
+    }
 };
 
 /// Steps 2 and 3 of insertion: whether a source of metric `requested`, at a place where the

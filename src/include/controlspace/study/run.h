@@ -81,10 +81,7 @@ struct Filled {
     /// In the requested form.
     std::unique_ptr<ControlSpace> build(const Case& c) const;
 };
-/// `inserted` is called where the builder has the sources: those of the workload are read no
-/// longer, unless the structure is a tree.
 Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
-                     const Workload& workload, const StudyObserver& observer = {},
-                     const std::function<void()>& inserted = {});
+                     const Workload& workload, const StudyObserver& observer = {});
 
 }  // namespace controlspace

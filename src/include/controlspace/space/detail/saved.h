@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <utility>
 
@@ -25,10 +24,13 @@ public:
     void set_recipe(std::optional<Recipe> recipe) { recipe_ = std::move(recipe); }
 
     /// The sources it was given, in builders of control nodes and, where sources may come later,
-    /// in what they build; null where they are not known or not needed. Not to be changed while
-    /// they are shared.
-    const std::shared_ptr<SourceColumns>& given() const { return given_; }
-    void set_given(std::shared_ptr<SourceColumns> given) { given_ = std::move(given); }
+    /// in what they build; none where they are not known or not needed.
+    const std::optional<SourceColumns>& given() const { return given_; }
+    void set_given(std::optional<SourceColumns> given) { given_ = std::move(given); }
+    /// Adds to them, where they are known.
+    void add_given(const auto& sources) {
+        if (given_) given_->add(sources);
+    }
 
     /// Whether sources have gradation ratios of their own: where the sources are not known any
     /// more, gradation from node to node would take the growth of such cones away.
@@ -38,7 +40,7 @@ public:
 private:
     bool grows_apart_ = false;
     std::optional<Recipe> recipe_;
-    std::shared_ptr<SourceColumns> given_;
+    std::optional<SourceColumns> given_;
 };
 
 /// A builder that takes back what was saved. Throws InputError where what is read is not sound; it

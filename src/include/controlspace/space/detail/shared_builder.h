@@ -114,7 +114,7 @@ public:
     template <class... Arguments>
     explicit SharedBuilder(const Arguments&... arguments)
         : data_(std::make_shared<Data>(arguments...)) {
-        if constexpr (has_nodes) this->set_given(std::make_shared<SourceColumns>());
+        if constexpr (has_nodes) this->set_given(SourceColumns());
     }
 
     using ControlSpaceBuilder::insert;
@@ -126,6 +126,23 @@ public:
         }
         return edit().insert(sources);
     }
+    InsertionReport insert(const SourceColumns& sources) override {
+        if constexpr (requires(Data & data) { data.insert(sources); }) {
+            return edit().insert(sources);
+        } else if constexpr (has_nodes) {
+            if (!this->given()) return Base::insert(sources);
+            require_valid(sources, domain());
+            graded_by_sources_.reset();
+            this->add_given(sources);
+            if (!sources.growths().empty()) this->set_grows_apart(true);
+            InsertionReport report;
+            for_each_part(
+                sources, [&](std::span<const PointSource> part) { report += edit().insert(part); });
+            return report;
+        } else {
+            return Base::insert(sources);
+        }
+    }
     GradationReport grade(const GradationOptions& options) override {
         if constexpr (has_nodes) {
             if (graded_by_sources_ == options) return {.visits = 0};
@@ -134,7 +151,8 @@ public:
                     "it holds sources with gradation ratios of their own, which are not known any "
                     "more: adapt it anew, or insert and grade them in a new one");
             }
-            const NodeGradation gradation(options, this->given().get(), data_->options());
+            const NodeGradation gradation(options, this->given() ? &*this->given() : nullptr,
+                                          data_->options());
             const GradationReport report = edit().grade(gradation);
             graded_by_sources_.reset();
             if (gradation.field) graded_by_sources_ = options;
@@ -187,21 +205,14 @@ private:
     InsertionReport insert_and_keep(std::span<const PointSource> sources) {
         if (!this->given()) require_alike_growth(sources);
         graded_by_sources_.reset();
-        const auto keep = [&](std::span<const PointSource> valid) {
-            if (!this->given()) return;
-            if (this->given().use_count() > 1) {
-                this->set_given(std::make_shared<SourceColumns>(*this->given()));
-            }
-            this->given()->add(valid);
-        };
         const auto is_refused = [&](const PointSource& s) { return !is_valid(s, domain()); };
         try {
             const InsertionReport report = edit().insert(sources);
-            keep(sources);
+            this->add_given(sources);
             return report;
         } catch (...) {
             const auto first = std::ranges::find_if(sources, is_refused);
-            keep({sources.begin(), first});
+            this->add_given(std::span(sources.begin(), first));
             throw;
         }
     }
@@ -217,7 +228,7 @@ private:
     }
     // The field is no longer that of sources inserted.
     void forget_given() {
-        this->set_given(nullptr);
+        this->set_given({});
         graded_by_sources_.reset();
     }
 
