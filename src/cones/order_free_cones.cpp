@@ -135,7 +135,7 @@ OrderFreeCones::OrderFreeCones(std::span<const PointSource> sources, double g,
     const Box extent = extent_of(kept.items, &ConeTreeItem::position);
     kept.tree = {};
     rounding_ = std::max(0.1 * kept.uncertainty, 1e-13);
-    tree_ = QuadricTree(kept.items, sources, kept.lengths, kept.uncertainty, g);
+    tree_ = QuadricTree(std::move(kept.items), sources, kept.lengths, kept.uncertainty, g);
     origin_ = extent.low;
     edge_ = std::max(extent.edges().maxCoeff(), lengths_of_largest[0]);
     answer(extent.centre(), nullptr, {}, tolerance_of_start, &start_);

@@ -71,16 +71,16 @@ QuadricLeaf quadric_leaf(std::span<const ConeTreeItem> items, std::span<const Po
 
 }  // namespace
 
-QuadricTree::QuadricTree(std::span<ConeTreeItem> items, std::span<const PointSource> sources,
-                         std::span<const double> lengths, double uncertainty, double g)
-    : vectors_(items.size() > 0 ? vectors_of_leaf * ((items.size() - 1) / leaf_size + 1) : 0) {
+QuadricTree::QuadricTree(std::vector<ConeTreeItem> given, std::span<const PointSource> sources,
+                         std::span<const double> lengths, double uncertainty, double g) {
+    const std::span<ConeTreeItem> items = given;
+    const std::size_t leaf_count = (items.size() + leaf_size - 1) / leaf_size;
     std::vector<Metric> inverse_squares(sources.size());
     tbb::parallel_for(std::size_t{0}, items.size(), [&](std::size_t i) {
         const std::uint32_t source = items[i].index;
         inverse_squares[source] = square(inverse(sources[source].metric));
     });
     constexpr std::size_t arity = lane_count;
-    const std::size_t leaf_count = vectors_.size() / vectors_of_leaf;
     std::size_t of_child = 1;  // leaves, at most
     while (arity * of_child < leaf_count) of_child *= arity;
     parents_.push_back(0);
@@ -124,21 +124,32 @@ QuadricTree::QuadricTree(std::span<ConeTreeItem> items, std::span<const PointSou
     }
     nodes_.shrink_to_fit();
     parents_.shrink_to_fit();
-    leaves_.resize(vectors_.size());
-    tbb::parallel_for(std::size_t{0}, vectors_.size(), [&](std::size_t v) {
-        const std::size_t begin = std::min(lane_count * v, items.size());
-        const std::size_t end = std::min(begin + lane_count, items.size());
-        if (begin < end) {
-            const auto eight = items.subspan(begin, end - begin);
-            vectors_[v] = tensor_leaf(eight, sources, lengths, g);
-            leaves_[v] = quadric_leaf(eight, sources, inverse_squares, uncertainty, g);
-        } else {
+    indices_.resize(items.size());
+    std::ranges::transform(items, indices_.begin(), &ConeTreeItem::index);
+    const auto for_each_vector = [&](const auto& make) {
+        tbb::parallel_for(std::size_t{0}, vectors_of_leaf * leaf_count, [&](std::size_t v) {
+            const std::size_t begin = std::min(lane_count * v, indices_.size());
+            make(v, begin, std::min(begin + lane_count, indices_.size()) - begin);
+        });
+    };
+    leaves_.resize(vectors_of_leaf * leaf_count);
+    for_each_vector([&](std::size_t v, std::size_t begin, std::size_t count) {
+        if (count == 0) return;
+        leaves_[v] =
+            quadric_leaf(items.subspan(begin, count), sources, inverse_squares, uncertainty, g);
+    });
+    // What is needed no longer is gone before the rest is made.
+    inverse_squares = std::vector<Metric>();
+    given = std::vector<ConeTreeItem>();
+    vectors_.resize(leaves_.size());
+    for_each_vector([&](std::size_t v, std::size_t begin, std::size_t count) {
+        if (count == 0) {
             vectors_[v].length.setConstant(std::numeric_limits<double>::infinity());
+        } else {
+            vectors_[v] =
+                tensor_leaf(std::span(indices_).subspan(begin, count), sources, lengths, g);
         }
     });
-    indices_.resize(items.size());
-    std::transform(items.begin(), items.end(), indices_.begin(),
-                   [](const ConeTreeItem& item) { return item.index; });
 }
 
 std::size_t QuadricTree::bytes() const {

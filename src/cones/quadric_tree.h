@@ -17,10 +17,10 @@ namespace controlspace {
 class QuadricTree {
 public:
     QuadricTree() = default;
-    /// Puts `items` in order. `lengths` are the smallest of each source, `uncertainty` is theirs; g
-    /// is the ratio of sources that have none. Runs on all of TBB's threads; the tree does not
-    /// depend on their number.
-    QuadricTree(std::span<ConeTreeItem> items, std::span<const PointSource> sources,
+    /// `lengths` are the smallest of each source, `uncertainty` is theirs; g is the ratio of
+    /// sources that have none. Runs on all of TBB's threads; the tree does not depend on their
+    /// number.
+    QuadricTree(std::vector<ConeTreeItem> given, std::span<const PointSource> sources,
                 std::span<const double> lengths, double uncertainty, double g);
 
     /// Sources of a leaf, but for the last, and vectors of eight of them.

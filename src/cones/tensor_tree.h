@@ -42,7 +42,7 @@ Metric inverse(const Metric& m);
 
 /// Up to eight sources. `lengths` are the smallest of each source; g is the ratio of those that
 /// have none.
-TensorLeaf tensor_leaf(std::span<const ConeTreeItem> items, std::span<const PointSource> sources,
+TensorLeaf tensor_leaf(std::span<const std::uint32_t> indices, std::span<const PointSource> sources,
                        std::span<const double> lengths, double g);
 
 /// Builds a tree over `items`, which are put in order. `lengths` are the smallest of each source.

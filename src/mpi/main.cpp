@@ -3,6 +3,7 @@
 #define MPICH_SKIP_MPICXX 1
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <malloc.h>
 #include <mpi.h>
 
 #include <CLI/CLI.hpp>
@@ -299,6 +300,9 @@ int run_ranks(int argc, const char* const* argv) {
 }  // namespace controlspace
 
 int main(int argc, char** argv) {
+    // Large arrays are returned to the system when they are freed: otherwise the C library keeps
+    // those as large as others that were freed before.
+    mallopt(M_MMAP_THRESHOLD, 1 << 20);
     MPI_Init(&argc, &argv);
     const int status = controlspace::run_ranks(argc, argv);
     MPI_Finalize();

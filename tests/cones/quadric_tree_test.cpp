@@ -103,7 +103,7 @@ Built tree_over(const Sources& sources, double g) {
         items.push_back({{q.x(), q.y(), q.z(), of_source[0] / (g - 1)}, i});
     }
     const double uncertainty = 4096 * std::numeric_limits<double>::epsilon() * anisotropy;
-    return {QuadricTree(items, sources, lengths, uncertainty, g), uncertainty};
+    return {QuadricTree(std::move(items), sources, lengths, uncertainty, g), uncertainty};
 }
 
 }  // namespace

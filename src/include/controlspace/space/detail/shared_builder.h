@@ -134,7 +134,8 @@ public:
             require_valid(sources, domain());
             graded_by_sources_.reset();
             this->add_given(sources);
-            if (!sources.growths().empty()) this->set_grows_apart(true);
+            const auto grows = [](double growth) { return growth != 0; };
+            if (std::ranges::any_of(sources.growths().values(), grows)) this->set_grows_apart(true);
             InsertionReport report;
             for_each_part(
                 sources, [&](std::span<const PointSource> part) { report += edit().insert(part); });
