@@ -54,7 +54,7 @@ struct ViewedTets : BackgroundTets {
         counts.control_nodes = of_tets.control_nodes;
         // Each tetrahedron holds its own copy of its vertices.
         const auto values =
-            static_cast<std::size_t>(tets->corners_of_cell() * (has_tensors ? 9 : 1));
+            static_cast<std::size_t>(tets->corners_of_cell()) * (has_tensors ? 9 : 1);
         counts.bytes_payload = counts.cells * values * sizeof(double);
         return std::make_unique<GmshSpace>(tets->domain(), counts,
                                            [&] { return made_view(*tets, has_tensors); });

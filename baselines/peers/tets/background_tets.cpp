@@ -60,8 +60,8 @@ void BackgroundTets::clear(const Metric& metric) {
     mesh_.clear();
     last_.forget();
     graded_ = false;
-    std::vector<Point> corners;
-    for (int i = 0; i < 8; ++i) corners.push_back(corner(domain(), i));
+    std::vector<Point> corners(8);
+    for (int i = 0; i < 8; ++i) corners[static_cast<std::size_t>(i)] = corner(domain(), i);
     add(corners, std::vector<Metric>(corners.size(), metric));
 }
 
