@@ -53,6 +53,7 @@ expected=$(grep -o '"checksum": *"[0-9a-f]*"' results/results.json | head -n 1 |
 [ "$(on 2 checksum study.toml)" = "checksum: $expected" ] || fail "another checksum than that of results"
 
 "$serial" info field.pctrl | grep -q "in pieces" || fail "info of pieces"
+"$serial" export field.pctrl -o field.vdb --quiet 2>/dev/null && [ -s field.vdb ] || fail "pieces as .vdb"
 on 3 export sources.csv -o field.pvtu
 for rank in 0 1 2; do
     [ -s field_$rank.ctrl ] && [ -s field_$rank.vtu ] || fail "no piece of rank $rank"
