@@ -11,17 +11,15 @@
 #include <utility>
 
 #include "cones/isotropic_cones.h"
-#include "controlspace/io/write_vtk.h"
 #include "controlspace/measure/access_time.h"
 #include "controlspace/metric/order_free_intersection.h"
 #include "controlspace/sources/cone.h"
-#include "controlspace/space/control_space_file.h"
 #include "controlspace/space/detail/saved.h"
 #include "controlspace/trees/detail/leaves_where.h"
 #include "controlspace/trees/leaf_metrics.h"
-#include "controlspace/trees/octree_pieces.h"
 #include "mpi/exchange.h"
 #include "mpi/octants.h"
+#include "mpi/pieces.h"
 #include "mpi/rank_tree.h"
 #include "mpi/record.h"
 #include "mpi/shared_sources.h"
@@ -284,12 +282,7 @@ DistributedSpace& DistributedSpace::operator=(DistributedSpace&&) noexcept = def
 const ControlSpace& DistributedSpace::own() const { return *impl_->own; }
 
 std::vector<Box> DistributedSpace::octants() const {
-    std::vector<Box> boxes;
-    const Octants& octants = impl_->octants;
-    for (const LeafIndex leaf : octants.of_rank(impl_->ranks.rank())) {
-        boxes.push_back(octants.box(leaf));
-    }
-    return boxes;
+    return impl_->octants.boxes_of_rank(impl_->ranks.rank());
 }
 
 int DistributedSpace::owner_of(const Point& x) const {
@@ -333,57 +326,12 @@ void DistributedSpace::sample(std::span<const Point> x, std::span<Metric> out) c
     }
 }
 
-namespace {
-
-/// Collective: each rank writes its piece, then the first the index; where one fails, none is left.
-template <class WritePiece, class WriteIndex>
-void write_pieces(Ranks& ranks, const std::filesystem::path& index, std::string_view ending,
-                  const WritePiece& write_piece, const WriteIndex& write_index) {
-    const auto piece_of = [&](int rank) {
-        return index.parent_path() / fmt::format("{}_{}{}", index.stem().string(), rank, ending);
-    };
-    try {
-        ranks.together([&] { write_piece(piece_of(ranks.rank())); });
-        ranks.together([&] {
-            if (ranks.rank() != 0) return;
-            std::vector<std::filesystem::path> pieces;
-            pieces.reserve(static_cast<std::size_t>(ranks.size()));
-            for (int r = 0; r < ranks.size(); ++r) pieces.push_back(piece_of(r));
-            write_index(pieces);
-        });
-    } catch (const InputError&) {
-        std::error_code ignored;
-        std::filesystem::remove(piece_of(ranks.rank()), ignored);
-        throw;
-    }
-}
-
-}  // namespace
-
 void DistributedSpace::save(const std::filesystem::path& index) const {
-    const auto write_index = [&](std::span<const std::filesystem::path> files) {
-        const Octants& octants = impl_->octants;
-        std::vector<OctreePiece> pieces;
-        for (int r = 0; r < impl_->ranks.size(); ++r) {
-            pieces.push_back({files[static_cast<std::size_t>(r)], {}});
-            for (const LeafIndex leaf : octants.of_rank(r)) {
-                pieces.back().octants.push_back(octants.box(leaf));
-            }
-        }
-        write_octree_pieces(index, impl_->options.space.domain, pieces);
-    };
-    write_pieces(
-        impl_->ranks, index, ".ctrl",
-        [&](const std::filesystem::path& piece) { save_control_space(piece, own()); }, write_index);
+    save_pieces(impl_->ranks, impl_->octants, own(), index);
 }
 
 void DistributedSpace::write_leaves(const std::filesystem::path& index) const {
-    write_pieces(
-        impl_->ranks, index, ".vtu",
-        [&](const std::filesystem::path& piece) {
-            controlspace::write_leaves(piece, own(), octants());
-        },
-        [&](std::span<const std::filesystem::path> pieces) { write_leaf_pieces(index, pieces); });
+    write_pieces_of_leaves(impl_->ranks, impl_->octants, own(), index);
 }
 
 std::uint64_t DistributedSpace::checksum(std::size_t n, std::uint64_t seed) const {

@@ -223,6 +223,13 @@ std::vector<LeafIndex> Octants::of_rank(int rank) const {
     return octants;
 }
 
+std::vector<Box> Octants::boxes_of_rank(int rank) const {
+    const std::vector<LeafIndex> octants = of_rank(rank);
+    std::vector<Box> boxes(octants.size());
+    std::ranges::transform(octants, boxes.begin(), [&](LeafIndex octant) { return box(octant); });
+    return boxes;
+}
+
 std::vector<Box> Octants::parts_of(const LeafPlace& octant) const {
     constexpr int levels = 2;
     std::vector<Box> boxes{octant.box};

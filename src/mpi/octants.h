@@ -47,6 +47,7 @@ public:
     /// All of them, those of each rank together.
     std::span<const LeafIndex> order() const { return shared_.order; }
     std::vector<LeafIndex> of_rank(int rank) const;
+    std::vector<Box> boxes_of_rank(int rank) const;
     /// The boxes that two cuts more would make of one, those that the first cut makes together.
     std::vector<Box> parts_of(const LeafPlace& octant) const;
     static constexpr std::size_t most_parts = 64;
