@@ -150,8 +150,8 @@ Layers, tensors that are four times shorter along the radius:
 
 {table(layers)}
 
-While they adapt to tensors, ranks keep answers at shared places, up to 125 MB in all. A process without sources takes
-20 to 24 MB.
+While they adapt to tensors, a rank keeps answers at shared places: one rank up to 500000 (150 MB), each of several up to
+75000. A process without sources takes 20 to 24 MB.
 
 ## Beside it: sweeps over faces
 

@@ -23,28 +23,30 @@ struct Seen {
     Lanes squared;  // factors of the cones
     TensorLanes tensors;
 
-    Seen(const TensorLeaf& leaf, const Exceeding& exceeding) {
-        const CholeskyLanes<lane_count> factorisation(leaf.metric);
-        const auto [x, y, z] = factorisation.solve(displacements(leaf.position, exceeding.p));
-        const Lanes factor = 1 + (leaf.growth - 1) * (x.square() + y.square() + z.square()).sqrt();
+    Seen(const QuadricTree& tree, std::size_t vector, const Exceeding& exceeding) {
+        const auto& [metric, growth] = tree.shapes()[vector];
+        const CholeskyLanes<lane_count> factorisation(metric);
+        const auto [x, y, z] =
+            factorisation.solve(displacements(tree.vectors()[vector].position, exceeding.p));
+        const Lanes factor = 1 + (growth - 1) * (x.square() + y.square() + z.square()).sqrt();
         squared = factor.square();
         tensors = seen_from(exceeding.factor, factorisation);
     }
 };
 
-void find_in_vector(const TensorLeaf& leaf, std::uint32_t first_member, const Exceeding& exceeding,
+void find_in_vector(const QuadricTree& tree, std::uint32_t vector, const Exceeding& exceeding,
                     Exceeded& exceeded) {
-    const auto [squared, seen] = Seen(leaf, exceeding);
+    const auto [squared, seen] = Seen(tree, vector, exceeding);
     const Lanes most = exceeded.limit() * squared;
     if ((seen.xx + seen.yy + seen.zz <= most).all()) return;
     const Lanes room = least_minor(most, seen);
     if ((room > 0).all()) return;
     const Lanes growths = greatest_eigenvalues(seen) / squared;
-    for (int lane = 0; lane < lane_count; ++lane) {
+    for (std::uint32_t lane = 0; lane < lane_count; ++lane) {
+        const std::uint32_t member = vector * lane_count + lane;
         if (room[lane] > 0 || !(growths[lane] > exceeded.limit())) continue;
-        if (!std::isfinite(leaf.length[lane])) continue;
-        exceeded.enter({growths[lane], first_member + static_cast<std::uint32_t>(lane),
-                        main_direction(seen[lane])});
+        if (member >= tree.indices().size()) continue;
+        exceeded.enter({growths[lane], member, main_direction(seen[lane])});
     }
 }
 
@@ -63,8 +65,8 @@ void find_exceeded(const QuadricTree& tree, std::uint32_t root,
         if (tree.is_leaf(number)) {
             const std::uint32_t first = tree.first_vector(number);
             for (std::uint32_t v = first; v < first + QuadricTree::vectors_of_leaf; ++v) {
-                if (!may_exceed(tree.leaves()[v], exceeding, exceeded.limit())) continue;
-                find_in_vector(tree.vectors()[v], v * lane_count, exceeding, exceeded);
+                if (!may_exceed(tree.vectors()[v], exceeding, exceeded.limit())) continue;
+                find_in_vector(tree, v, exceeding, exceeded);
             }
             continue;
         }
@@ -108,8 +110,8 @@ bool AllExceeded::add_below(std::uint32_t number, const Exceeding& exceeding) {
             const std::size_t end = std::min<std::size_t>(begin + lane_count, is_found_.size());
             const auto found = std::span(is_found_).subspan(begin, end - begin);
             if (std::ranges::find(found, 0) == found.end()) continue;
-            if (may_exceed(tree_.leaves()[v], exceeding, 1)) {
-                const Seen seen(tree_.vectors()[v], exceeding);
+            if (may_exceed(tree_.vectors()[v], exceeding, 1)) {
+                const Seen seen(tree_, v, exceeding);
                 const Lanes room = least_minor(seen.squared, seen.tensors);
                 for (std::size_t lane = 0; lane < found.size(); ++lane) {
                     if (!(room[static_cast<Eigen::Index>(lane)] > 0)) found[lane] = 1;

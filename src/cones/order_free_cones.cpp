@@ -135,7 +135,7 @@ OrderFreeCones::OrderFreeCones(std::span<const PointSource> sources, double g,
     const Box extent = extent_of(kept.items, &ConeTreeItem::position);
     kept.tree = {};
     rounding_ = std::max(0.1 * kept.uncertainty, 1e-13);
-    tree_ = QuadricTree(std::move(kept.items), sources, kept.lengths, kept.uncertainty, g);
+    tree_ = QuadricTree(std::move(kept.items), sources, kept.uncertainty, g);
     origin_ = extent.low;
     edge_ = std::max(extent.edges().maxCoeff(), lengths_of_largest[0]);
     answer(extent.centre(), nullptr, {}, tolerance_of_start, &start_);
@@ -144,10 +144,6 @@ OrderFreeCones::OrderFreeCones(std::span<const PointSource> sources, double g,
 double OrderFreeCones::gap_of(double tolerance) {
     constexpr double least_tolerance = 1e-7;
     return 6 * std::log1p(std::max(tolerance, least_tolerance));
-}
-
-PointSource OrderFreeCones::member(std::uint32_t number) const {
-    return tree_.vectors()[number / lane_count][static_cast<Eigen::Index>(number % lane_count)];
 }
 
 void OrderFreeCones::append_sources(const Start& start, std::vector<std::uint32_t>& sources) const {
@@ -173,7 +169,7 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
     if (further != nullptr) core.add(index_of_further, *further);
     const std::size_t fixed = core.size();
     const auto add = [&](std::uint32_t number) {
-        const PointSource source = member(number);
+        const PointSource source = tree_.source(number);
         core.add(number, cone_factor(source, 1, p) * source.metric);
     };
     for (std::uint32_t k = 0; k < start.count; ++k) add(start.members[k]);
@@ -222,7 +218,7 @@ OrderFreeIntersection OrderFreeCones::answer(const Point& p, const Metric* furth
             constexpr int most_times = 20;
             for (int time = 1; !exceeded.empty() && !levels; ++time) {
                 for (const Exceeded::Cone& cone : exceeded.cones()) {
-                    limit = std::max(limit, growth(p, answer.factor, member(cone.member)));
+                    limit = std::max(limit, growth(p, answer.factor, tree_.source(cone.member)));
                 }
                 limit *= 1 + rounding_;
                 if (time == most_times) {

@@ -67,7 +67,7 @@ public:
     std::size_t dropped() const { return dropped_; }
 
     /// Bytes allocated: of the metrics, and of what finds them.
-    std::size_t bytes_payload() const { return tree_.vectors().size() * sizeof(TensorLanes); }
+    std::size_t bytes_payload() const { return tree_.shapes().size() * sizeof(TensorLanes); }
     std::size_t bytes_topology() const { return tree_.bytes() - bytes_payload(); }
 
 private:
@@ -79,7 +79,6 @@ private:
     };
     class Core;
 
-    PointSource member(std::uint32_t number) const;
     double growth(const Point& p, const Eigen::Matrix3d& h, const PointSource& source) const;
     /// Searches the sources below the nodes so many `levels` above the members of the core set;
     /// without a number, all.

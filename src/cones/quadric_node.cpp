@@ -133,9 +133,9 @@ template <int points>
                                                  const Exceeding& __restrict h, double limit,
                                                  Row& __restrict rooms) {
     for (std::size_t l = 0; l < lane_count; ++l) {
-        const double x = h.p.x() - leaf.position[0][l];
-        const double y = h.p.y() - leaf.position[1][l];
-        const double z = h.p.z() - leaf.position[2][l];
+        const double x = h.p.x() - leaf.position.x[static_cast<Eigen::Index>(l)];
+        const double y = h.p.y() - leaf.position.y[static_cast<Eigen::Index>(l)];
+        const double z = h.p.z() - leaf.position.z[static_cast<Eigen::Index>(l)];
         const double doubt = leaf.doubt[l];
         const Symmetric a{leaf.terms[0][l], leaf.terms[1][l], leaf.terms[2][l],
                           leaf.terms[3][l], leaf.terms[4][l], leaf.terms[5][l]};

@@ -42,7 +42,7 @@ struct QuadricNode {
 /// Eight sources, for a test that is quicker than that of their cones, but squares anisotropy.
 struct QuadricLeaf {
     using Row = QuadricNode::Row;
-    std::array<Row, 3> position{};
+    VectorLanes position;
     std::array<Row, 6> terms{};  ///< xx yy zz xy xz yz of M^-2; 0 where there is no source
     Row doubt{};                 ///< what rounding leaves in doubt of any of them
     Row squared_slope{};         ///< of the cone

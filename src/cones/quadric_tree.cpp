@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cones/tensor_tree.h"
 #include "controlspace/sources/cone.h"
 
 namespace controlspace {
@@ -44,18 +45,18 @@ void cut(std::span<ConeTreeItem> items, Range leaves, std::size_t parts, const V
     cut(items, {middle, leaves.end}, parts - parts / 2, visit);
 }
 
-QuadricLeaf quadric_leaf(std::span<const ConeTreeItem> items, std::span<const PointSource> sources,
+QuadricLeaf quadric_leaf(std::span<const std::uint32_t> indices,
+                         std::span<const PointSource> sources,
                          std::span<const Metric> inverse_squares, double uncertainty, double g) {
     // As in `bounds_of`.
     constexpr double rounding = 128 * std::numeric_limits<double>::epsilon();
     const double most = 1 + 6 * uncertainty;
     const double least = std::max(1 - 6 * uncertainty, 0.0);
     QuadricLeaf leaf;
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        const std::uint32_t source = items[i].index;
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        const std::uint32_t source = indices[i];
         const Metric a = most * inverse_squares[source];
-        const Point position = items[i].position();
-        for (int k = 0; k < 3; ++k) leaf.position[static_cast<std::size_t>(k)][i] = position[k];
+        leaf.position.set(static_cast<Eigen::Index>(i), sources[source].position);
         leaf.terms[0][i] = a.xx;
         leaf.terms[1][i] = a.yy;
         leaf.terms[2][i] = a.zz;
@@ -72,7 +73,7 @@ QuadricLeaf quadric_leaf(std::span<const ConeTreeItem> items, std::span<const Po
 }  // namespace
 
 QuadricTree::QuadricTree(std::vector<ConeTreeItem> given, std::span<const PointSource> sources,
-                         std::span<const double> lengths, double uncertainty, double g) {
+                         double uncertainty, double g) {
     const std::span<ConeTreeItem> items = given;
     const std::size_t leaf_count = (items.size() + leaf_size - 1) / leaf_size;
     std::vector<Metric> inverse_squares(sources.size());
@@ -126,34 +127,32 @@ QuadricTree::QuadricTree(std::vector<ConeTreeItem> given, std::span<const PointS
     parents_.shrink_to_fit();
     indices_.resize(items.size());
     std::ranges::transform(items, indices_.begin(), &ConeTreeItem::index);
+    // What is needed no longer is gone before the rest is made.
+    given = std::vector<ConeTreeItem>();
     const auto for_each_vector = [&](const auto& make) {
         tbb::parallel_for(std::size_t{0}, vectors_of_leaf * leaf_count, [&](std::size_t v) {
             const std::size_t begin = std::min(lane_count * v, indices_.size());
-            make(v, begin, std::min(begin + lane_count, indices_.size()) - begin);
+            const std::size_t end = std::min(begin + lane_count, indices_.size());
+            make(v, std::span<const std::uint32_t>(indices_).subspan(begin, end - begin));
         });
     };
-    leaves_.resize(vectors_of_leaf * leaf_count);
-    for_each_vector([&](std::size_t v, std::size_t begin, std::size_t count) {
-        if (count == 0) return;
-        leaves_[v] =
-            quadric_leaf(items.subspan(begin, count), sources, inverse_squares, uncertainty, g);
+    vectors_.resize(vectors_of_leaf * leaf_count);
+    for_each_vector([&](std::size_t v, std::span<const std::uint32_t> of) {
+        vectors_[v] = quadric_leaf(of, sources, inverse_squares, uncertainty, g);
     });
-    // What is needed no longer is gone before the rest is made.
     inverse_squares = std::vector<Metric>();
-    given = std::vector<ConeTreeItem>();
-    vectors_.resize(leaves_.size());
-    for_each_vector([&](std::size_t v, std::size_t begin, std::size_t count) {
-        if (count == 0) {
-            vectors_[v].length.setConstant(std::numeric_limits<double>::infinity());
-        } else {
-            vectors_[v] =
-                tensor_leaf(std::span(indices_).subspan(begin, count), sources, lengths, g);
+    shapes_.resize(vectors_.size());
+    for_each_vector([&](std::size_t v, std::span<const std::uint32_t> of) {
+        for (std::size_t i = 0; i < of.size(); ++i) {
+            const auto lane = static_cast<Eigen::Index>(i);
+            shapes_[v].metric.set(lane, sources[of[i]].metric);
+            shapes_[v].growth[lane] = cone_growth(sources[of[i]], g);
         }
     });
 }
 
 std::size_t QuadricTree::bytes() const {
-    return vectors_.capacity() * (sizeof(TensorLeaf) + sizeof(QuadricLeaf)) +
+    return vectors_.capacity() * (sizeof(QuadricLeaf) + sizeof(Shapes)) +
            nodes_.capacity() * sizeof(QuadricNode) +
            (parents_.capacity() + indices_.capacity()) * sizeof(std::uint32_t);
 }

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cones/quadric_node.h"
-#include "cones/tensor_tree.h"
 #include "controlspace/sources/point_source.h"
+#include "metric/tensor_lanes.h"
 
 namespace controlspace {
 
@@ -17,11 +17,10 @@ namespace controlspace {
 class QuadricTree {
 public:
     QuadricTree() = default;
-    /// `lengths` are the smallest of each source, `uncertainty` is theirs; g is the ratio of
-    /// sources that have none. Runs on all of TBB's threads; the tree does not depend on their
-    /// number.
+    /// `uncertainty` is that of the sources' lengths, relative; g is the ratio of those that have
+    /// none. Runs on all of TBB's threads; the tree does not depend on their number.
     QuadricTree(std::vector<ConeTreeItem> given, std::span<const PointSource> sources,
-                std::span<const double> lengths, double uncertainty, double g);
+                double uncertainty, double g);
 
     /// Sources of a leaf, but for the last, and vectors of eight of them.
     static constexpr std::uint32_t vectors_of_leaf = 2;
@@ -40,18 +39,29 @@ public:
     }
     /// The root is its own parent.
     std::uint32_t parent(std::uint32_t number) const { return parents_[number]; }
-    /// All sources in order, eight in each.
-    std::span<const TensorLeaf> vectors() const { return vectors_; }
-    /// The same, for the quick test.
-    std::span<const QuadricLeaf> leaves() const { return leaves_; }
+    /// All sources in order, eight in each, for the quick test.
+    std::span<const QuadricLeaf> vectors() const { return vectors_; }
+    /// The rest of the same sources.
+    struct Shapes {
+        TensorLanes metric;
+        Lanes growth = Lanes::Ones();  ///< ratio of the cone
+    };
+    std::span<const Shapes> shapes() const { return shapes_; }
+    /// Given its place in the order.
+    PointSource source(std::uint32_t place) const {
+        const std::uint32_t vector = place / lane_count;
+        const auto lane = static_cast<Eigen::Index>(place % lane_count);
+        return {vectors_[vector].position[lane], shapes_[vector].metric[lane],
+                shapes_[vector].growth[lane]};
+    }
     /// Indices of the sources, in order.
     std::span<const std::uint32_t> indices() const { return indices_; }
     std::size_t bytes() const;
 
 private:
     std::vector<QuadricNode> nodes_;
-    std::vector<TensorLeaf> vectors_;
-    std::vector<QuadricLeaf> leaves_;     ///< as `vectors_`
+    std::vector<QuadricLeaf> vectors_;
+    std::vector<Shapes> shapes_;          ///< as `vectors_`
     std::vector<std::uint32_t> parents_;  ///< of nodes and leaves
     std::vector<std::uint32_t> indices_;
 };

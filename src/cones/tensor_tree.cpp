@@ -53,28 +53,19 @@ Metric inverse(const Metric& m) {
     return metric_from_frame(frame.lengths, frame.directions);
 }
 
-TensorLeaf tensor_leaf(std::span<const std::uint32_t> indices, std::span<const PointSource> sources,
-                       std::span<const double> lengths, double g) {
-    TensorLeaf leaf;
-    for (int lane = 0; lane < lane_count; ++lane) {
-        const auto i = static_cast<std::size_t>(lane);
-        const bool exists = i < indices.size();
-        const std::uint32_t source = indices[exists ? i : 0];
-        leaf.position.set(lane, sources[source].position);
-        leaf.metric.set(lane, sources[source].metric);
-        leaf.length[lane] = exists ? lengths[source] : std::numeric_limits<double>::infinity();
-        leaf.growth[lane] = cone_growth(sources[source], g);
-    }
-    return leaf;
-}
-
 TensorTree build_tensor_tree(std::span<ConeTreeItem> items, std::span<const PointSource> sources,
                              std::span<const double> lengths, double g) {
     using Items = std::span<const ConeTreeItem>;
     const auto make_leaf = [&](Items of_leaf, TensorLeaf& leaf) {
-        std::array<std::uint32_t, lane_count> indices;
-        const auto end = std::ranges::transform(of_leaf, indices.begin(), &ConeTreeItem::index).out;
-        leaf = tensor_leaf({indices.begin(), end}, sources, lengths, g);
+        for (int lane = 0; lane < lane_count; ++lane) {
+            const auto i = static_cast<std::size_t>(lane);
+            const bool exists = i < of_leaf.size();
+            const std::uint32_t source = of_leaf[exists ? i : 0].index;
+            leaf.position.set(lane, sources[source].position);
+            leaf.metric.set(lane, sources[source].metric);
+            leaf.length[lane] = exists ? lengths[source] : std::numeric_limits<double>::infinity();
+            leaf.growth[lane] = cone_growth(sources[source], g);
+        }
     };
     const auto bounds_of_leaf = [&](Items of_leaf) {
         std::array<Bounds, lane_count> parts;

@@ -40,11 +40,6 @@ using TensorTree = ConeTree<TensorNode, TensorLeaf>;
 /// M^-1.
 Metric inverse(const Metric& m);
 
-/// Up to eight sources. `lengths` are the smallest of each source; g is the ratio of those that
-/// have none.
-TensorLeaf tensor_leaf(std::span<const std::uint32_t> indices, std::span<const PointSource> sources,
-                       std::span<const double> lengths, double g);
-
 /// Builds a tree over `items`, which are put in order. `lengths` are the smallest of each source.
 TensorTree build_tensor_tree(std::span<ConeTreeItem> items, std::span<const PointSource> sources,
                              std::span<const double> lengths, double g);

@@ -213,16 +213,16 @@ struct DistributedSpace::Impl {
         const auto made =
             std::make_shared<AdaptedPart<Storage>>(space, options.structure == "K_oLB", boxes);
         if (steepest) sources.push_back(steepest->source());
-        constexpr std::size_t answers_of_all = 500'000;  // all ranks
-        const AdaptationReport outcome =
-            made->adapt({.sources = sources,
-                         .continuous = nullptr,
-                         .ratio = space.ratio,
-                         .target = *options.target,
-                         .intersection = space.intersection,
-                         .h_max = space.h_max},
-                        answers_of_all / static_cast<std::size_t>(ranks.size()),
-                        [&](const Point& x) { return is_wanted[octants.tree().find(x)] != 0; });
+        // Some 300 bytes each. A share for each rank would be too few where there are many.
+        const std::size_t most_answers = ranks.size() == 1 ? 500'000 : 75'000;
+        const AdaptationReport outcome = made->adapt(
+            {.sources = sources,
+             .continuous = nullptr,
+             .ratio = space.ratio,
+             .target = *options.target,
+             .intersection = space.intersection,
+             .h_max = space.h_max},
+            most_answers, [&](const Point& x) { return is_wanted[octants.tree().find(x)] != 0; });
         about.met = outcome.met;
         about.remark = outcome.shortfall;
         about.leaves = made->footprint().cells;

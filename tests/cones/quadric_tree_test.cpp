@@ -93,17 +93,15 @@ struct Built {
 
 Built tree_over(const Sources& sources, double g) {
     std::vector<ConeTreeItem> items;
-    std::vector<double> lengths;
     double anisotropy = 1;
     for (std::uint32_t i = 0; i < sources.size(); ++i) {
         const auto of_source = eigen_frame(sources[i].metric).lengths;
-        lengths.push_back(of_source[0]);
         anisotropy = std::max(anisotropy, of_source[2] / of_source[0]);
         const Point& q = sources[i].position;
         items.push_back({{q.x(), q.y(), q.z(), of_source[0] / (g - 1)}, i});
     }
     const double uncertainty = 4096 * std::numeric_limits<double>::epsilon() * anisotropy;
-    return {QuadricTree(std::move(items), sources, lengths, uncertainty, g), uncertainty};
+    return {QuadricTree(std::move(items), sources, uncertainty, g), uncertainty};
 }
 
 }  // namespace
@@ -163,14 +161,14 @@ TEST_CASE("quadric tree: nothing is passed over that has an exceeded cone") {
             const double worst = *std::max_element(growths.begin(), growths.end());
             const Exceeding exceeding(p, h);
             for (const double limit : {0.3 * worst, 0.99 * worst, (1 - 1e-6) * worst}) {
-                for (std::size_t v = 0; v < tree.leaves().size(); ++v) {
+                for (std::size_t v = 0; v < tree.vectors().size(); ++v) {
                     double most = 0;
                     const std::size_t end =
                         std::min<std::size_t>((v + 1) * lane_count, sources.size());
                     for (std::size_t i = v * lane_count; i < end; ++i) {
                         most = std::max(most, growths[tree.indices()[i]]);
                     }
-                    if (!may_exceed(tree.leaves()[v], exceeding, limit)) {
+                    if (!may_exceed(tree.vectors()[v], exceeding, limit)) {
                         missed += most > (1 + 1e-12 + 1e-13 * anisotropy) * limit ? 1 : 0;
                     } else {
                         idle += most < 0.99 * limit ? 1 : 0;

@@ -92,7 +92,7 @@ GradationReport grade_nodes_to(const ControlSpace& field, const Topology<Node>& 
     const std::span<Metric> metrics = storage.metrics().field();
     if constexpr (nodes_per_leaf<Storage> == 1) {
         // Some at a time: in all they would take half as much memory as the metrics.
-        constexpr std::size_t most = std::size_t{1} << 20;
+        constexpr std::size_t most = std::size_t{1} << 16;
         GradationReport report;
         std::vector<Point> x;
         std::vector<LeafIndex> order;
