@@ -10,9 +10,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <exception>
 #include <variant>
 #include <vector>
 
+#include "controlspace/error.h"
 #include "controlspace/gradation/law.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/measure/reference.h"
@@ -31,17 +34,8 @@ struct Ghost {
     double length;
 };
 
-}  // namespace
-
-int main(int argc, char** argv) {
-    MPI_Init(&argc, &argv);
-    if (argc != 2) {
-        fmt::print(stderr, "mpi_sweeps: name a .csv of sources\n");
-        MPI_Abort(MPI_COMM_WORLD, 2);
-    }
-    Ranks ranks(MPI_COMM_WORLD);
+void sweep(Ranks& ranks, const std::vector<PointSource>& sources) {
     constexpr double ratio = 1.25;
-    const std::vector<PointSource> sources = read_sources(argv[1]);
     DistributedOptions options;
     options.space.domain = {Point::Constant(-1), Point::Constant(1)};
     const DistributedSpace owners(
@@ -119,6 +113,20 @@ int main(int argc, char** argv) {
             "{{\"ranks\": {}, \"leaves\": {}, \"rounds\": {}, \"cpu_s\": {:.3f}, "
             "\"bytes_sent\": {:.0f}, \"longest_by\": {:.4f}}}\n",
             ranks.size(), positions.size(), rounds, cpu, bytes, factor);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    MPI_Init(&argc, &argv);
+    try {
+        if (argc != 2) throw InputError("name a .csv of sources");
+        Ranks ranks(MPI_COMM_WORLD);
+        sweep(ranks, read_sources(argv[1]));
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "mpi_sweeps: %s\n", error.what());
+        MPI_Abort(MPI_COMM_WORLD, 2);
     }
     MPI_Finalize();
     return 0;

@@ -223,7 +223,7 @@ Loop bare_structured(const ControlSpace& space) {
         }
     }
     file.close();
-    const Loop loop = bare_gmsh<StructuredField>("Structured", [&](int tag) {
+    Loop loop = bare_gmsh<StructuredField>("Structured", [&](int tag) {
         gmsh::model::mesh::field::setString(tag, "FileName", path);
         gmsh::model::mesh::field::setNumber(tag, "TextFormat", 1);
     });

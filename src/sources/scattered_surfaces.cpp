@@ -95,6 +95,7 @@ template <class Surface>
 std::vector<SurfacePlace> draw_clustered(const Surface& surface, std::size_t count,
                                          RandomFractions& fraction) {
     std::vector<SurfacePlace> centres;
+    centres.reserve(cluster_count);
     for (int i = 0; i < cluster_count; ++i) centres.push_back(surface.draw(fraction));
     const double spread = cluster_spread * std::sqrt(surface.area());
     std::vector<SurfacePlace> places;

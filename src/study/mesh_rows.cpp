@@ -92,7 +92,7 @@ TextTable histogram_table(const std::string& title, const Rows& rows) {
     std::string from = "0";
     for (const double bound : length_bounds) {
         const std::string to = fmt::format("{:.3g}", bound);
-        table.columns.push_back({from + "–" + to});
+        table.columns.push_back({fmt::format("{}–{}", from, to)});
         from = to;
     }
     table.columns.push_back({from + "–"});

@@ -141,8 +141,8 @@ TEST_CASE("a Structured grid has origin, steps, counts, and lengths with z faste
             for (int k = 0; k < 16; ++k) {
                 const Point x(place[0] + i * place[3], place[1] + j * place[4],
                               place[2] + k * place[5]);
-                const auto at = static_cast<std::size_t>((i * 31 + j) * 16 + k);
-                REQUIRE(lengths[at] == Approx(length_at(*space, x)));
+                const int at = (i * 31 + j) * 16 + k;
+                REQUIRE(lengths[static_cast<std::size_t>(at)] == Approx(length_at(*space, x)));
             }
         }
     }

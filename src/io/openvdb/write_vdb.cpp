@@ -145,7 +145,7 @@ void make_density(openvdb::FloatGrid& grid, const Extremes& lengths) {
 }
 
 openvdb::math::Transform::Ptr transform_of(const VoxelLattice& lattice) {
-    const auto transform = openvdb::math::Transform::createLinearTransform(lattice.voxel);
+    auto transform = openvdb::math::Transform::createLinearTransform(lattice.voxel);
     // Whole indices are the centres of voxels.
     const Point first = lattice.domain.low.array() + 0.5 * lattice.voxel;
     transform->postTranslate({first.x(), first.y(), first.z()});

@@ -93,6 +93,7 @@ public:
         // The third shortest distance: a vertex that is very near must not outweigh all others.
         constexpr std::size_t third = 2;
         std::vector<double> distances;
+        distances.reserve(around_.size());
         for (const std::uint32_t i : around_) distances.push_back(offset(patches.fans[i]).norm());
         const auto nth =
             distances.begin() + static_cast<std::ptrdiff_t>(std::min(third, distances.size() - 1));

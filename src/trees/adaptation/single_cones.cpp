@@ -124,7 +124,8 @@ void SingleCones::append_around_tips(const Box& box, std::vector<Point>& places)
             if (size > 2 * reach / near) break;
             // Along the axes of the metric, and between them.
             for (int way = 0; way < 27; ++way) {
-                const Vector along(way % 3 - 1, way / 3 % 3 - 1, way / 9 - 1);
+                const Eigen::Vector3i signs(way % 3 - 1, way / 3 % 3 - 1, way / 9 - 1);
+                const Vector along = signs.cast<double>();
                 const double steps = along.cwiseAbs().sum();
                 if (steps != 1 && steps != 3) continue;
                 Vector step = Vector::Zero();
