@@ -1,7 +1,6 @@
 #include "cones/exceeded_cones.h"
 
 #include <bit>
-#include <cmath>
 
 #include "metric/constraint_lanes.h"
 #include "metric/decompose.h"
