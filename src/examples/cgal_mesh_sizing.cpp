@@ -42,7 +42,8 @@ TetMesh tetrahedra_of(const Complex& complex) {
 
 }  // namespace
 
-int main() {
+// An exception may end it, with its message.
+int main() {  // NOLINT(bugprone-exception-escape)
     const std::vector<PointSource> sources{{Point(0.6, 0, 0), Metric::isotropic(0.04)},
                                            {Point(-1, 0, 0), Metric::isotropic(0.15)}};
     const auto field = make_control_space(

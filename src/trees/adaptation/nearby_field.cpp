@@ -99,7 +99,7 @@ struct NearbyField::Search {
     // of a box it rarely finds more than one close to their sources does. So such searches are made
     // at the first of every few places, and, where one of them finds more, at all that follow.
     void by_close_cones(std::span<const Point> x, std::span<Metric> out) {
-        constexpr std::size_t few = 8;
+        constexpr std::size_t few = 16;
         const std::vector<Metric> further = field.continuous_at(x);
         close.clear();
         for (std::size_t i = 0; i < x.size(); ++i) {

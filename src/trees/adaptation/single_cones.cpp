@@ -1,6 +1,5 @@
 #include "controlspace/trees/detail/single_cones.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -90,10 +89,20 @@ Departure SingleCones::beyond(std::size_t source, const Metric& own, double most
     return departure;
 }
 
+SingleCones::Part SingleCones::whole(const Box& box, const std::array<Metric, 8>& at_corners) {
+    Part part{box, {}};
+    for (int c = 0; c < 8; ++c) part.at.set(c, at_corners[static_cast<std::size_t>(c)]);
+    return part;
+}
+
+bool SingleCones::may_be_exceeded(std::size_t source, const Box& box,
+                                  const std::array<Metric, 8>& at_corners) const {
+    return doubtful_corners(source, whole(box, at_corners), of_interest_) != 0;
+}
+
 Departure SingleCones::worst_in(const Box& box, const std::array<Metric, 8>& at_corners,
                                 const MetricAt& metric_at, std::vector<Point>* contacts) const {
-    Part leaf{box, {}};
-    for (int c = 0; c < 8; ++c) leaf.at.set(c, at_corners[static_cast<std::size_t>(c)]);
+    const Part leaf = whole(box, at_corners);
     Departure worst;
     for (std::size_t k = 0; k < size(); ++k) {
         const double least = contacts != nullptr ? 1 : of_interest_;
@@ -193,12 +202,13 @@ void SingleCones::find_exceeded(std::size_t source, const Part& leaf, double mos
     }
 }
 
-// A quadratic function has its minimum in a box inside of it, in a face, an edge or a corner.
+// Outside of the box a quadratic distance has its minimum in one of the faces that are seen from
+// the source, or in an edge.
 Point SingleCones::nearest_place(std::size_t source, const Box& box) const {
     const Point& q = position(source);
     Point nearest = nearest_in(box, q);
     if (is_isotropic(sources_[source].metric) || nearest == q) return nearest;
-    // Mostly it is where the nearest place of a plane between the source and the box is.
+    // Mostly it is where the nearest place of a face's plane is.
     const Eigen::Matrix3d squared = square(sources_[source].metric).matrix();
     for (Axis i = 0; i < 3; ++i) {
         if (nearest[i] == q[i]) continue;
@@ -207,23 +217,19 @@ Point SingleCones::nearest_place(std::size_t source, const Box& box) const {
         if (box.contains(x)) return x;
     }
     const Eigen::Matrix3d a = inverse_squares_[source].matrix();
-    double least = (nearest - q).dot(a * (nearest - q));
-    for (int sides = 0; sides < 27; ++sides) {
-        // Coordinates on a side are given, at the others the slope is zero.
-        Eigen::Matrix3d equations = a;
-        Vector right = a * q;
-        for (Axis i = 0, rest = sides; i < 3; ++i, rest /= 3) {
-            if (rest % 3 == 2) continue;
-            equations.row(i).setZero();
-            equations(i, i) = 1;
-            right[i] = rest % 3 == 0 ? box.low[i] : box.high[i];
+    double least = std::numeric_limits<double>::infinity();
+    for (int c = 0; c < 8; ++c) {
+        for (Axis along = 0; along < 3; ++along) {
+            Point x = corner(box, c);
+            if (x[along] != box.low[along]) continue;
+            const Vector from_source = x - q;
+            const double at = x[along] - a.col(along).dot(from_source) / a(along, along);
+            x[along] = std::clamp(at, box.low[along], box.high[along]);
+            const double distance = (x - q).dot(a * (x - q));
+            if (!(distance < least)) continue;
+            least = distance;
+            nearest = x;
         }
-        const Vector at = equations.inverse() * right;
-        const Point x = nearest_in(box, at);
-        const double distance = (x - q).dot(a * (x - q));
-        if (!(distance < least)) continue;
-        least = distance;
-        nearest = x;
     }
     return nearest;
 }

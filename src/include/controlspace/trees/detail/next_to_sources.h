@@ -50,7 +50,7 @@ public:
             std::size_t next = 1;
             for_each_leaf_beside(own.box, sources_[i].position, [&](const LeafPlace& beside) {
                 around_[i][next++] = beside.leaf;
-                if (!is_wanted(beside.leaf)) return;
+                if (!is_wanted(beside.leaf) || !may_exceed(i, beside)) return;
                 const Departure departure =
                     cones_->at_nearest_place(i, beside.box, metric_in(beside.leaf));
                 if (departure.worst > 0) found.local().emplace_back(beside.leaf, departure);
@@ -69,11 +69,7 @@ public:
         cones_->append_around_tips(of.box, further);
         Departure worst;
         if constexpr (HasTrilinearLeaves<Storage>) {
-            std::array<Metric, 8> at_corners;
-            const auto metrics = storage_.metrics().field();
-            std::ranges::transform(storage_.nodes_of(of.leaf), at_corners.begin(),
-                                   [&](const auto node) { return metrics[node]; });
-            worst = cones_->worst_in(of.box, at_corners, metric_in(of.leaf), &further);
+            worst = cones_->worst_in(of.box, at_corners(of.leaf), metric_in(of.leaf), &further);
         } else {
             for (std::size_t k = 0; k < sources_.size(); ++k) {
                 worst.take(cones_->at_nearest_place(k, of.box, metric_in(of.leaf), &further));
@@ -86,6 +82,21 @@ private:
     // Whether all are compared with every leaf, which takes less time where leaves are trilinear.
     bool are_few() const {
         return field_.has_sources_up_to(HasTrilinearLeaves<Storage> ? GoalField::few_sources : 64);
+    }
+
+    std::array<Metric, 8> at_corners(LeafIndex leaf) const {
+        std::array<Metric, 8> metrics;
+        const auto field = storage_.metrics().field();
+        std::ranges::transform(storage_.nodes_of(leaf), metrics.begin(),
+                               [&](const auto node) { return field[node]; });
+        return metrics;
+    }
+
+    bool may_exceed(std::size_t source, const LeafPlace& place) const {
+        if constexpr (!HasTrilinearLeaves<Storage>)
+            return true;
+        else
+            return cones_->may_be_exceeded(source, place.box, at_corners(place.leaf));
     }
 
     auto metric_in(LeafIndex leaf) const {

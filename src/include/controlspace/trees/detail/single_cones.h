@@ -30,6 +30,11 @@ public:
     Departure at_nearest_place(std::size_t source, const Box& box, const MetricAt& metric_at,
                                std::vector<Point>* contacts = nullptr) const;
 
+    /// False only where that is nothing, by a quicker test, of metrics that are trilinear in the
+    /// box between these corners.
+    bool may_be_exceeded(std::size_t source, const Box& box,
+                         const std::array<Metric, 8>& at_corners) const;
+
     /// The worst for all cones, of metrics that are trilinear in the box between these corners: at
     /// the nearest places, and elsewhere where a cone is exceeded by more than the target allows.
     /// Appends to `contacts` the nearest places at which the metric is beyond the cone: there
@@ -43,6 +48,7 @@ public:
 
 private:
     struct Part;
+    static Part whole(const Box& box, const std::array<Metric, 8>& at_corners);
     Point nearest_place(std::size_t source, const Box& box) const;
     Departure beyond(std::size_t source, const Metric& own, double most, const Point& x) const;
     unsigned doubtful_corners(std::size_t source, const Part& part, double most) const;
