@@ -220,10 +220,9 @@ Point SingleCones::nearest_place(std::size_t source, const Box& box) const {
     double least = std::numeric_limits<double>::infinity();
     for (int c = 0; c < 8; ++c) {
         for (Axis along = 0; along < 3; ++along) {
+            if ((c >> along & 1) != 0) continue;
             Point x = corner(box, c);
-            if (x[along] != box.low[along]) continue;
-            const Vector from_source = x - q;
-            const double at = x[along] - a.col(along).dot(from_source) / a(along, along);
+            const double at = x[along] - a.col(along).dot(x - q) / a(along, along);
             x[along] = std::clamp(at, box.low[along], box.high[along]);
             const double distance = (x - q).dot(a * (x - q));
             if (!(distance < least)) continue;
