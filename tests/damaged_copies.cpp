@@ -81,16 +81,17 @@ int factor() {
 
 }  // namespace
 
-std::vector<std::string> damaged_copies(const std::string& bytes, int rounds) {
-    std::vector<std::string> copies;
-    const auto cuts = static_cast<std::size_t>(rounds / 3);
-    for (std::size_t i = 0; i <= cuts; ++i)
-        copies.push_back(bytes.substr(0, i * bytes.size() / cuts));
-    const int all = rounds * factor();
-    for (int round = 0; round < all; ++round) {
-        copies.push_back(Damage(static_cast<std::uint32_t>(round))(bytes));
+int for_each_damaged_copy(const std::string& bytes, int rounds,
+                          const std::function<void(const std::string&)>& visit) {
+    const int cuts = rounds / 3, all = rounds * factor();
+    for (int i = 0; i <= cuts; ++i) {
+        visit(bytes.substr(
+            0, static_cast<std::size_t>(i) * bytes.size() / static_cast<std::size_t>(cuts)));
     }
-    return copies;
+    for (int round = 0; round < all; ++round) {
+        visit(Damage(static_cast<std::uint32_t>(round))(bytes));
+    }
+    return cuts + 1 + all;
 }
 
 }  // namespace controlspace

@@ -1,13 +1,14 @@
 #pragma once
 
+#include <functional>
 #include <string>
-#include <vector>
 
 namespace controlspace {
 
-/// `rounds` copies of a file, and a third more that are cut off, have bytes flipped, numbers
-/// replaced by others that lie, and pieces lost or doubled; the same in every run. The environment
-/// variable DAMAGED_FILES multiplies their number.
-std::vector<std::string> damaged_copies(const std::string& bytes, int rounds = 100);
+/// Calls `visit` with `rounds` copies of a file, and a third more that are cut off, have bytes
+/// flipped, numbers replaced by others that lie, and pieces lost or doubled; the same in every run.
+/// The environment variable DAMAGED_FILES multiplies their number. Returns how many there were.
+int for_each_damaged_copy(const std::string& bytes, int rounds,
+                          const std::function<void(const std::string&)>& visit);
 
 }  // namespace controlspace

@@ -38,10 +38,10 @@ void check_damaged_files(const std::filesystem::path& folder, const std::string&
                          const std::function<void(const std::filesystem::path&)>& read) {
     CAPTURE(name);
     int copy = 0;
-    for (const std::string& damaged : damaged_copies(bytes)) {
+    for_each_damaged_copy(bytes, 100, [&](const std::string& damaged) {
         CAPTURE(copy++);
         check_reading(folder / name, damaged, bytes_per_byte, read);
-    }
+    });
     std::ofstream(folder / name, std::ios::binary) << bytes;
 }
 

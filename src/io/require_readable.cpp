@@ -54,15 +54,17 @@ rlim_t memory_limit(const std::filesystem::path& file) {
 }
 
 /// Limit of processor time for reading the file [s]: far more than the slowest reader takes.
-rlim_t time_limit(const std::filesystem::path& file) {
+unsigned time_limit(const std::filesystem::path& file) {
     constexpr std::uintmax_t bytes_per_second = 100'000;
     std::error_code none;
     const auto size = std::filesystem::file_size(file, none);
-    return 20 + (none ? 0 : size) / bytes_per_second;
+    return static_cast<unsigned>(20 + (none ? 0 : size) / bytes_per_second);
 }
 
 [[noreturn]] void read_in_child(const std::filesystem::path& file,
                                 const std::function<void()>& read, int answer) {
+    // A crash ends the child, whatever the program does on one: that may wait for other threads.
+    for (int signal = 1; signal < SIGRTMIN; ++signal) std::signal(signal, SIG_DFL);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     // Libraries report crashes on standard error: not part of the program's output.
     const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -71,6 +73,8 @@ rlim_t time_limit(const std::filesystem::path& file) {
     limit(RLIMIT_CORE, 0);
     if (limits_memory) limit(RLIMIT_AS, memory_limit(file));
     limit(RLIMIT_CPU, time_limit(file));
+    constexpr unsigned slowest = 10;  // times the processor's, where others use it too
+    ::alarm(slowest * time_limit(file));
     give_up_rights();
     int status = failed;
     try {

@@ -69,6 +69,15 @@ TEST_CASE("A reader that crashes, ends or fails is an error that names the file"
     CHECK(error([] { throw 1; }) == damaged);
 }
 
+TEST_CASE("A reader that crashes ends, whatever the program does when it crashes itself") {
+    const TextFile file;
+    for (const int signal : {SIGSEGV, SIGABRT}) {
+        const auto before = std::signal(signal, [](int) { ::pause(); });
+        CHECK_THROWS_AS(require_readable(file.path(), [&] { std::raise(signal); }), InputError);
+        std::signal(signal, before);
+    }
+}
+
 #if defined(__x86_64__) || defined(__aarch64__)
 TEST_CASE("A reader may not write, remove, connect or start anything") {
     const TextFile file;
