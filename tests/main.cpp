@@ -1,6 +1,4 @@
 #define CATCH_CONFIG_RUNNER
-#include <tbb/global_control.h>
-
 #include <catch2/catch.hpp>
 #include <iostream>
 
@@ -14,11 +12,5 @@ int main(int argc, char** argv) {
         std::cout << "no semicolon in the name of a test: " << name << '\n';
         return 1;
     }
-#ifdef __SANITIZE_THREAD__
-    // The system's TBB is built without the thread sanitizer, which does not see that TBB hands
-    // tasks from thread to thread, and would report whatever they touch. So loops in parallel run
-    // on the thread that calls them; threads that tests start are checked in full.
-    const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
-#endif
     return Catch::Session().run(argc, argv);
 }

@@ -21,7 +21,7 @@ const std::string quick =
 
 }  // namespace
 
-TEST_CASE("all structures are compared on sources from a file") {
+TEST_CASE("all structures are compared on sources from a file", "[threads]") {
     const Sandbox box("compare");
     box.write("s.csv", sources_csv);
     const Outcome outcome = box.run("compare --sources s.csv --output out" + quick);

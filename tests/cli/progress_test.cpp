@@ -29,7 +29,8 @@ nlohmann::json without_times(nlohmann::json row) {
 
 }  // namespace
 
-TEST_CASE("a terminal shows a study's rate and time left, and Ctrl-C leaves what --resume ends") {
+TEST_CASE("a terminal shows a study's rate and time left, and Ctrl-C leaves what --resume ends",
+          "[threads]") {
     const Sandbox box("terminal-study");
     box.write("study.toml", study);
     const Outcome stopped = run_on_terminal(box, "compare study.toml --output out", "left");
@@ -58,7 +59,8 @@ TEST_CASE("a terminal shows a study's rate and time left, and Ctrl-C leaves what
 }
 
 TEST_CASE(
-    "a quiet study shows nothing on a terminal, and without one there is a line for each case") {
+    "a quiet study shows nothing on a terminal, and without one there is a line for each case",
+    "[threads]") {
     const Sandbox box("terminal-quiet");
     const std::string compare =
         "compare --h 0.3 --structures K_oL,K_oV --law cone --access-points 100 --access-repeats 1 "
@@ -72,7 +74,8 @@ TEST_CASE(
 }
 
 #ifdef CONTROLSPACE_OPENVDB
-TEST_CASE("a terminal shows how far a file has come, and Ctrl-C leaves nothing of it") {
+TEST_CASE("a terminal shows how far a file has come, and Ctrl-C leaves nothing of it",
+          "[threads]") {
     const Sandbox box("terminal-file");
     box.write("s.csv", "x,y,z,h\n0,0,0,0.1\n1,0,0,0.2\n0,1,0,0.2\n1,1,1,0.4\n");
     const std::string arguments =

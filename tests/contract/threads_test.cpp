@@ -6,7 +6,10 @@
 
 #include "contract/structure_case.h"
 #include "controlspace/measure/access_time.h"
+#include "controlspace/measure/accuracy.h"
+#include "controlspace/space/control_space_file.h"
 #include "editable_space.h"
+#include "scratch_directory.h"
 
 using namespace controlspace;
 
@@ -16,6 +19,8 @@ struct Answers {
     InsertionReport insertion;
     GradationReport gradation;
     std::vector<Metric> nodes, places;
+    double at_sources = 0, anywhere = 0;  ///< departures from the sources, and from a constant
+    std::string saved;
 };
 
 Answers answers(const Structure& structure, const Work& work, const GradationOptions& options,
@@ -29,14 +34,22 @@ Answers answers(const Structure& structure, const Work& work, const GradationOpt
         a.gradation = space->grade(options);
         a.nodes = space->control_nodes(Neighbourhood::faces).metrics;
         a.places.resize(3000);
-        space->sample(random_points(work.domain, a.places.size(), 3), a.places);
+        const std::vector<Point> x = random_points(work.domain, a.places.size(), 3);
+        space->sample(x, a.places);
+        a.at_sources = source_accuracy(*space, work.sources);
+        a.anywhere = accuracy(*space, {x, std::vector(x.size(), Metric::isotropic(0.1))}).mean;
+        const ScratchDirectory scratch("threads");
+        save_control_space(scratch / "field.ctrl", *space);
+        a.saved = file_text(scratch / "field.ctrl");
     });
     return a;
 }
 
 }  // namespace
 
-STRUCTURE_CASE(splits_in_the_middle, "one, two and seven threads make the same field, to the bit") {
+STRUCTURE_CASE(splits_in_the_middle,
+               "any number of threads makes the same field, to the bit, in memory and in a file",
+               "[threads]") {
     const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
     const GradationOptions options =
         GENERATE(GradationOptions{}, GradationOptions{.law = GradationLaw::mean_length},
@@ -44,12 +57,15 @@ STRUCTURE_CASE(splits_in_the_middle, "one, two and seven threads make the same f
                  GradationOptions{.neighbourhood = Neighbourhood::all});
     CAPTURE(work.name);
     const Answers one = answers(structure, work, options, 1);
-    for (const int threads : {2, 7}) {
+    for (const int threads : {2, 3, 7}) {
         const Answers many = answers(structure, work, options, threads);
         CHECK(many.insertion.inserted == one.insertion.inserted);
         CHECK(many.gradation.operations == one.gradation.operations);
         CHECK(many.gradation.largest_ratio_left == one.gradation.largest_ratio_left);
         CHECK(many.nodes == one.nodes);
         CHECK(many.places == one.places);
+        CHECK(many.at_sources == one.at_sources);
+        CHECK(many.anywhere == one.anywhere);
+        CHECK((many.saved == one.saved));
     }
 }
