@@ -61,10 +61,22 @@ unsigned time_limit(const std::filesystem::path& file) {
     return static_cast<unsigned>(20 + (none ? 0 : size) / bytes_per_second);
 }
 
+/// Crashes and limits end the process, whatever the program does on such signals: that may wait for
+/// other threads, of which a child has none.
+void end_on_crashes() {
+    sigset_t signals;
+    ::sigemptyset(&signals);
+    for (const int signal :
+         {SIGABRT, SIGALRM, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGSYS, SIGTRAP, SIGXCPU}) {
+        std::signal(signal, SIG_DFL);
+        ::sigaddset(&signals, signal);
+    }
+    ::pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+}
+
 [[noreturn]] void read_in_child(const std::filesystem::path& file,
                                 const std::function<void()>& read, int answer) {
-    // A crash ends the child, whatever the program does on one: that may wait for other threads.
-    for (int signal = 1; signal < SIGRTMIN; ++signal) std::signal(signal, SIG_DFL);
+    end_on_crashes();
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     // Libraries report crashes on standard error: not part of the program's output.
     const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
