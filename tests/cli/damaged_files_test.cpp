@@ -1,4 +1,4 @@
-// Damaged files of formats that other libraries read, and that may bring these down.
+// Files that other libraries read: damaged ones may bring these down.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -236,6 +236,15 @@ TEST_CASE("damaged files of CAD are read or refused") {
     const std::string name = GENERATE("d.step", "d.igs");
     name == "d.igs" ? box.write(name, igs_text()) : write_cad(box / name);
     check_damaged(box / name, read_cad_surface);
+}
+
+TEST_CASE("what OpenCASCADE reports is not the program's output") {
+    const Sandbox box("reports");
+    box.write("d.igs", igs_text());
+    const Outcome outcome = box.run("info d.igs");
+    REQUIRE(outcome.status == 0);
+    CHECK_THAT(outcome.out, Catch::Matchers::StartsWith("d.igs\n"));
+    CHECK(outcome.err.empty());
 }
 
 // By itself: OpenCASCADE reads a quarter of these until the time is over.
