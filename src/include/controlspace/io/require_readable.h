@@ -13,7 +13,8 @@ namespace controlspace {
 ///     const auto sources = read();
 ///
 /// The child may neither write, rename or remove files, nor open sockets, nor start programs. It
-/// has the memory and the time that a file of this size can justify.
+/// has the memory and the time that a file of this size can justify. A crash ends it, whatever
+/// handlers of signals the program has.
 ///
 /// Throws InputError if the child crashes, needs more than that, or throws InputError (with its
 /// text). `read` must not start threads; let no other thread of the process hold a lock that `read`
