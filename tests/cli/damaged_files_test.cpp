@@ -133,7 +133,7 @@ const std::string vtp =
     "</DataArray></PointData>\n<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
     "format=\"ascii\">\n0 0 0 1 0 0</DataArray></Points>\n</Piece></PolyData></VTKFile>\n";
 
-/// One quadratic B-spline surface, as sections of records of 80 characters.
+/// One bilinear B-spline surface, as sections of records of 80 characters.
 std::string igs_text() {
     std::string text;
     const auto section = [&](char letter, std::size_t width, const std::string& content,
@@ -147,8 +147,8 @@ std::string igs_text() {
         return records;
     };
     const std::string surface =
-        "128,2,1,2,1,0,0,1,0,0,0.,0.,0.,1.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.,1.,1.,0.,0.,0.,0.5,0.,1.,"
-        "1.,0.,0.,0.,1.,0.,0.5,1.,1.,1.,1.,0.,0.,1.,0.,1.;";
+        "128,1,1,1,1,0,0,1,0,0,0.,0.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.,0.,0.,0.,1.,0.,0.,0.,1.,0.,1.,"
+        "1.,1.,0.,1.,0.,1.;";
     constexpr std::size_t parameters = 64;
     const std::size_t lines = (surface.size() + parameters - 1) / parameters;
     const std::size_t s = section('S', 72, "a surface");
@@ -203,11 +203,11 @@ fs::path made(const Sandbox& box, const std::string& arguments, const std::strin
 }
 
 #if defined(CONTROLSPACE_GMSH) && defined(CONTROLSPACE_CGAL)
-/// A box, as Gmsh writes it.
+/// A rectangle, as Gmsh writes it.
 void write_cad(const fs::path& file) {
     gmsh::initialize();
     gmsh::option::setNumber("General.Terminal", 0);
-    gmsh::model::occ::addBox(0, 0, 0, 1, 1, 2);
+    gmsh::model::occ::addRectangle(0, 0, 0, 1, 2);
     gmsh::model::occ::synchronize();
     gmsh::write(file.string());
     gmsh::finalize();
