@@ -67,7 +67,8 @@ std::vector<PointSource> too_long_to_matter() {
 }  // namespace
 
 CASE_OF_EACH(entry, tree_catalogue(),
-             "many sources at once make the tree of one by one, whatever the number of threads") {
+             "many sources at once make the tree of one by one, whatever the number of threads",
+             "[threads]") {
     const std::vector<PointSource> sources = GENERATE(
         too_long_to_matter(), sample_sphere({.h = 0.05, .rho = 0.5}),
         shuffled(sample_sphere({.h = 0.05})),

@@ -7,7 +7,7 @@
 
 using namespace controlspace;
 
-TEST_CASE("all items of a walk are worked upon once, none before what handed it on") {
+TEST_CASE("all items of a walk are worked upon once, none before what handed it on", "[threads]") {
     // Item i is handed on by item (i - 1) / children: a tree, and a chain.
     const std::size_t children = GENERATE(2, 1);
     constexpr std::size_t items = 20'001;
