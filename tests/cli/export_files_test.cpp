@@ -78,7 +78,8 @@ std::vector<double> doubles_in(std::string bytes, std::size_t count, bool are_re
 
 }  // namespace
 
-TEST_CASE("lengths of a slice, for NumPy, ParaView and netCDF, are those of single places") {
+TEST_CASE("lengths of a slice, for NumPy, ParaView and netCDF, are those of single places",
+          "[threads]") {
     const Sandbox box("export-lengths");
     box.write("s.csv", "x,y,z,h,g\n0.2,0.1,0.3,0.1,1.5\n1.7,0.6,0.4,0.05,0\n1,1,0,0.2,1\n");
     // Tiles that are not full, in both directions; the axes are x and z, of a plane or a slice.
