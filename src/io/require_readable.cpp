@@ -6,6 +6,7 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <tbb/task_arena.h>
 #include <unistd.h>
 
 #include <array>
@@ -90,7 +91,8 @@ void end_on_crashes() {
     give_up_rights();
     int status = failed;
     try {
-        read();
+        // Threads of TBB that the program has started are not there, and work would wait for them.
+        tbb::task_arena(1).execute(read);
         status = readable;
     } catch (const IndefiniteTensors&) {
         status = readable;

@@ -4,8 +4,10 @@
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <tbb/parallel_for.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <cerrno>
 #include <csignal>
@@ -75,6 +77,22 @@ TEST_CASE("A reader that crashes ends, whatever the program does when it crashes
         const auto before = std::signal(signal, [](int) { ::pause(); });
         CHECK_THROWS_AS(require_readable(file.path(), [&] { std::raise(signal); }), InputError);
         std::signal(signal, before);
+    }
+}
+
+TEST_CASE("A reader that works in parallel ends, though threads of the program are not there") {
+    const TextFile file;
+    const auto work = [] {
+        constexpr int steps = 10'000;
+        std::atomic<int> done = 0;
+        tbb::parallel_for(0, steps, [&](int) { ++done; });
+        if (done != steps) throw InputError("work is missing");
+    };
+    for (int time = 0; time < 1000; ++time) {
+        work();
+        CHECK_NOTHROW(require_readable(file.path(), [&] {
+            for (int again = 0; again < 20; ++again) work();
+        }));
     }
 }
 

@@ -315,8 +315,7 @@ CASE_OF_EACH(entry, all_trees(), "the same tree, whatever the number of threads"
     }
 }
 
-CASE_OF_EACH(entry, trees_of_layers(), "the same tree of layers, whatever the number of threads",
-             "[threads]") {
+CASE_OF_EACH(entry, trees_of_layers(), "the same tree of layers, whatever the number of threads") {
     const std::vector<PointSource> sources = sample_sphere({.h = 0.25, .s_a = 4, .s_n = 0.25});
     const std::vector<Point> x = random_points(domain, 2000, 24);
     std::vector<std::vector<Metric>> found;
