@@ -17,8 +17,9 @@ namespace controlspace {
 /// handlers of signals the program has.
 ///
 /// Throws InputError if the child crashes, needs more than that, or throws InputError (with its
-/// text). `read` must not start threads; let no other thread of the process hold a lock that `read`
-/// needs. On other systems than Linux `read` is called in this process.
+/// text). `read` must not start threads, and its loops of TBB run on one; let no other thread of
+/// the process hold a lock that `read` needs. On other systems than Linux `read` is called in this
+/// process.
 void require_readable(const std::filesystem::path& file, const std::function<void()>& read);
 
 }  // namespace controlspace
