@@ -91,8 +91,7 @@ void end_on_crashes() {
     give_up_rights();
     int status = failed;
     try {
-        // Threads of TBB that the program has started are not there, and work would wait for them.
-        tbb::task_arena(1).execute(read);
+        read();
         status = readable;
     } catch (const IndefiniteTensors&) {
         status = readable;
@@ -119,8 +118,13 @@ std::string text_from(int descriptor) {
 void require_readable(const std::filesystem::path& file, const std::function<void()>& read) {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::bad_alloc();
-    const pid_t child = ::fork();
-    if (child == 0) read_in_child(file, read, ends[1]);
+    // The child has none of the threads that TBB has started: in an arena of one thread, made
+    // before, work neither waits for them nor for a lock that one of them holds.
+    pid_t child = -1;
+    tbb::task_arena(1).execute([&] {
+        child = ::fork();
+        if (child == 0) read_in_child(file, read, ends[1]);
+    });
     ::close(ends[1]);
     const std::string answer = text_from(ends[0]);
     ::close(ends[0]);
