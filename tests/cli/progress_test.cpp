@@ -29,8 +29,7 @@ nlohmann::json without_times(nlohmann::json row) {
 
 }  // namespace
 
-TEST_CASE("a terminal shows a study's rate and time left, and Ctrl-C leaves what --resume ends",
-          "[threads]") {
+TEST_CASE("a terminal shows a study's rate and time left, and Ctrl-C leaves what --resume ends") {
     const Sandbox box("terminal-study");
     box.write("study.toml", study);
     const Outcome stopped = run_on_terminal(box, "compare study.toml --output out", "left");

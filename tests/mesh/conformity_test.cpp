@@ -56,7 +56,7 @@ TEST_CASE("the length of an edge is the integral along it") {
           Approx(std::log(2.0)).epsilon(0.003));
 }
 
-TEST_CASE("edges are counted by their metric lengths") {
+TEST_CASE("edges are counted by their metric lengths", "[threads]") {
     const VertexIndex n = 4;
     const TetMesh mesh = kuhn_mesh(n);
     // Axes, face diagonals and body diagonals of the cells.

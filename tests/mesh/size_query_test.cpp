@@ -40,7 +40,7 @@ TEST_CASE("sizes are the smallest lengths in the frame, times the factor") {
     CHECK_NOTHROW(query.rethrow_failure());
 }
 
-TEST_CASE("many threads may ask, and the first failure is kept") {
+TEST_CASE("many threads may ask, and the first failure is kept", "[threads]") {
     const FormulaField field([](const Point& p) {
         if (p.x() > 13) throw InputError("beyond 13");
         return Metric::isotropic(1);
