@@ -1,14 +1,11 @@
 #include "gmsh/cad_surface.h"
 
-#include <fcntl.h>
 #include <gmsh.h>
-#include <unistd.h>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -149,32 +146,10 @@ double model_diagonal() {
     return (high - low).norm();
 }
 
-/// OpenCASCADE reports on standard output: not part of the program's.
-class SilentOutput {
-public:
-    SilentOutput() : before_(::dup(STDOUT_FILENO)) {
-        std::cout.flush();
-        const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-        ::dup2(nowhere, STDOUT_FILENO);
-        ::close(nowhere);
-    }
-    ~SilentOutput() {
-        std::cout.flush();
-        ::dup2(before_, STDOUT_FILENO);
-        ::close(before_);
-    }
-    SilentOutput(const SilentOutput&) = delete;
-    SilentOutput& operator=(const SilentOutput&) = delete;
-
-private:
-    int before_;
-};
-
 SurfaceMesh mesh_of_shapes(const std::filesystem::path& path) {
     constexpr double triangles_around = 36;
     SurfaceMesh mesh;
-    std::vector<std::pair<int, int>> shapes;
-    gmsh::model::occ::importShapes(path.string(), shapes);
+    import_shapes(path);
     gmsh::model::occ::synchronize();
     gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", triangles_around);
     gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
@@ -197,7 +172,6 @@ SurfaceMesh read_cad_surface(const std::filesystem::path& path) {
     if (!std::filesystem::is_regular_file(path)) refuse_at(path, "no such file");
     SurfaceMesh mesh;
     try {
-        const SilentOutput silent;
         in_gmsh_session(1, [&] { mesh = mesh_of_shapes(path); });
     } catch (const InputError& error) {
         refuse_at(path, "{}", error.what());

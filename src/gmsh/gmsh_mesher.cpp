@@ -74,8 +74,7 @@ void add_surface(const Part& part, const UnitFrame& frame) {
 
 void add_cad(const Part& part, const UnitFrame& frame) {
     gmsh::option::setNumber("Geometry.OCCScaling", 1 / frame.scale);
-    Entities shapes;
-    gmsh::model::occ::importShapes(part.cad.string(), shapes);
+    const Entities shapes = import_shapes(part.cad);
     const Vector low = frame.domain.low / frame.scale;
     gmsh::model::occ::translate(shapes, -low.x(), -low.y(), -low.z());
     gmsh::model::occ::synchronize();

@@ -1,8 +1,11 @@
 #include "gmsh/gmsh_session.h"
 
+#include <fcntl.h>
 #include <gmsh.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <iostream>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -31,6 +34,27 @@ public:
     GmshSession& operator=(const GmshSession&) = delete;
 };
 
+/// OpenCASCADE reports on standard output: not part of the program's.
+class SilentOutput {
+public:
+    SilentOutput() : before_(::dup(STDOUT_FILENO)) {
+        std::cout.flush();
+        const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+        ::dup2(nowhere, STDOUT_FILENO);
+        ::close(nowhere);
+    }
+    ~SilentOutput() {
+        std::cout.flush();
+        ::dup2(before_, STDOUT_FILENO);
+        ::close(before_);
+    }
+    SilentOutput(const SilentOutput&) = delete;
+    SilentOutput& operator=(const SilentOutput&) = delete;
+
+private:
+    int before_;
+};
+
 [[noreturn]] void fail(std::string what) {
     std::replace(what.begin(), what.end(), '\n', ' ');
     throw InputError("Gmsh failed: " + what);
@@ -51,6 +75,13 @@ void in_gmsh_session(int threads, const std::function<void()>& action) {
     } catch (const std::length_error&) {
         fail("it needs more memory than there is");
     }
+}
+
+std::vector<std::pair<int, int>> import_shapes(const std::filesystem::path& file) {
+    const SilentOutput silent;
+    std::vector<std::pair<int, int>> shapes;
+    gmsh::model::occ::importShapes(file.string(), shapes);
+    return shapes;
 }
 
 }  // namespace controlspace
