@@ -133,38 +133,6 @@ const std::string vtp =
     "</DataArray></PointData>\n<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
     "format=\"ascii\">\n0 0 0 1 0 0</DataArray></Points>\n</Piece></PolyData></VTKFile>\n";
 
-/// One bilinear B-spline surface, as sections of records of 80 characters.
-std::string igs_text() {
-    std::string text;
-    const auto section = [&](char letter, std::size_t width, const std::string& content,
-                             const std::string& owner = "") {
-        const std::size_t records = (content.size() + width - 1) / width;
-        for (std::size_t i = 0; i < records; ++i) {
-            std::string record = content.substr(i * width, width);
-            record.resize(width, ' ');
-            text += fmt::format("{}{}{}{:7}\n", record, owner, letter, i + 1);
-        }
-        return records;
-    };
-    const std::string surface =
-        "128,1,1,1,1,0,0,1,0,0,0.,0.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.,0.,0.,0.,1.,0.,0.,0.,1.,0.,1.,"
-        "1.,1.,0.,1.,0.,1.;";
-    constexpr std::size_t parameters = 64;
-    const std::size_t lines = (surface.size() + parameters - 1) / parameters;
-    const std::size_t s = section('S', 72, "a surface");
-    const std::size_t g = section(
-        'G', 72,
-        "1H,,1H;,1Hd,5Hd.igs,1Hd,1Hd,32,38,6,308,15,1Hd,1.,6,1HM,1,0.01,15H20260101.000000,1.E-7,"
-        "2.,1Hd,1Hd,11,0,;");
-    const std::string numbers =
-        fmt::format("{:8}{:8}{:8}{:8}{:8}{:8}{:8}{:8}{:08}", 128, 1, 0, 0, 0, 0, 0, 0, 0) +
-        fmt::format("{:8}{:8}{:8}{:8}{:8}", 128, 0, 0, lines, 0);
-    const std::size_t d = section('D', 72, numbers);
-    const std::size_t p = section('P', parameters, surface, fmt::format("{:8}", 1));
-    section('T', 72, fmt::format("S{:7}G{:7}D{:7}P{:7}", s, g, d, p));
-    return text;
-}
-
 /// Reads damaged copies of a file as require_readable.h tells programs to: each is answered, or
 /// refused by an InputError of one line, which names the file.
 template <class Read>
@@ -203,6 +171,38 @@ fs::path made(const Sandbox& box, const std::string& arguments, const std::strin
 }
 
 #if defined(CONTROLSPACE_GMSH) && defined(CONTROLSPACE_CGAL)
+/// One bilinear B-spline surface, as sections of records of 80 characters.
+std::string igs_text() {
+    std::string text;
+    const auto section = [&](char letter, std::size_t width, const std::string& content,
+                             const std::string& owner = "") {
+        const std::size_t records = (content.size() + width - 1) / width;
+        for (std::size_t i = 0; i < records; ++i) {
+            std::string record = content.substr(i * width, width);
+            record.resize(width, ' ');
+            text += fmt::format("{}{}{}{:7}\n", record, owner, letter, i + 1);
+        }
+        return records;
+    };
+    const std::string surface =
+        "128,1,1,1,1,0,0,1,0,0,0.,0.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.,0.,0.,0.,1.,0.,0.,0.,1.,0.,1.,"
+        "1.,1.,0.,1.,0.,1.;";
+    constexpr std::size_t parameters = 64;
+    const std::size_t lines = (surface.size() + parameters - 1) / parameters;
+    const std::size_t s = section('S', 72, "a surface");
+    const std::size_t g = section(
+        'G', 72,
+        "1H,,1H;,1Hd,5Hd.igs,1Hd,1Hd,32,38,6,308,15,1Hd,1.,6,1HM,1,0.01,15H20260101.000000,1.E-7,"
+        "2.,1Hd,1Hd,11,0,;");
+    const std::string numbers =
+        fmt::format("{:8}{:8}{:8}{:8}{:8}{:8}{:8}{:8}{:08}", 128, 1, 0, 0, 0, 0, 0, 0, 0) +
+        fmt::format("{:8}{:8}{:8}{:8}{:8}", 128, 0, 0, lines, 0);
+    const std::size_t d = section('D', 72, numbers);
+    const std::size_t p = section('P', parameters, surface, fmt::format("{:8}", 1));
+    section('T', 72, fmt::format("S{:7}G{:7}D{:7}P{:7}", s, g, d, p));
+    return text;
+}
+
 /// A rectangle, as Gmsh writes it.
 void write_cad(const fs::path& file) {
     gmsh::initialize();
