@@ -74,22 +74,23 @@ private:
     std::mt19937 random_;
 };
 
-int factor() {
-    const char* const factor = std::getenv("DAMAGED_FILES");
-    return factor != nullptr ? std::max(1, std::atoi(factor)) : 1;
+int from_environment(const char* name, int least) {
+    const char* const text = std::getenv(name);
+    return text != nullptr ? std::max(least, std::atoi(text)) : least;
 }
 
 }  // namespace
 
 int for_each_damaged_copy(const std::string& bytes, int rounds,
                           const std::function<void(const std::string&)>& visit) {
-    const int cuts = rounds / 3, all = rounds * factor();
+    const int cuts = rounds / 3, all = rounds * from_environment("DAMAGED_FILES", 1);
+    const auto first = static_cast<std::uint32_t>(from_environment("DAMAGED_FROM", 0));
     for (int i = 0; i <= cuts; ++i) {
         visit(bytes.substr(
             0, static_cast<std::size_t>(i) * bytes.size() / static_cast<std::size_t>(cuts)));
     }
     for (int round = 0; round < all; ++round) {
-        visit(Damage(static_cast<std::uint32_t>(round))(bytes));
+        visit(Damage(first + static_cast<std::uint32_t>(round))(bytes));
     }
     return cuts + 1 + all;
 }
