@@ -1,7 +1,8 @@
-// Access time of octrees on a GPU (component cuda) and on one thread of the processor: places at
-// random, four million, that lie in the memory of the side that answers. Beside them, on the GPU,
-// NanoVDB's dense grids of six floats a voxel, trilinear, as coarse as they may be for the mean
-// error of K_oV (or, where that takes more than 2 GiB, as fine as that allows).
+// Access time of octrees on a GPU (component cuda) and on one thread of the processor: lengths, or
+// metrics where there are tensors, at four million places at random, that lie in the memory of the
+// side that answers. Beside them, on the GPU, NanoVDB's dense grids, trilinear, of a float a voxel
+// or of six where there are tensors, as coarse as they may be for the mean error of K_oV (or, where
+// that takes more than 2 GiB, as fine as that allows).
 //
 // Names: cuda/STRUCTURE/WORK/gpu, .../gpu-doubles, and .../processor, the compact form in floats.
 // Built by --preset peers -D CONTROLSPACE_CUDA=ON -D CONTROLSPACE_BENCHMARKS=ON, target bench_cuda.
@@ -9,6 +10,7 @@
 #include <benchmark/benchmark.h>
 #include <cuda_runtime_api.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -60,13 +62,28 @@ void on_gpu(benchmark::State& state, const ControlSpace& space, Precision precis
                  [&](const double* x, double* out) { gpu.start(x, count, out, nullptr); });
 }
 
-const nanovdb::NanoGrid<nanovdb::Vec3f>* copied_to_gpu(
-    const nanovdb::GridHandle<nanovdb::HostBuffer>& grid) {
-    void* memory = nullptr;
-    require(cudaMalloc(&memory, grid.size()));
-    require(cudaMemcpy(memory, grid.data(), grid.size(), cudaMemcpyHostToDevice));
-    return static_cast<const nanovdb::NanoGrid<nanovdb::Vec3f>*>(memory);
+bool are_lengths(const ControlNodes& nodes) {
+    return std::ranges::all_of(nodes.metrics, is_isotropic);
 }
+
+/// NanoVDB's dense grids of a work on the GPU, as coarse as their mean error allows; they stay
+/// there.
+struct NanoOnGpu {
+    NanoView view;
+    double mean_delta, mean_delta_of_k_ov, megabytes = 0;
+
+    explicit NanoOnGpu(const Work& work);
+
+private:
+    template <class Value>
+    const nanovdb::NanoGrid<Value>* copied(const NanoHandle& grid) {
+        void* memory = nullptr;
+        require(cudaMalloc(&memory, grid.size()));
+        require(cudaMemcpy(memory, grid.data(), grid.size(), cudaMemcpyHostToDevice));
+        megabytes += static_cast<double>(grid.size()) / 1e6;
+        return static_cast<const nanovdb::NanoGrid<Value>*>(memory);
+    }
+};
 
 Probes probes_of(const Work& work) {
     const std::vector<PointSource> sources = sample_sphere(work.sampling);
@@ -87,37 +104,47 @@ std::unique_ptr<ControlSpace> uniform_with(double delta, const Work& work, const
     }
 }
 
-void nanovdb_on_gpu(benchmark::State& state, const Work& work) {
+NanoOnGpu::NanoOnGpu(const Work& work) {
     const Probes probes = probes_of(work);
-    const double delta =
-        accuracy(*graded(*find_entry(structures(), "K_oV"), work)->build(), probes).mean;
-    const auto uniform = uniform_with(delta, work, probes);
+    mean_delta_of_k_ov =
+        accuracy(*graded(*find_entry(tree_catalogue(), "K_oV"), work)->build(), probes).mean;
+    const auto uniform = uniform_with(mean_delta_of_k_ov, work, probes);
+    mean_delta = accuracy(*uniform, probes).mean;
     const ControlNodes nodes = control_nodes(*uniform, Neighbourhood::faces).value();
     const Lattice& lattice = std::get<Lattice>(nodes.graph);
-    const DenseNanoGrids grids(lattice, nodes.metrics);
-    NanoView view = nano_view(uniform->domain(), lattice);
-    const auto* const diagonals = view.diagonals = copied_to_gpu(grids.diagonals);
-    const auto* const off_diagonals = view.off_diagonals = copied_to_gpu(grids.off_diagonals);
-    time_answers(state, 6, [&](const double* x, double* out) {
-        start_answers(view, x, count, out, nullptr);
+    view = nano_view(uniform->domain(), lattice);
+    if (are_lengths(nodes)) {
+        view.lengths = copied<float>(dense_lengths(lattice, nodes.metrics));
+    } else {
+        const DenseNanoGrids grids(lattice, nodes.metrics);
+        view.diagonals = copied<nanovdb::Vec3f>(grids.diagonals);
+        view.off_diagonals = copied<nanovdb::Vec3f>(grids.off_diagonals);
+    }
+}
+
+void nanovdb_on_gpu(benchmark::State& state, const NanoOnGpu& nano) {
+    time_answers(state, nano.view.lengths != nullptr ? 1 : 6, [&](const double* x, double* out) {
+        start_answers(nano.view, x, count, out, nullptr);
         require(cudaGetLastError());
     });
-    state.counters["mean_delta"] = accuracy(*uniform, probes).mean;
-    state.counters["mean_delta_of_K_oV"] = delta;
-    state.counters["megabytes"] =
-        static_cast<double>(grids.diagonals.size() + grids.off_diagonals.size()) / 1e6;
-    require(cudaFree(const_cast<nanovdb::NanoGrid<nanovdb::Vec3f>*>(diagonals)));
-    require(cudaFree(const_cast<nanovdb::NanoGrid<nanovdb::Vec3f>*>(off_diagonals)));
+    state.counters["mean_delta"] = nano.mean_delta;
+    state.counters["mean_delta_of_K_oV"] = nano.mean_delta_of_k_ov;
+    state.counters["megabytes"] = nano.megabytes;
 }
 
 void on_processor(benchmark::State& state, const ControlSpace& space) {
     const std::vector<Point> x = random_points(bench_domain(), count, 1);
-    std::vector<double> lengths(count);
-    for (auto _ : state) {
-        space.sample_lengths(x, lengths);
-        benchmark::DoNotOptimize(lengths.data());
+    const auto time = [&](auto&& answer) {
+        for (auto _ : state) answer();
+        count_queries(state, count);
+    };
+    if (are_lengths(control_nodes(space, Neighbourhood::faces).value())) {
+        std::vector<double> lengths(count);
+        time([&] { space.sample_lengths(x, lengths); });
+    } else {
+        std::vector<Metric> metrics(count);
+        time([&] { space.sample(x, metrics); });
     }
-    count_queries(state, count);
 }
 
 }  // namespace
@@ -125,8 +152,12 @@ void on_processor(benchmark::State& state, const ControlSpace& space) {
 int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     for (const Work& work : works()) {
-        benchmark::RegisterBenchmark(("cuda/nanovdb-trilinear/" + work.name + "/gpu").c_str(),
-                                     [&work](auto& state) { nanovdb_on_gpu(state, work); });
+        benchmark::RegisterBenchmark(
+            ("cuda/nanovdb-trilinear/" + work.name + "/gpu").c_str(),
+            [&work, nano = std::shared_ptr<NanoOnGpu>()](auto& state) mutable {
+                if (!nano) nano = std::make_shared<NanoOnGpu>(work);
+                nanovdb_on_gpu(state, *nano);
+            });
         for (const char* id : {"K_oL", "K_oV"}) {
             const auto builder = graded(*find_entry(tree_catalogue(), id), work);
             const std::shared_ptr<ControlSpace> space =

@@ -8,7 +8,6 @@
 #include "controlspace/trees/detail/corners.h"
 #include "controlspace/trees/detail/topology_state.h"
 #include "refuse.h"
-#include "trees/topology/leaf_faces.h"
 
 namespace controlspace {
 
@@ -39,32 +38,29 @@ OctreeArrays<Number>::OctreeArrays(const ControlSpace& field) {
         std::ranges::transform(node.children, added.children, bits_of);
         std::ranges::copy(node.at, added.at);
     }
-    numbers_ = std::ranges::all_of(metrics, is_isotropic) ? 1 : 6;
-    for (const Metric& m : metrics) {
-        const double all[] = {m.xx, m.yy, m.zz, m.xy, m.xz, m.yz};
-        for (int n = 0; n < numbers_; ++n) values_.push_back(static_cast<Number>(all[n]));
-    }
-    const CutPlanes cuts(tree);
-    for (std::size_t a = 0; a < 3; ++a) {
-        const auto axis = static_cast<Axis>(a);
-        const std::size_t last = cuts.number(axis, domain.high[axis]);
-        for (std::size_t i = 0; i <= last; ++i) cuts_[a].push_back(cuts.at(axis, i));
-    }
-    for (const Corners& of_leaf : corners) {
-        corners_.insert(corners_.end(), of_leaf.begin(), of_leaf.end());
+    const auto number = [](double x) { return static_cast<Number>(x); };
+    if (std::ranges::all_of(metrics, is_isotropic)) {
+        for (const Metric& m : metrics) lengths_.push_back({{number(m.xx)}});
+    } else {
+        for (const Metric& m : metrics) {
+            metrics_.push_back({{number(m.xx), number(m.yy), number(m.zz), number(m.xy),
+                                 number(m.xz), number(m.yz)}});
+        }
     }
     if (!corners.empty()) {
-        faces_.resize(6 * tree.leaves());
-        for_each_faces<std::uint32_t>(tree, cuts, [&](LeafIndex leaf, const auto& of_leaf) {
-            std::ranges::copy(of_leaf.low, &faces_[6 * std::size_t{leaf}]);
-            std::ranges::copy(of_leaf.high, &faces_[6 * std::size_t{leaf} + 3]);
+        leaves_.resize(corners.size());
+        tree.for_each_leaf([&](LeafIndex index, const Box& box) {
+            typename View::Leaf& leaf = leaves_[index];
+            std::ranges::copy(box.low, leaf.low);
+            std::ranges::copy(box.high, leaf.high);
+            std::ranges::copy(corners[index], leaf.corners);
         });
     }
 
     for (const Ref start : tree.jumps().refs()) starts_.push_back(bits_of(start));
     for (std::size_t a = 0; a < 3; ++a) {
         const auto& cells = tree.jumps().axes()[a];
-        axes_[a] = {cells.low, cells.per_length, cells.count(), nullptr, nullptr};
+        axes_[a] = {cells.low, cells.per_length, cells.count(), nullptr};
         planes_[a] = cells.planes;
     }
 }

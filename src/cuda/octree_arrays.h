@@ -20,7 +20,7 @@ public:
     explicit OctreeArrays(const ControlSpace& field);
 
     /// Numbers of a value: 1 where all metrics are isotropic, else 6.
-    int numbers() const { return numbers_; }
+    int numbers() const { return metrics_.empty() ? 1 : 6; }
 
     /// Calls put(array) for each array, which returns a pointer to it or to a copy, and makes the
     /// view of these pointers.
@@ -30,15 +30,12 @@ public:
         for (std::size_t a = 0; a < 3; ++a) {
             view.axes[a] = axes_[a];
             view.axes[a].planes = put(planes_[a]);
-            view.axes[a].cuts = put(cuts_[a]);
         }
         view.starts = put(starts_);
         view.nodes = put(nodes_);
-        view.values = put(values_);
-        if (!corners_.empty()) {
-            view.faces = put(faces_);
-            view.corners = put(corners_);
-        }
+        if (!leaves_.empty()) view.leaves = put(leaves_);
+        view.lengths = put(lengths_);
+        view.metrics = put(metrics_);
         return view;
     }
     View view() const {
@@ -46,12 +43,13 @@ public:
     }
 
 private:
-    int numbers_;
     std::array<typename View::Axis, 3> axes_;
-    std::array<std::vector<double>, 3> planes_, cuts_;
-    std::vector<std::uint32_t> starts_, faces_, corners_;
+    std::array<std::vector<double>, 3> planes_;
+    std::vector<std::uint32_t> starts_;
     std::vector<typename View::Node> nodes_;
-    std::vector<Number> values_;
+    std::vector<typename View::Leaf> leaves_;
+    std::vector<typename View::template Value<1>> lengths_;  // or:
+    std::vector<typename View::template Value<6>> metrics_;
 };
 
 }  // namespace controlspace

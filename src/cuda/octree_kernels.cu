@@ -4,13 +4,27 @@ namespace controlspace {
 
 namespace {
 
+constexpr unsigned block = 256;
+
 template <int numbers, class Number>
 __global__ void answer_all(const OctreeView<Number> tree, const double* x, std::size_t count,
                            double* out) {
-    const std::size_t threads = std::size_t{gridDim.x} * blockDim.x;
-    for (std::size_t i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x; i < count;
-         i += threads) {
-        answer<numbers>(tree, x + 3 * i, out + numbers * i);
+    // Metrics are put together here, so that threads write side by side.
+    __shared__ double answers[numbers == 1 ? 1 : block * numbers];
+    const std::size_t step = std::size_t{gridDim.x} * block;
+    for (std::size_t first = std::size_t{blockIdx.x} * block; first < count; first += step) {
+        const std::size_t i = first + threadIdx.x;
+        if constexpr (numbers == 1) {
+            if (i < count) answer<1>(tree, x + 3 * i, out + i);
+        } else {
+            if (i < count) answer<numbers>(tree, x + 3 * i, answers + numbers * threadIdx.x);
+            __syncthreads();
+            const std::size_t left = numbers * (count - first);
+            for (unsigned n = threadIdx.x; n < numbers * block && n < left; n += block) {
+                out[numbers * first + n] = answers[n];
+            }
+            __syncthreads();
+        }
     }
 }
 
@@ -20,7 +34,6 @@ template <class Number>
 void start_answers(const OctreeView<Number>& tree, int numbers, const double* x, std::size_t count,
                    double* out, cudaStream_t stream) {
     if (count == 0) return;
-    constexpr unsigned block = 256;
     constexpr std::size_t most_blocks = 1 << 20;
     const std::size_t blocks = (count + block - 1) / block;
     const auto grid = static_cast<unsigned>(blocks < most_blocks ? blocks : most_blocks);

@@ -14,29 +14,49 @@ namespace controlspace {
 /// An octree as arrays of plain numbers, and how to answer from it: the same functions on a GPU and
 /// on a processor, where the tests call them. They compute what octrees in memory compute, in the
 /// same order, so that answers are the same to the bit where no multiplication is fused with an
-/// addition (nvcc: --fmad=false). Pointers are of the side that reads.
+/// addition (nvcc: --fmad=false). Pointers are of the side that reads. Structures are read as a
+/// whole, sixteen bytes at a time: what limits a GPU is how many reads there are.
 template <class Number>
 struct OctreeView {
     static constexpr std::uint32_t leaf_bit = 1u << 31;
 
     struct Node {
-        std::uint32_t children[8];  ///< an inner node, or a leaf with leaf_bit; x fastest
-        double at[3];               ///< planes; infinite along axes that are not cut
+        double at[3];  ///< planes; infinite along axes that are not cut
+        alignas(
+            32) std::uint32_t children[8];  ///< an inner node, or a leaf with leaf_bit; x fastest
     };
     /// One axis of a uniform grid of cells that lie in one leaf, or contain whole ones.
     struct Axis {
         double low = 0, per_length = 0;
         int cells = 1;
         const double* planes = nullptr;  ///< cells + 1; the outermost are not-a-number
-        const double* cuts = nullptr;    ///< places of all cuts, which `faces` number
+    };
+    /// With values at its corners.
+    struct alignas(16) Leaf {
+        double low[3], high[3];
+        std::uint32_t corners[8];  ///< numbers of values, x fastest
+    };
+    /// A length, or the six numbers of a metric.
+    template <int numbers>
+    struct alignas(numbers == 1 ? sizeof(Number) : 16) Value {
+        Number of[numbers];
     };
 
     Axis axes[3];
     const std::uint32_t* starts = nullptr;  ///< for each cell, x fastest: a node or leaf
     const Node* nodes = nullptr;
-    const std::uint32_t* faces = nullptr;    ///< of each leaf: three low, three high
-    const std::uint32_t* corners = nullptr;  ///< of each leaf, x fastest; null: it has one value
-    const Number* values = nullptr;          ///< lengths, or six numbers of a metric each
+    const Leaf* leaves = nullptr;  ///< null: a leaf has one value, of its own number
+    const Value<1>* lengths = nullptr;
+    const Value<6>* metrics = nullptr;
+
+    template <int numbers>
+    CONTROLSPACE_ON_BOTH_SIDES const Value<numbers>* values() const {
+        if constexpr (numbers == 1) {
+            return lengths;
+        } else {
+            return metrics;
+        }
+    }
 };
 
 /// The cell that holds x: the quotient is off by rounding at most.
@@ -70,28 +90,30 @@ CONTROLSPACE_ON_BOTH_SIDES std::uint32_t leaf_at(const OctreeView<Number>& tree,
 template <int numbers, class Number>
 CONTROLSPACE_ON_BOTH_SIDES void answer(const OctreeView<Number>& tree, const double* x,
                                        double* out) {
-    const std::size_t leaf = leaf_at(tree, x);
-    if (tree.corners == nullptr) {
-        for (int n = 0; n < numbers; ++n) out[n] = tree.values[leaf * numbers + n];
+    const std::uint32_t found = leaf_at(tree, x);
+    const auto* const values = tree.template values<numbers>();
+    if (tree.leaves == nullptr) {
+        const auto value = values[found];
+        for (int n = 0; n < numbers; ++n) out[n] = value.of[n];
         return;
     }
+    const auto leaf = tree.leaves[found];
     double side[3][2];
     for (int a = 0; a < 3; ++a) {
         constexpr double least = 2.2250738585072014e-308;  // flat boxes: the least normal number
-        const double low = tree.axes[a].cuts[tree.faces[6 * leaf + a]];
-        const double high = tree.axes[a].cuts[tree.faces[6 * leaf + 3 + a]];
-        const double edge = high - low;
-        double place = x[a] > low ? x[a] : low;
-        place = place < high ? place : high;
-        side[a][1] = (place - low) / (edge > least ? edge : least);
+        const double edge = leaf.high[a] - leaf.low[a];
+        double place = x[a] > leaf.low[a] ? x[a] : leaf.low[a];
+        place = place < leaf.high[a] ? place : leaf.high[a];
+        side[a][1] = (place - leaf.low[a]) / (edge > least ? edge : least);
         side[a][0] = 1 - side[a][1];
     }
-    for (int n = 0; n < numbers; ++n) out[n] = 0;
+    double sum[numbers] = {};
     for (int c = 0; c < 8; ++c) {
         const double weight = side[0][c & 1] * side[1][c >> 1 & 1] * side[2][c >> 2];
-        const Number* const value = tree.values + std::size_t{tree.corners[8 * leaf + c]} * numbers;
-        for (int n = 0; n < numbers; ++n) out[n] += weight * value[n];
+        const auto value = values[leaf.corners[c]];
+        for (int n = 0; n < numbers; ++n) sum[n] += weight * value.of[n];
     }
+    for (int n = 0; n < numbers; ++n) out[n] = sum[n];
 }
 
 }  // namespace controlspace

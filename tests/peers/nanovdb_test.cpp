@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "baselines/peers/nanovdb/dense_grid.h"
@@ -54,6 +55,15 @@ TEST_CASE("NanoVDB answers on a GPU as here, to the bit") {
         answers.push_back({m[0], m[1], m[2], m[3], m[4], m[5]});
     }
     CHECK(differing(answers, answers_at(*space, places)) == 0);
+    if (!std::ranges::all_of(nodes.metrics, is_isotropic)) return;
+
+    const NanoHandle lengths = dense_lengths(lattice, nodes.metrics);
+    view.lengths = lengths.grid<float>();
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        double length;
+        answer(view, places[i].data(), &length);
+        CHECK(length == answers[i].xx);
+    }
 }
 
 }  // namespace controlspace

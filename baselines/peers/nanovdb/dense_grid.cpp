@@ -13,20 +13,24 @@ namespace controlspace {
 
 namespace {
 
-nanovdb::GridHandle<nanovdb::HostBuffer> dense_grid(const Lattice& lattice,
-                                                    std::span<const Metric> metrics,
-                                                    openvdb::Vec3s (*value_of)(const Metric&)) {
-    const auto grid = openvdb::Vec3SGrid::create();
+template <class Tree, class ValueOf>
+NanoHandle dense_grid(const Lattice& lattice, std::span<const Metric> metrics, ValueOf&& value_of) {
+    const auto grid = openvdb::Grid<Tree>::create();
     fill_densely(grid->tree(), lattice, metrics, value_of);
-    return nanovdb::openToNanoVDB<nanovdb::HostBuffer, openvdb::Vec3STree>(
-        *grid, nanovdb::StatsMode::Disable, nanovdb::ChecksumMode::Disable);
+    return nanovdb::openToNanoVDB<nanovdb::HostBuffer, Tree>(*grid, nanovdb::StatsMode::Disable,
+                                                             nanovdb::ChecksumMode::Disable);
 }
 
 }  // namespace
 
 DenseNanoGrids::DenseNanoGrids(const Lattice& lattice, std::span<const Metric> metrics)
-    : diagonals(dense_grid(lattice, metrics, diagonal)),
-      off_diagonals(dense_grid(lattice, metrics, off_diagonal)) {}
+    : diagonals(dense_grid<openvdb::Vec3STree>(lattice, metrics, diagonal)),
+      off_diagonals(dense_grid<openvdb::Vec3STree>(lattice, metrics, off_diagonal)) {}
+
+NanoHandle dense_lengths(const Lattice& lattice, std::span<const Metric> metrics) {
+    return dense_grid<openvdb::FloatTree>(lattice, metrics,
+                                          [](const Metric& m) { return static_cast<float>(m.xx); });
+}
 
 NanoView nano_view(const Box& domain, const Lattice& lattice) {
     NanoView view;

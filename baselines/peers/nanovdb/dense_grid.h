@@ -11,13 +11,18 @@
 
 namespace controlspace {
 
+using NanoHandle = nanovdb::GridHandle<nanovdb::HostBuffer>;
+
 /// Two dense NanoVDB grids over a lattice with the metrics of its nodes in floats: made from
 /// OpenVDB's, whose headers take long to compile.
 struct DenseNanoGrids {
     DenseNanoGrids(const Lattice& lattice, std::span<const Metric> metrics);
 
-    nanovdb::GridHandle<nanovdb::HostBuffer> diagonals, off_diagonals;
+    NanoHandle diagonals, off_diagonals;
 };
+
+/// One of the lengths, where all metrics are isotropic.
+NanoHandle dense_lengths(const Lattice& lattice, std::span<const Metric> metrics);
 
 /// How to answer in `domain` from grids whose nodes are the lattice's, from vertex to vertex;
 /// without the grids themselves.

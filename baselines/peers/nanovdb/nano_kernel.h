@@ -6,8 +6,8 @@
 
 namespace controlspace {
 
-/// Starts, on the current device, the metrics at `count` places: x, y and z of each, all in the
-/// device's memory, to six numbers each in `out`.
+/// Starts, on the current device, the answers at `count` places: x, y and z of each, all in the
+/// device's memory, to one number each in `out` where the view has lengths, or else to six.
 void start_answers(const NanoView& view, const double* x, std::size_t count, double* out,
                    cudaStream_t stream);
 

@@ -6,10 +6,11 @@
 
 namespace controlspace {
 
-/// The two grids of `nanovdb-trilinear` and how to answer from them: the same function on a GPU and
-/// on a processor, where the tests call it. It computes what the structure computes, in the same
-/// order. Pointers are of the side that reads.
+/// Dense grids and how to answer from them, trilinear: the same functions on a GPU and on a
+/// processor, where the tests call them. They compute what `nanovdb-trilinear` computes, in the
+/// same order. Pointers are of the side that reads.
 struct NanoView {
+    const nanovdb::NanoGrid<float>* lengths = nullptr;                 ///< or, where it is null:
     const nanovdb::NanoGrid<nanovdb::Vec3f>* diagonals = nullptr;      ///< xx, yy, zz
     const nanovdb::NanoGrid<nanovdb::Vec3f>* off_diagonals = nullptr;  ///< xy, xz, yz
     double low[3] = {}, per_length[3] = {};
@@ -17,8 +18,9 @@ struct NanoView {
     int last[3] = {};  ///< node numbers along each axis end here
 };
 
-/// The six numbers of the metric at x.
-__hostdev__ inline void answer(const NanoView& view, const double* x, double* out) {
+/// visit(node, weight) for the eight nodes around x.
+template <class Visit>
+__hostdev__ inline void for_each_node(const NanoView& view, const double* x, const Visit& visit) {
     int cell[3];
     double side[3][2];
     for (int a = 0; a < 3; ++a) {
@@ -30,22 +32,37 @@ __hostdev__ inline void answer(const NanoView& view, const double* x, double* ou
         side[a][1] = t - cell[a];
         side[a][0] = 1 - side[a][1];
     }
-    const auto diagonals = view.diagonals->getAccessor();
-    const auto off_diagonals = view.off_diagonals->getAccessor();
-    for (int n = 0; n < 6; ++n) out[n] = 0;
     for (int c = 0; c < 8; ++c) {
         int node[3];
         for (int a = 0; a < 3; ++a) {
             node[a] = cell[a] + (c >> a & 1);
             if (node[a] > view.last[a]) node[a] = view.last[a];
         }
-        const nanovdb::Coord ijk(node[0], node[1], node[2]);
-        const double weight = side[0][c & 1] * side[1][c >> 1 & 1] * side[2][c >> 2];
-        const nanovdb::Vec3f& first = diagonals.getValue(ijk);
-        const nanovdb::Vec3f& rest = off_diagonals.getValue(ijk);
+        visit(nanovdb::Coord(node[0], node[1], node[2]),
+              side[0][c & 1] * side[1][c >> 1 & 1] * side[2][c >> 2]);
+    }
+}
+
+/// At x, from `lengths` one number, or else the six of the metric.
+__hostdev__ inline void answer(const NanoView& view, const double* x, double* out) {
+    if (view.lengths != nullptr) {
+        const auto lengths = view.lengths->getAccessor();
+        double sum = 0;
+        for_each_node(view, x, [&](const nanovdb::Coord& node, double weight) {
+            sum += weight * lengths.getValue(node);
+        });
+        *out = sum;
+        return;
+    }
+    const auto diagonals = view.diagonals->getAccessor();
+    const auto off_diagonals = view.off_diagonals->getAccessor();
+    for (int n = 0; n < 6; ++n) out[n] = 0;
+    for_each_node(view, x, [&](const nanovdb::Coord& node, double weight) {
+        const nanovdb::Vec3f& first = diagonals.getValue(node);
+        const nanovdb::Vec3f& rest = off_diagonals.getValue(node);
         for (int n = 0; n < 3; ++n) out[n] += weight * first[n];
         for (int n = 0; n < 3; ++n) out[3 + n] += weight * rest[n];
-    }
+    });
 }
 
 }  // namespace controlspace

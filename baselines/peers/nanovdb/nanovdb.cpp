@@ -16,7 +16,6 @@ namespace controlspace {
 
 namespace {
 
-using Handle = nanovdb::GridHandle<nanovdb::HostBuffer>;
 using Grid = nanovdb::NanoGrid<nanovdb::Vec3f>;
 using Leaf = nanovdb::NanoLeaf<nanovdb::Vec3f>;
 
@@ -90,7 +89,7 @@ public:
     Reader reader() const { return Reader(*this); }
 
     void add_to(Footprint& footprint) const {
-        for (const Handle* handle : {&grids_.diagonals, &grids_.off_diagonals}) {
+        for (const NanoHandle* handle : {&grids_.diagonals, &grids_.off_diagonals}) {
             const std::size_t payload = handle->grid<nanovdb::Vec3f>()->tree().nodeCount(0) *
                                         sizeof(Leaf::DataType::mValues);
             footprint.bytes_payload += payload;
