@@ -5,7 +5,7 @@
 // that takes more than 2 GiB, as fine as that allows).
 //
 // Names: cuda/STRUCTURE/WORK/gpu, .../gpu-doubles, and .../processor, the compact form in floats.
-// Built by --preset peers -D CONTROLSPACE_CUDA=ON -D CONTROLSPACE_BENCHMARKS=ON, target bench_cuda.
+// Built by --preset cuda, target bench_cuda.
 // Counters of NanoVDB: its mean error and that of K_oV, at 20000 places; megabytes on the GPU.
 #include <benchmark/benchmark.h>
 #include <cuda_runtime_api.h>
