@@ -213,8 +213,8 @@ struct DistributedSpace::Impl {
         const auto made =
             std::make_shared<AdaptedPart<Storage>>(space, options.structure == "K_oLB", boxes);
         if (steepest) sources.push_back(steepest->source());
-        // Some 300 bytes each. A share for each rank would be too few where there are many.
-        const std::size_t most_answers = ranks.size() == 1 ? 500'000 : 75'000;
+        // A share for each rank would be too few where there are many.
+        const std::size_t most_answers = ranks.size() == 1 ? GoalField::many_answers : 75'000;
         const AdaptationReport outcome = made->adapt(
             {.sources = sources,
              .continuous = nullptr,

@@ -20,10 +20,13 @@ class GoalCache;
 /// target are left out.
 class GoalField final : public ControlSpace {
 public:
+    /// Answers of tensors, of some 230 bytes each, that are kept from leaf to leaf at most.
+    static constexpr std::size_t many_answers = 500'000;
+
     /// Throws InputError for sources outside of `domain` or with bad metrics, a ratio below 1, a
-    /// target that is not positive. So many answers at most, of some 230 bytes each, are kept from
-    /// leaf to leaf, of tensors.
-    GoalField(const AdaptationGoal& goal, const Box& domain, std::size_t most_answers = 500'000);
+    /// target that is not positive.
+    GoalField(const AdaptationGoal& goal, const Box& domain,
+              std::size_t most_answers = many_answers);
     ~GoalField() override;
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override;
