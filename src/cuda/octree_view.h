@@ -86,18 +86,20 @@ CONTROLSPACE_ON_BOTH_SIDES std::uint32_t leaf_at(const OctreeView<Number>& tree,
     return part & ~tree.leaf_bit;
 }
 
-/// The field at x: one length, or the six numbers of a metric.
+/// The field at x, one length or the six numbers of a metric, where leaves have one value each.
 template <int numbers, class Number>
-CONTROLSPACE_ON_BOTH_SIDES void answer(const OctreeView<Number>& tree, const double* x,
-                                       double* out) {
-    const std::uint32_t found = leaf_at(tree, x);
+CONTROLSPACE_ON_BOTH_SIDES void answer_of_leaf(const OctreeView<Number>& tree, const double* x,
+                                               double* out) {
+    const auto value = tree.template values<numbers>()[leaf_at(tree, x)];
+    for (int n = 0; n < numbers; ++n) out[n] = value.of[n];
+}
+
+/// The same where they have values at their corners: trilinear.
+template <int numbers, class Number>
+CONTROLSPACE_ON_BOTH_SIDES void answer_of_corners(const OctreeView<Number>& tree, const double* x,
+                                                  double* out) {
     const auto* const values = tree.template values<numbers>();
-    if (tree.leaves == nullptr) {
-        const auto value = values[found];
-        for (int n = 0; n < numbers; ++n) out[n] = value.of[n];
-        return;
-    }
-    const auto leaf = tree.leaves[found];
+    const auto leaf = tree.leaves[leaf_at(tree, x)];
     double side[3][2];
     for (int a = 0; a < 3; ++a) {
         constexpr double least = 2.2250738585072014e-308;  // flat boxes: the least normal number

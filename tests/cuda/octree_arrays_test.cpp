@@ -44,16 +44,25 @@ std::vector<Point> some_places(const Box& domain) {
     return places;
 }
 
+template <int numbers, class Number>
+void answer(const OctreeView<Number>& tree, const Point& x, double* out) {
+    if (tree.leaves == nullptr) {
+        answer_of_leaf<numbers>(tree, x.data(), out);
+    } else {
+        answer_of_corners<numbers>(tree, x.data(), out);
+    }
+}
+
 template <class Number>
 std::vector<Metric> answers(const OctreeArrays<Number>& octree, const std::vector<Point>& x) {
     std::vector<Metric> metrics;
     for (const Point& p : x) {
         double m[6];
         if (octree.numbers() == 1) {
-            answer<1>(octree.view(), p.data(), m);
+            answer<1>(octree.view(), p, m);
             metrics.push_back(Metric::isotropic(m[0]));
         } else {
-            answer<6>(octree.view(), p.data(), m);
+            answer<6>(octree.view(), p, m);
             metrics.push_back({m[0], m[1], m[2], m[3], m[4], m[5]});
         }
     }
