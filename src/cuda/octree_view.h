@@ -22,8 +22,8 @@ struct OctreeView {
 
     struct Node {
         double at[3];  ///< planes; infinite along axes that are not cut
-        alignas(
-            32) std::uint32_t children[8];  ///< an inner node, or a leaf with leaf_bit; x fastest
+        /// An inner node, or a leaf with leaf_bit; x fastest.
+        alignas(32) std::uint32_t children[8];
     };
     /// One axis of a uniform grid of cells that lie in one leaf, or contain whole ones.
     struct Axis {

@@ -51,7 +51,7 @@ TEST_CASE("NanoVDB answers on a GPU as here, to the bit") {
     std::vector<Metric> answers;
     for (const Point& x : places) {
         double m[6];
-        answer(view, x.data(), m);
+        answer_metric(view, x.data(), m);
         answers.push_back({m[0], m[1], m[2], m[3], m[4], m[5]});
     }
     CHECK(differing(answers, answers_at(*space, places)) == 0);
@@ -61,7 +61,7 @@ TEST_CASE("NanoVDB answers on a GPU as here, to the bit") {
     view.lengths = lengths.grid<float>();
     for (std::size_t i = 0; i < places.size(); ++i) {
         double length;
-        answer(view, places[i].data(), &length);
+        answer_length(view, places[i].data(), &length);
         CHECK(length == answers[i].xx);
     }
 }

@@ -1,13 +1,19 @@
 #include "baselines/peers/nanovdb/nano_kernel.h"
+#include "src/answer_on_gpu.cuh"
 
 namespace controlspace {
 
 namespace {
 
+template <int numbers>
 __global__ void answer_all(const NanoView view, const double* x, std::size_t count, double* out) {
-    const std::size_t i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
-    const int numbers = view.lengths != nullptr ? 1 : 6;
-    if (i < count) answer(view, x + 3 * i, out + numbers * i);
+    answer_places<numbers>(count, out, [&](std::size_t i, double* to) {
+        if constexpr (numbers == 1) {
+            answer_length(view, x + 3 * i, to);
+        } else {
+            answer_metric(view, x + 3 * i, to);
+        }
+    });
 }
 
 }  // namespace
@@ -15,9 +21,8 @@ __global__ void answer_all(const NanoView view, const double* x, std::size_t cou
 void start_answers(const NanoView& view, const double* x, std::size_t count, double* out,
                    cudaStream_t stream) {
     if (count == 0) return;
-    constexpr unsigned block = 256;
-    answer_all<<<static_cast<unsigned>((count + block - 1) / block), block, 0, stream>>>(
-        view, x, count, out);
+    const auto kernel = view.lengths != nullptr ? answer_all<1> : answer_all<6>;
+    kernel<<<blocks_for(count), block_size, 0, stream>>>(view, x, count, out);
 }
 
 }  // namespace controlspace

@@ -10,7 +10,7 @@ namespace controlspace {
 /// processor, where the tests call them. They compute what `nanovdb-trilinear` computes, in the
 /// same order. Pointers are of the side that reads.
 struct NanoView {
-    const nanovdb::NanoGrid<float>* lengths = nullptr;                 ///< or, where it is null:
+    const nanovdb::NanoGrid<float>* lengths = nullptr;                 ///< or, where null:
     const nanovdb::NanoGrid<nanovdb::Vec3f>* diagonals = nullptr;      ///< xx, yy, zz
     const nanovdb::NanoGrid<nanovdb::Vec3f>* off_diagonals = nullptr;  ///< xy, xz, yz
     double low[3] = {}, per_length[3] = {};
@@ -43,26 +43,28 @@ __hostdev__ inline void for_each_node(const NanoView& view, const double* x, con
     }
 }
 
-/// At x, from `lengths` one number, or else the six of the metric.
-__hostdev__ inline void answer(const NanoView& view, const double* x, double* out) {
-    if (view.lengths != nullptr) {
-        const auto lengths = view.lengths->getAccessor();
-        double sum = 0;
-        for_each_node(view, x, [&](const nanovdb::Coord& node, double weight) {
-            sum += weight * lengths.getValue(node);
-        });
-        *out = sum;
-        return;
-    }
+/// The length at x.
+__hostdev__ inline void answer_length(const NanoView& view, const double* x, double* out) {
+    const auto lengths = view.lengths->getAccessor();
+    double sum = 0;
+    for_each_node(view, x, [&](const nanovdb::Coord& node, double weight) {
+        sum += weight * lengths.getValue(node);
+    });
+    *out = sum;
+}
+
+/// The six numbers of the metric at x.
+__hostdev__ inline void answer_metric(const NanoView& view, const double* x, double* out) {
     const auto diagonals = view.diagonals->getAccessor();
     const auto off_diagonals = view.off_diagonals->getAccessor();
-    for (int n = 0; n < 6; ++n) out[n] = 0;
+    double sum[6] = {};
     for_each_node(view, x, [&](const nanovdb::Coord& node, double weight) {
         const nanovdb::Vec3f& first = diagonals.getValue(node);
         const nanovdb::Vec3f& rest = off_diagonals.getValue(node);
-        for (int n = 0; n < 3; ++n) out[n] += weight * first[n];
-        for (int n = 0; n < 3; ++n) out[3 + n] += weight * rest[n];
+        for (int n = 0; n < 3; ++n) sum[n] += weight * first[n];
+        for (int n = 0; n < 3; ++n) sum[3 + n] += weight * rest[n];
     });
+    for (int n = 0; n < 6; ++n) out[n] = sum[n];
 }
 
 }  // namespace controlspace
