@@ -16,17 +16,19 @@ LeafPlaces::LeafPlaces() {
         }
     }
     next = 0;
-    for (int i = 0; i < 64; ++i) {
-        const std::array<int, 3> step{i % 4, i / 4 % 4, i / 16};
-        constexpr std::array<double, 4> fraction{0, 0.25, 0.75, 1};
-        const auto sides =
-            std::count_if(step.begin(), step.end(), [](int k) { return k == 0 || k == 3; });
-        if (sides != 1 && sides != 2) continue;
-        for (Axis a = 0; a < 3; ++a) {
-            const auto k = static_cast<std::size_t>(step[static_cast<std::size_t>(a)]);
-            at_between[next][a] = fraction[k];
+    for (const int faces_met : {2, 1}) {
+        for (int i = 0; i < 64; ++i) {
+            const std::array<int, 3> step{i % 4, i / 4 % 4, i / 16};
+            constexpr std::array<double, 4> fraction{0, 0.25, 0.75, 1};
+            const auto met =
+                std::count_if(step.begin(), step.end(), [](int k) { return k == 0 || k == 3; });
+            if (met != faces_met) continue;
+            for (Axis a = 0; a < 3; ++a) {
+                const auto k = static_cast<std::size_t>(step[static_cast<std::size_t>(a)]);
+                at_between[next][a] = fraction[k];
+            }
+            ++next;
         }
-        ++next;
     }
 }
 

@@ -71,8 +71,8 @@ struct NearbyField::Search {
     ConeList cones = {};  // of the box, if they are few
     bool is_gathered = false;
     bool are_few = false;
-    std::size_t evaluated = 0;    // places of the box that no other leaf shares
-    bool is_close_enough = true;  // cones close to those nearby were all that mattered at them
+    std::size_t until_check = 0;  // places of the box at which close cones will do
+    std::size_t until_close = 0;  // places of the box at which they will not
     std::vector<std::pair<Point, OrderFreeCones::Start>> close = {};  // of the last places
 
     bool takes_long() const { return !field.cones().is_isotropic(); }
@@ -97,7 +97,7 @@ struct NearbyField::Search {
     }
     // A search of all sources takes most of the time, and where the field is known at some places
     // of a box it rarely finds more than one close to their sources does. So such searches are made
-    // at the first of every few places, and, where one of them finds more, at all that follow.
+    // at the first of every few places, and, where one of them finds more, at the few that follow.
     void by_close_cones(std::span<const Point> x, std::span<Metric> out) {
         constexpr std::size_t few = 16;
         const std::vector<Metric> further = field.continuous_at(x);
@@ -105,17 +105,20 @@ struct NearbyField::Search {
         for (std::size_t i = 0; i < x.size(); ++i) {
             const Metric* own_further = further.empty() ? nullptr : &further[i];
             const OrderFreeCones::Start* near = trail.nearest(x[i]);
-            if (near == nullptr || !is_close_enough) {
+            if (near == nullptr || until_close > 0) {
                 out[i] = answer(x[i], own_further, near).metric;
+                if (until_close > 0) --until_close;
                 continue;
             }
             OrderFreeCones::Start& start = close.emplace_back(x[i], *near).second;
             out[i] = field.cones().evaluate_close(x[i], own_further, *near, start);
-            if (evaluated++ % few == 0) {
-                const Metric found = out[i];
-                out[i] = answer(x[i], own_further, &start).metric;
-                is_close_enough = nonconformity(out[i], found) < 0.1 * field.target();
-            }
+            if (until_check-- > 0) continue;
+            until_check = few - 1;
+            const Metric found = out[i];
+            out[i] = answer(x[i], own_further, &start).metric;
+            if (nonconformity(out[i], found) < 0.1 * field.target()) continue;
+            until_close = few;
+            until_check = 0;
         }
     }
     GoalCache::Answer answer(const Point& x, const Metric* further,
@@ -165,8 +168,8 @@ void NearbyField::enter(const Box& box, bool at_many_points) {
     search_->close.clear();
     search_->is_gathered = !at_many_points;
     search_->are_few = false;
-    search_->evaluated = 0;
-    search_->is_close_enough = true;
+    search_->until_check = 0;
+    search_->until_close = 0;
 }
 
 void NearbyField::evaluate(std::span<const Point> x, std::span<Metric> out) {
@@ -178,15 +181,19 @@ void NearbyField::evaluate(std::span<const Point> x, std::span<Metric> out) {
     }
 }
 
-double NearbyField::evaluate_roughly(std::span<const Point> x, bool shared, std::span<Metric> out) {
+double NearbyField::evaluate_roughly(std::span<const Point> x, Cones cones, std::span<Metric> out) {
     const GoalField& field = search_->field;
     const bool is_rough = field.is_order_free() && !field.has_few_sources();
-    if (shared && search_->takes_long()) {
+    if (cones == Cones::shared && search_->takes_long()) {
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = at(x[i]);
         return is_rough ? std::numeric_limits<double>::infinity() : 1;
     }
     if (is_rough) {
-        search_->by_close_cones(x, out);
+        if (cones == Cones::all) {
+            for (std::size_t i = 0; i < x.size(); ++i) out[i] = search_->answer_near(x[i]).metric;
+        } else {
+            search_->by_close_cones(x, out);
+        }
         return std::numeric_limits<double>::infinity();
     }
     search_->gather();

@@ -148,13 +148,11 @@ private:
         return changes;
     }
 
-    // Where leaves will be compared with the field: in octrees, parts of a leaf that is cut inherit
-    // all of these places; in kd-trees not those after the first.
+    // Where leaves will be compared with the field, as far as they share the places.
     void evaluate_shared_places(const std::vector<LeafBox>& leaves) const {
         if constexpr (!requires { storage_.is_fitted(LeafIndex{}); }) {
             constexpr auto ranges = LeafJudge<Node, Storage>::ranges();
-            constexpr std::size_t count = Node::arity == 2 ? 1 : ranges.size();
-            for (std::size_t r = 0; r < count; ++r) {
+            for (std::size_t r = 0; r < LeafJudge<Node, Storage>::shared_ranges; ++r) {
                 evaluate_shared(field_, leaves, ranges[r].from, ranges[r].to);
             }
         }
@@ -248,8 +246,10 @@ private:
         sample_sources();
         const bool is_sampled = !has_bounds();
         if (is_sampled) {
-            next_to_sources_.find_beside(
-                [&](LeafIndex leaf) { return states_[leaf] != LeafState::settled; });
+            const auto is_new = [&](LeafIndex leaf) { return states_[leaf] != LeafState::settled; };
+            next_to_sources_.find_beside(is_new, [&](LeafIndex leaf) {
+                return is_new(leaf) && !(departures_[leaf].worst > aim_);
+            });
         }
         in_parallel(leaves.size(), [&, nearby = NearbyField(field_)](std::size_t i) mutable {
             const LeafBox& l = leaves[i];
@@ -297,13 +297,14 @@ private:
             const double worst = found.departure.worst;
             return is_thorough_ && worst > share * aim_ && !(worst > aim_);
         };
+        const double slope = field_.largest_ratio() - 1;
         // Where the field has a crease across an edge, the middle of that shows little of it.
-        if (is_near(0.1)) judge.at_places_between(l, nearby, found);
+        if (is_near(0.3)) judge.at_places_between(l, nearby, found);
         if constexpr (HasTrilinearLeaves<Storage>) {
-            if (is_near(0)) judge.along_edges(l, nearby, field_.largest_ratio() - 1, found);
+            if (is_near(0)) judge.along_edges(l, nearby, slope, found);
         }
-        if (is_near(0.5)) judge.at_sequence(l, nearby, end, end + more, found);
-        judge.climb(l, nearby, is_thorough_, found);
+        if (is_near(0.6)) judge.at_sequence(l, nearby, end, end + more, found);
+        judge.climb(l, nearby, slope, is_thorough_, found);
     }
 
     // Sets leaves of a constant value to what is between the bounds of the field in them. Bounds

@@ -41,8 +41,9 @@ public:
     /// cut, and how.
     void at_places_of(const LeafBox& of, NearbyField& nearby, Findings& found) const {
         LogRatios log_ratio{};
-        for (const Range& range : ranges()) {
-            compare_at(of, nearby, range, found, log_ratio);
+        for (std::size_t r = 0; r < ranges().size(); ++r) {
+            compare_at(of, nearby, ranges()[r], r < shared_ranges ? Cones::shared : Cones::all,
+                       found, log_ratio);
             if (found.departure.worst > target_) break;
         }
         if constexpr (Node::arity == 2) found.departure.along = sums_along(log_ratio);
@@ -52,7 +53,7 @@ public:
     std::array<double, 3> along(const LeafBox& of, NearbyField& nearby) const {
         Findings found(of);
         LogRatios log_ratio{};
-        compare_at(of, nearby, ranges().front(), found, log_ratio);
+        compare_at(of, nearby, ranges().front(), Cones::shared, found, log_ratio);
         return sums_along(log_ratio);
     }
 
@@ -66,19 +67,21 @@ public:
         while (first < end) {
             const std::size_t n = std::min<std::uint64_t>(x.size(), end - first);
             for (std::size_t i = 0; i < n; ++i) x[i] = nearest_in(of.box, place_in(box, first++));
-            compare_with(of, nearby, std::span(x).first(n), false, found, {});
+            compare_with(of, nearby, std::span(x).first(n), Cones::close, found, {});
         }
     }
 
-    /// On its edges and faces, between the places of the leaf.
+    /// On its faces, between the places of the leaf; on its edges too, where `along_edges` is not
+    /// for it.
     void at_places_between(const LeafBox& of, NearbyField& nearby, Findings& found) const {
-        std::array<Point, LeafPlaces::between / 2> x;
-        for (std::size_t first = 0; first < LeafPlaces::between; first += x.size()) {
+        std::array<Point, LeafPlaces::between_on_edges> x;
+        std::size_t first = HasTrilinearLeaves<Storage> ? LeafPlaces::between_on_edges : 0;
+        for (; first < LeafPlaces::between; first += x.size()) {
             for (std::size_t i = 0; i < x.size(); ++i) {
                 x[i] =
                     of.box.low + leaf_places().at_between[first + i].cwiseProduct(of.box.edges());
             }
-            compare_with(of, nearby, x, false, found, {});
+            compare_with(of, nearby, x, Cones::close, found, {});
         }
     }
 
@@ -95,9 +98,6 @@ public:
             }
         };
         constexpr std::size_t most_parts = 16;
-        const auto logarithm_of = [](double delta) {
-            return std::log(largest_factor_along(delta));
-        };
         const double allowed = logarithm_of(target_);
         for (int edge = 0; edge < 12; ++edge) {
             const Axis axis = edge % 3;
@@ -122,7 +122,7 @@ public:
                 const Point x = low + middle * along;
                 Metric own, field;
                 values_in(of.leaf, {&x, 1}, {&own, 1});
-                const double factor = nearby.evaluate_roughly({&x, 1}, false, {&field, 1});
+                const double factor = nearby.evaluate_roughly({&x, 1}, Cones::close, {&field, 1});
                 compare(own, field, factor, x, nearby, found);
                 if (found.departure.worst > target_) return;
                 const double logarithm = logarithm_of(directional_nonconformity(own, field));
@@ -166,19 +166,22 @@ public:
         constexpr double far_above = 1.2;
         if (estimate.worst > far_above * target_) return found.take(estimate.worst, estimate.where);
         if (estimate.worst > 0) {
-            compare_with(of, nearby, {&estimate.where, 1}, false, found, {});
+            compare_with(of, nearby, {&estimate.where, 1}, Cones::close, found, {});
         }
         while (!others.empty()) {
             const std::size_t n = std::min<std::size_t>(others.size(), LeafPlaces::all);
-            compare_with(of, nearby, others.first(n), false, found, {});
+            compare_with(of, nearby, others.first(n), Cones::close, found, {});
             others = others.subspan(n);
         }
     }
 
     /// Hill climbs from the worst peak found so far, `thorough` from all, as long as they come near
     /// enough to the target: the nearer, the longer they have taken. At places all around: what is
-    /// climbed has creases, where other cones begin to matter.
-    void climb(const LeafBox& of, NearbyField& nearby, bool thorough, Findings& found) const {
+    /// climbed has creases, where other cones begin to matter. They end where the target is farther
+    /// away than the places: the logarithm of a length changes by the slope of cones, at most, per
+    /// unit.
+    void climb(const LeafBox& of, NearbyField& nearby, double slope, bool thorough,
+               Findings& found) const {
         constexpr int rounds = 16;
         constexpr int further_rounds = 32;
         std::array<Point, 6> x;
@@ -196,6 +199,16 @@ public:
                 const double near = std::min(0.5 * (1 + static_cast<double>(round) / rounds), 0.9);
                 if (!(best.worst > near * target_)) break;
                 if (round == rounds) reach = 0.1 * of.box.edges();
+                Metric own;
+                values_in(of.leaf, {&best.where, 1}, {&own, 1});
+                const auto units = metric_edge_lengths(own, reach);
+                const double most =
+                    logarithm_of(best.worst) + slope * (units[0] + units[1] + units[2]);
+                if (!(most > logarithm_of(target_))) {
+                    if (round >= rounds) break;
+                    round = rounds - 1;
+                    continue;
+                }
                 // Some much nearer: peaks at sources are far narrower than their leaf. Most stay on
                 // the faces or the edge on which the best lies: creases cross these.
                 const auto is_on_face = [&, at = best.where](Axis a) {
@@ -211,7 +224,7 @@ public:
                     }
                 }
                 const double before = best.worst;
-                compare_with(of, nearby, x, false, summit, {});
+                compare_with(of, nearby, x, Cones::close, summit, {});
                 if (!(best.worst > before)) reach *= round < rounds ? 0.6 : 0.8;
                 found.departure.take(best.worst, best.where);
             }
@@ -236,25 +249,30 @@ public:
         }
     }
 
+    /// Of the ranges, those at which leaves side by side and parts of leaves ask for the same places
+    /// (`evaluate_shared`): in octrees all; in kd-trees parts have none of the others.
+    static constexpr std::size_t shared_ranges = Node::arity == 2 ? 1 : ranges().size();
+
 private:
+    using Cones = NearbyField::Cones;
     using LogRatios = std::array<double, LeafPlaces::all>;
 
-    void compare_at(const LeafBox& of, NearbyField& nearby, const Range& range, Findings& found,
-                    LogRatios& log_ratio) const {
+    void compare_at(const LeafBox& of, NearbyField& nearby, const Range& range, Cones cones,
+                    Findings& found, LogRatios& log_ratio) const {
         std::array<Point, LeafPlaces::all> x;
         const std::size_t n = range.to - range.from;
         for (std::size_t i = 0; i < n; ++i) x[i] = leaf_places().in(of.box, range.from + i);
         compare_with(
-            of, nearby, std::span(x).first(n), true, found,
+            of, nearby, std::span(x).first(n), cones, found,
             Node::arity == 2 ? std::span(log_ratio).subspan(range.from) : std::span<double>());
     }
 
     // Writes, if there is room, the logarithms of how much longer the leaf's lengths are.
-    void compare_with(const LeafBox& of, NearbyField& nearby, std::span<const Point> x, bool shared,
+    void compare_with(const LeafBox& of, NearbyField& nearby, std::span<const Point> x, Cones cones,
                       Findings& found, std::span<double> log_ratio) const {
         std::array<Metric, LeafPlaces::all> own, field;
         values_in(of.leaf, x, own);
-        const double factor = nearby.evaluate_roughly(x, shared, std::span(field).first(x.size()));
+        const double factor = nearby.evaluate_roughly(x, cones, std::span(field).first(x.size()));
         for (std::size_t i = 0; i < x.size(); ++i) {
             compare(own[i], field[i], factor, x[i], nearby, found);
             if (!log_ratio.empty()) {
@@ -270,14 +288,15 @@ private:
     }
 
     // `longest` is the field at x, or longer by less than the factor. What may be near to the
-    // target is evaluated exactly.
+    // target, and is the worst so far, is evaluated exactly.
     void compare(const Metric& own, const Metric& longest, double factor, const Point& x,
                  NearbyField& nearby, Findings& found) const {
         if (factor == 1) return found.take(directional_nonconformity(own, longest), x);
         if (std::isinf(factor)) {
             Metric exact = longest;
             double delta = directional_nonconformity(own, exact);
-            if (delta > 0.75 * target_ && !(delta > 1.5 * target_)) {
+            const double most = delta + 0.1 * target_;
+            if (most > std::max(target_, found.departure.worst) && !(delta > 1.5 * target_)) {
                 nearby.evaluate({&x, 1}, {&exact, 1});
                 delta = directional_nonconformity(own, exact);
             }
@@ -295,6 +314,9 @@ private:
         nearby.evaluate({&x, 1}, {&exact, 1});
         found.take(nonconformity(own, exact), x);
     }
+
+    // Of the largest factor of lengths in one direction.
+    static double logarithm_of(double delta) { return std::log(largest_factor_along(delta)); }
 
     static std::array<double, 3> sums_along(const LogRatios& departure) {
         std::array<double, 3> along{};

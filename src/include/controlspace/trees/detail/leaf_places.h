@@ -13,8 +13,8 @@ struct LeafPlaces {
     static constexpr std::size_t corners = 0, centre = corners + 8, faces = centre + 1,
                                  edges = faces + 6, all = edges + 12;
     std::array<Vector, all> at;
-    /// On edges and faces, a quarter from the middles of edges, and from two of them.
-    static constexpr std::size_t between = 24 + 24;
+    /// On edges, a quarter from their middles, then on faces, a quarter from two middles of edges.
+    static constexpr std::size_t between_on_edges = 24, between = between_on_edges + 24;
     std::array<Vector, between> at_between;
 
     LeafPlaces();

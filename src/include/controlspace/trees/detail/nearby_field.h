@@ -30,12 +30,14 @@ public:
 
     /// Tensors without an order: to a hundredth of the target.
     void evaluate(std::span<const Point> x, std::span<Metric> out);
-    /// The same, or longer by a factor less than the one returned, where that is quicker. Places
-    /// that are `shared` by leaves are evaluated once, where that takes long. An infinite factor:
-    /// more than few tensors without an order, to a tenth of the target; where places are not
-    /// shared, by the cones that are close to those which matter nearby; others, of which none
-    /// mattered at the places of this box that were compared with all, may shorten it.
-    double evaluate_roughly(std::span<const Point> x, bool shared, std::span<Metric> out);
+    /// By which cones, where that takes long: all, once for places that are `shared` by leaves; all;
+    /// or, of more than few tensors without an order, mostly those that are `close` to the ones
+    /// which matter nearby. Others may shorten the field: where all are asked, which is at one of
+    /// some places, and do so, all are at the next places too.
+    enum class Cones { shared, all, close };
+    /// The same, or longer by a factor less than the one returned, where that is quicker. An
+    /// infinite factor: more than few tensors without an order, to a tenth of the target.
+    double evaluate_roughly(std::span<const Point> x, Cones cones, std::span<Metric> out);
     /// The same at one place, exactly, and the sources that make it so (ConeField::governing). In
     /// turn and of isotropic sources, without the continuous field.
     Metric governed(const Point& x, double tolerance, std::vector<std::uint32_t>& sources);

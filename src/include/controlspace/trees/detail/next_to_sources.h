@@ -33,18 +33,18 @@ public:
         : tree_(tree), storage_(storage), field_(field), sources_(sources) {}
 
     /// Before a round of `worst_in`. Few sources are compared with all leaves there, many, here,
-    /// with those leaves beside their own of which `is_wanted(leaf)` holds: with all that have been
-    /// cut since the last time, at least.
-    template <class IsWanted>
-    void find_beside(const IsWanted& is_wanted) {
+    /// with those leaves beside their own of which `is_wanted(leaf)` holds; `is_new(leaf)` of all
+    /// that have been cut since the last time, at least.
+    template <class IsNew, class IsWanted>
+    void find_beside(const IsNew& is_new, const IsWanted& is_wanted) {
         if (!cones_) cones_.emplace(sources_, field_.ratio(), field_.target());
         if (are_few()) return;
         beside_.assign(tree_.leaves(), {});
         tbb::enumerable_thread_specific<std::vector<std::pair<LeafIndex, Departure>>> found;
         around_.resize(sources_.size());
         in_parallel(sources_.size(), [&](std::size_t i) {
-            // A leaf that is cut stays as one of its parts: those not wanted are as they were.
-            if (std::ranges::none_of(around_[i], is_wanted)) return;
+            // A leaf that is cut stays as one of its parts: those not new are as they were.
+            if (std::ranges::none_of(around_[i], is_new)) return;
             const LeafPlace own = tree_.locate(sources_[i].position);
             around_[i].fill(own.leaf);
             std::size_t next = 1;
