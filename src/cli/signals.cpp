@@ -1,10 +1,14 @@
 #include "cli/signals.h"
 
+#include <fmt/format.h>
 #include <pthread.h>
 #include <signal.h>
 
 #include <cstdlib>
+#include <exception>
 #include <utility>
+
+#include "cli/standard_output.h"
 
 namespace controlspace {
 namespace {
@@ -53,7 +57,11 @@ void Interruption::wait(const std::stop_token& stop) {
         const int signal = sigtimedwait(&set, nullptr, &pause);
         const auto lock = postpone();
         if (signal > 0) {
-            if (last_words_) last_words_();
+            try {
+                if (last_words_) last_words_();
+            } catch (const std::exception& error) {
+                print_error(fmt::format("controlspace: error: {}\n", error.what()));
+            }
             // The main thread may be inside a long computation, which cannot be cancelled.
             std::_Exit(128 + signal);
         }

@@ -215,15 +215,19 @@ TEST_CASE("results that lie there are not written over") {
     CHECK(file_text(box / "out" / "results.json") == before);
 }
 
+// Of a study of hours, by Ctrl-C in the midst of it, into `out`, after a shell command.
+Outcome interrupted_after(const Sandbox& box, const std::string& command) {
+    box.write("study.toml", "rho = 0.2\ntau = 0.05\nstructures = 'trees'\n[[runs]]\n");
+    return box.run("compare study.toml --output out",
+                   "(for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do sleep 0.5; "
+                   "[ -e out/results.json ] && break; done; " +
+                       command +
+                       "; kill -INT $(cat pid)) & exec sh -c 'echo $$ >pid; exec \"$@\"' sh ");
+}
+
 TEST_CASE("Ctrl-C leaves whole files and status 130") {
     const Sandbox box("interrupt");
-    // Hours of work, so that the signal comes in the midst of it.
-    box.write("study.toml", "rho = 0.2\ntau = 0.05\nstructures = 'trees'\n[[runs]]\n");
-    const Outcome outcome =
-        box.run("compare study.toml --output out",
-                "(for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do sleep 0.5; "
-                "[ -e out/results.json ] && break; done; kill -INT $(cat pid)) & "
-                "exec sh -c 'echo $$ >pid; exec \"$@\"' sh ");
+    const Outcome outcome = interrupted_after(box, "true");
     INFO(outcome.err);
     CHECK(outcome.status == 130);
     CHECK_THAT(
@@ -233,6 +237,14 @@ TEST_CASE("Ctrl-C leaves whole files and status 130") {
     const auto json = nlohmann::json::parse(file_text(box / "out" / "results.json"));
     CHECK(json["complete"] == false);
     CHECK(std::distance(fs::directory_iterator(box / "out"), fs::directory_iterator()) == 4);
+}
+
+TEST_CASE("Ctrl-C, where the folder of results is gone, ends in an error and status 130") {
+    const Sandbox box("interrupt-gone");
+    const Outcome outcome = interrupted_after(box, "rm -r out");
+    INFO(outcome.err);
+    CHECK(outcome.status == 130);
+    CHECK_THAT(outcome.err, Contains("controlspace: error: ") && Contains("out/summary.md"));
 }
 
 TEST_CASE("an interrupted study goes on where it was") {
