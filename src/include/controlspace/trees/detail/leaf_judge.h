@@ -249,7 +249,8 @@ public:
         }
     }
 
-    /// Of the ranges, those at which leaves side by side and parts of leaves ask for the same places
+    /// Of the ranges, those at which leaves side by side and parts of leaves ask for the same
+    /// places
     /// (`evaluate_shared`): in octrees all; in kd-trees parts have none of the others.
     static constexpr std::size_t shared_ranges = Node::arity == 2 ? 1 : ranges().size();
 

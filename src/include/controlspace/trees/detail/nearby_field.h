@@ -30,10 +30,10 @@ public:
 
     /// Tensors without an order: to a hundredth of the target.
     void evaluate(std::span<const Point> x, std::span<Metric> out);
-    /// By which cones, where that takes long: all, once for places that are `shared` by leaves; all;
-    /// or, of more than few tensors without an order, mostly those that are `close` to the ones
-    /// which matter nearby. Others may shorten the field: where all are asked, which is at one of
-    /// some places, and do so, all are at the next places too.
+    /// By which cones, where that takes long: all, once for places that are `shared` by leaves;
+    /// all; or, of more than few tensors without an order, mostly those that are `close` to the
+    /// ones which matter nearby. Others may shorten the field: where all are asked, which is at one
+    /// of some places, and do so, all are at the next places too.
     enum class Cones { shared, all, close };
     /// The same, or longer by a factor less than the one returned, where that is quicker. An
     /// infinite factor: more than few tensors without an order, to a tenth of the target.
