@@ -43,8 +43,9 @@ struct AdaptationReport {
     /// trilinear leaves where cones are steep; a peak between them may be higher. With up to 512
     /// sources, leaves are cut from 0.97 of the target on, and trilinear ones are compared with the
     /// cone of each source, also around their tips; others are with up to 64. With more tensors,
-    /// leaves are cut from 0.99 of it on, and most places far below it are compared with sources
-    /// close to those that matter nearby; the others with all, to a hundredth of the target.
+    /// leaves are cut from 0.99 of it on, and most places are compared with sources close to those
+    /// that matter nearby; those that may be above it, and the worst so far, with all, to a
+    /// hundredth of the target.
     double reached = 0;
     bool is_bound = false;  ///< `reached` is kept everywhere; otherwise it was sampled
     bool met = false;       ///< reached <= target
