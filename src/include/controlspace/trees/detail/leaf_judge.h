@@ -202,9 +202,9 @@ public:
                 Metric own;
                 values_in(of.leaf, {&best.where, 1}, {&own, 1});
                 const auto units = metric_edge_lengths(own, reach);
-                const double most =
+                const double attainable =
                     logarithm_of(best.worst) + slope * (units[0] + units[1] + units[2]);
-                if (!(most > logarithm_of(target_))) {
+                if (!(attainable > logarithm_of(target_))) {
                     if (round >= rounds) break;
                     round = rounds - 1;
                     continue;
