@@ -261,14 +261,14 @@ private:
             }
             const auto is_bad = [&] { return departure.worst > aim_; };
             const bool needs_axis = Node::arity == 2;
+            if (states_[l.leaf] == LeafState::fresh && !is_fitted(l.leaf) &&
+                (needs_axis || !is_bad())) {
+                judge.at_places_of(l, nearby, found);
+            }
             if (is_sampled && !is_bad()) {
                 std::vector<Point> further;
                 const Departure estimate = next_to_sources_.worst_in(l, further);
                 judge.examine(l, nearby, estimate, further, found);
-            }
-            if (states_[l.leaf] == LeafState::fresh && !is_fitted(l.leaf) &&
-                (needs_axis || !is_bad())) {
-                judge.at_places_of(l, nearby, found);
             }
             if (proved && !is_bad()) {
                 if constexpr (HasTrilinearLeaves<Storage>) {

@@ -159,8 +159,8 @@ public:
         return departure;
     }
 
-    /// At a place where the departure is estimated, and at others; far above the target the
-    /// estimate will do.
+    /// At a place where the departure is estimated, and at others until one is above the target;
+    /// far above it the estimate will do.
     void examine(const LeafBox& of, NearbyField& nearby, const Departure& estimate,
                  std::span<const Point> others, Findings& found) const {
         constexpr double far_above = 1.2;
@@ -168,7 +168,7 @@ public:
         if (estimate.worst > 0) {
             compare_with(of, nearby, {&estimate.where, 1}, Cones::close, found, {});
         }
-        while (!others.empty()) {
+        while (!others.empty() && !(found.departure.worst > target_)) {
             const std::size_t n = std::min<std::size_t>(others.size(), LeafPlaces::all);
             compare_with(of, nearby, others.first(n), Cones::close, found, {});
             others = others.subspan(n);
@@ -178,8 +178,7 @@ public:
     /// Hill climbs from the worst peak found so far, `thorough` from all, as long as they come near
     /// enough to the target: the nearer, the longer they have taken. At places all around: what is
     /// climbed has creases, where other cones begin to matter. They end where the target is farther
-    /// away than the places: the logarithm of a length changes by the slope of cones, at most, per
-    /// unit.
+    /// away than the places, and beside the summit of a climb before that is as high.
     void climb(const LeafBox& of, NearbyField& nearby, double slope, bool thorough,
                Findings& found) const {
         constexpr int rounds = 16;
@@ -189,21 +188,25 @@ public:
         Peaks starts = found.peaks;
         const std::span<const Peaks::Peak> sorted = starts.sorted();
         const std::size_t most = thorough ? Peaks::most : 1;
+        Peaks summits(of.box);
         for (const Peaks::Peak& start : sorted.first(std::min(most, sorted.size()))) {
-            Findings summit(of);
-            summit.departure.take(start.delta, start.where);
-            Departure& best = summit.departure;
+            Findings climbed(of);
+            climbed.departure.take(start.delta, start.where);
+            Departure& best = climbed.departure;
             Vector reach = 0.25 * of.box.edges();
             for (int round = 0; round < (thorough ? rounds + further_rounds : rounds); ++round) {
                 if (found.departure.worst > target_) return;
                 const double near = std::min(0.5 * (1 + static_cast<double>(round) / rounds), 0.9);
                 if (!(best.worst > near * target_)) break;
+                if (summits.has_beside(best.worst, best.where)) break;
                 if (round == rounds) reach = 0.1 * of.box.edges();
+                // The logarithm of a length changes by the slope of cones, at most, per unit; that
+                // of the leaf's own by about as much.
                 Metric own;
                 values_in(of.leaf, {&best.where, 1}, {&own, 1});
                 const auto units = metric_edge_lengths(own, reach);
                 const double attainable =
-                    logarithm_of(best.worst) + slope * (units[0] + units[1] + units[2]);
+                    logarithm_of(best.worst) + 2 * slope * (units[0] + units[1] + units[2]);
                 if (!(attainable > logarithm_of(target_))) {
                     if (round >= rounds) break;
                     round = rounds - 1;
@@ -224,10 +227,11 @@ public:
                     }
                 }
                 const double before = best.worst;
-                compare_with(of, nearby, x, Cones::close, summit, {});
+                compare_with(of, nearby, x, Cones::close, climbed, {});
                 if (!(best.worst > before)) reach *= round < rounds ? 0.6 : 0.8;
                 found.departure.take(best.worst, best.where);
             }
+            summits.enter(best.worst, best.where);
         }
     }
 
