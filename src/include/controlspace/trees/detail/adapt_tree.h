@@ -64,7 +64,7 @@ public:
     double run(bool proved, Split&& split) {
         // A peak is rarely found to its very top.
         const bool are_few = field_.has_few_sources();
-        const double share_where_sampled = are_few ? 0.97 : 0.99;
+        const double share_where_sampled = are_few ? 0.96 : 0.99;
         is_thorough_ = proved && !field_.has_ranges() && (are_few || field_.is_order_free());
         if (is_thorough_) aim_ = share_where_sampled * field_.target();
         states_.assign(tree_.leaves(), LeafState::fresh);

@@ -183,7 +183,8 @@ public:
                Findings& found) const {
         constexpr int rounds = 16;
         constexpr int further_rounds = 32;
-        std::array<Point, 6> x;
+        constexpr int tries = 6;
+        std::array<Point, tries> x;
         std::uint64_t next = 0;
         Peaks starts = found.peaks;
         const std::span<const Peaks::Peak> sorted = starts.sorted();
@@ -213,17 +214,20 @@ public:
                     continue;
                 }
                 // Some much nearer: peaks at sources are far narrower than their leaf. Most stay on
-                // the faces or the edge on which the best lies: creases cross these.
+                // the face on which the best lies, or of an edge on it or on one of its two faces:
+                // creases cross these.
                 const auto is_on_face = [&, at = best.where](Axis a) {
                     return at[a] == of.box.low[a] || at[a] == of.box.high[a];
                 };
-                const bool is_at_corner = is_on_face(0) && is_on_face(1) && is_on_face(2);
-                for (std::size_t i = 0; i < x.size(); ++i) {
+                const int faces = is_on_face(0) + is_on_face(1) + is_on_face(2);
+                for (int i = 0; i < tries; ++i) {
                     const Vector side = i % 2 == 0 ? reach : 0.15 * reach;
                     const Box around{best.where - side, best.where + side};
-                    x[i] = nearest_in(of.box, place_in(around, next++));
-                    for (Axis a = 0; a < 3 && i > 1 && !is_at_corner; ++a) {
-                        if (is_on_face(a)) x[i][a] = best.where[a];
+                    Point& y = x[static_cast<std::size_t>(i)];
+                    y = nearest_in(of.box, place_in(around, next++));
+                    int faces_to_left = faces == 2 && i > 2 ? (i + round) % 2 : -1;
+                    for (Axis a = 0; a < 3 && i > 1 && faces < 3; ++a) {
+                        if (is_on_face(a) && faces_to_left-- != 0) y[a] = best.where[a];
                     }
                 }
                 const double before = best.worst;
