@@ -41,7 +41,7 @@ struct AdaptationReport {
     /// next to them in the leaves beside them, at places that the structure was not fitted to, and
     /// by hill climbs from the worst of these, and, of tensors without an order, along edges of
     /// trilinear leaves where cones are steep; a peak between them may be higher. With up to 512
-    /// sources, leaves are cut from 0.97 of the target on, and trilinear ones are compared with the
+    /// sources, leaves are cut from 0.96 of the target on, and trilinear ones are compared with the
     /// cone of each source, also around their tips; others are with up to 64. With more tensors,
     /// leaves are cut from 0.99 of it on, and most places are compared with sources close to those
     /// that matter nearby; those that may be above it, and the worst so far, with all, to a
