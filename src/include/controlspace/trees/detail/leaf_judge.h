@@ -213,9 +213,8 @@ public:
                     round = rounds - 1;
                     continue;
                 }
-                // Some much nearer: peaks at sources are far narrower than their leaf. Most stay on
-                // the face on which the best lies, or of an edge on it or on one of its two faces:
-                // creases cross these.
+                // Some much nearer: peaks at sources are far narrower than their leaf. From a face,
+                // which creases cross, most stay on it; from an edge, on it or on one of its faces.
                 const auto is_on_face = [&, at = best.where](Axis a) {
                     return at[a] == of.box.low[a] || at[a] == of.box.high[a];
                 };
