@@ -33,7 +33,9 @@ template <class Edit>
 void change(cspace* handle, Edit&& edit) {
     require(handle, "space");
     if (!handle->builder) {
-        refuse("a compact form is only read: insert, grade and adapt before it is made");
+        refuse(
+            "it is only read: insert, grade and adapt one of cspace_create(), or give "
+            "takes_later_sources=1 to cspace_build()");
     }
     handle->cursor.reset();
     handle->space.reset();  // so that nothing has to be copied
@@ -166,9 +168,10 @@ cspace_status cspace_build(const char* structure, const double* domain,
         std::optional<double> target;
         if (given.delta != 0) target = given.delta;
         AdaptationReport report;
-        auto builder =
-            make_filled_builder(entry_named(structures(), structure), all, making, target, &report);
-        auto built = builder->build();
+        const CatalogueEntry& entry = entry_named(structures(), structure);
+        auto builder = make_filled_builder(entry, all, making, target, &report);
+        auto built = builder->build(to_be_read(entry, making));
+        if (!making.takes_later_sources) builder.reset();
         *space = new cspace(std::move(builder), std::move(built), making.ratio);
         if (reached != nullptr) {
             *reached = target ? report.reached : std::numeric_limits<double>::quiet_NaN();

@@ -22,7 +22,7 @@ struct cspace {
         cursor.emplace(*space);
     }
 
-    std::unique_ptr<controlspace::ControlSpaceBuilder> builder;  // none of a compact form
+    std::unique_ptr<controlspace::ControlSpaceBuilder> builder;  // none if it is only read
     std::unique_ptr<controlspace::ControlSpace> space;           // what it has built last
     std::optional<controlspace::ThreadCursor> cursor;            // of that
     double ratio;                                                // g_r that it was created with

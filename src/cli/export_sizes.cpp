@@ -70,7 +70,7 @@ std::string write_tetgen(const Export& e) {
     return report(e, write_tetgen_background(base, *e.filled.space),
                   "nodes of a background mesh for TetGen (-m), in three files",
                   "lengths are off by more than 1.25x, as they jump in this structure: write one "
-                  "that is continuous (K_oV)");
+                  "with smaller jumps (K_oV, --within 1.1)");
 }
 
 }  // namespace

@@ -42,13 +42,13 @@ void add_sources(const SourcesChoice& input, SourcesChoice& sources) {
     add_new(sources.primitives, input.primitives);
 }
 
+}  // namespace
+
 bool are_given(const GivenSettings& given, std::initializer_list<const char*> keys) {
     return std::ranges::any_of(given, [&](const auto& setting) {
         return std::ranges::find(keys, setting.first) != keys.end();
     });
 }
-
-}  // namespace
 
 void set_sources(Study& study, const std::filesystem::path& input) {
     std::error_code none;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <vector>
 
@@ -27,6 +28,9 @@ std::vector<std::filesystem::path> files_named(const std::filesystem::path& inpu
 /// given. Without a study file: the structure K_oV, and the cut s_L for kd-trees; without an input:
 /// on the paper's sphere. Throws InputError.
 Study study_of_input(const std::filesystem::path& input, const GivenSettings& given);
+
+/// Whether one of the keys is given.
+bool are_given(const GivenSettings& given, std::initializer_list<const char*> keys);
 
 /// The largest factor between lengths that trees are adapted to by default.
 double default_within_of(const Workload& workload);

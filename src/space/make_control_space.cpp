@@ -19,6 +19,11 @@ const CatalogueEntry& entry_named(std::span<const CatalogueEntry> entries, std::
     throw UnknownStructure(fmt::format("there is no structure {}: give one of {}", quote(id), ids));
 }
 
+BuildOptions to_be_read(const CatalogueEntry& entry, const SpaceOptions& options) {
+    if (!entry.has<CompactForm>() || options.takes_later_sources) return {};
+    return {.precision = Precision::doubles};
+}
+
 std::unique_ptr<ControlSpaceBuilder> make_filled_builder(const CatalogueEntry& entry,
                                                          std::span<const PointSource> sources,
                                                          SpaceOptions options,
@@ -51,7 +56,9 @@ std::unique_ptr<ControlSpace> make_control_space(std::span<const CatalogueEntry>
                                                  const SpaceOptions& options,
                                                  std::optional<double> target,
                                                  AdaptationReport* report) {
-    return make_filled_builder(entry_named(entries, id), sources, options, target, report)->build();
+    const CatalogueEntry& entry = entry_named(entries, id);
+    return make_filled_builder(entry, sources, options, target, report)
+        ->build(to_be_read(entry, options));
 }
 
 std::unique_ptr<ControlSpace> make_control_space(std::string_view id,

@@ -274,6 +274,39 @@ TEST_CASE("C: a field is built in one step, with one gradation ratio") {
     cspace_free(space);
 }
 
+TEST_CASE("C: a field built in one step is only read, unless it takes later sources") {
+    const double length = 0.05, longer = 0.1, elsewhere[] = {-0.5, 0, 0.4};
+    const cspace_sources sources{sizeof sources, 1, place.data(), nullptr, &length, nullptr};
+    const cspace_sources more{sizeof more, 1, elsewhere, nullptr, &longer, nullptr};
+    for (const char* structure : {"K_oV", "K_L", "K_oLA", "uniform-nearest"}) {
+        CAPTURE(structure);
+        cspace_options given{};
+        given.struct_size = sizeof given;
+        const auto built = [&] {
+            cspace* space = nullptr;
+            REQUIRE(cspace_build(structure, corners.data(), &sources, &given, nullptr, &space) ==
+                    CSPACE_OK);
+            return space;
+        };
+        cspace* read_only = built();
+        const std::vector<double> before = sampled(read_only);
+        const double size = cspace_size(read_only, elsewhere[0], elsewhere[1], elsewhere[2]);
+        CHECK(cspace_insert_sources(read_only, &more) == CSPACE_BAD_INPUT);
+        CHECK_THAT(cspace_last_error(), Contains("takes_later_sources=1"));
+        CHECK(cspace_grade(read_only, 0) == CSPACE_BAD_INPUT);
+        CHECK(sampled(read_only) == before);
+        cspace_free(read_only);
+
+        given.further = "takes_later_sources=1";
+        cspace* growing = built();
+        CHECK(sampled(growing) == before);
+        CHECK(cspace_insert_sources(growing, &more) == CSPACE_OK);
+        CHECK(cspace_grade(growing, 0) == CSPACE_OK);
+        CHECK(cspace_size(growing, elsewhere[0], elsewhere[1], elsewhere[2]) < 0.75 * size);
+        cspace_free(growing);
+    }
+}
+
 TEST_CASE("C: options of other versions are understood, or refused") {
     // The caller's, with a member that is not known yet.
     struct Newer {

@@ -12,6 +12,7 @@ const std::string sources_csv = "x,y,z,h\n0,0,0,0.1\n1,0,0,0.2\n0,1,0,0.2\n1,1,1
 const std::vector<std::string> saved_structures{
     "K_V",
     "K_V --frozen floats",
+    "K_V --frozen no",
     "K_Li --interpolation published",
     "K_Li --interpolation published --frozen doubles",
     "K_oLA",
@@ -57,6 +58,7 @@ TEST_CASE("the interpolation of quadratic leaves is chosen, kept and named") {
     CHECK(published != corrected);
     CHECK_THAT(box.run("info f.ctrl").out, Contains("interpolation published"));
     CHECK(built("--interpolation published --frozen doubles") == published);
+    CHECK(built("--interpolation published --frozen no") == published);
     check_refused(box.run("build s.csv -o g.ctrl --structures K_L --interpolation wrong"),
                   "give corrected, published");
 }
@@ -221,6 +223,8 @@ TEST_CASE("info says what a saved control space is and holds") {
                    Contains(" tree nodes, at levels of up to ") && Contains("MB in the file") &&
                    Contains("lengths      0.10") && Contains("anisotropy   1 (largest)") &&
                    Contains("gradation    1."));
+    CHECK_THAT(said("--structures K_oL"), Contains("compact      doubles: read-only"));
+    CHECK_THAT(said("--structures K_oL --frozen no"), !Contains("compact"));
     CHECK_THAT(said("--structures K_oLA --g-r 1.5"),
                Contains("g_r 1.5") && Contains("octree, the few sources"));
     CHECK_THAT(said("--structures uniform-nearest --voxel 0.25"),

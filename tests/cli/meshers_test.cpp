@@ -165,7 +165,7 @@ TEST_CASE("sizes that mislead are warned of") {
     const Outcome coarse = box.run("export sphere --h 0.05 -o a.msh --samples 5");
     CHECK_THAT(coarse.err, Contains("warning: a.msh: ") && Contains("more --samples"));
     const Outcome jumps = box.run("export s.csv -o a.b.ele --structures K_oL");
-    CHECK_THAT(jumps.err, Contains("continuous (K_oV)"));
+    CHECK_THAT(jumps.err, Contains("smaller jumps (K_oV, --within 1.1)"));
     const Outcome thin = box.run("export thin.csv -o a.msz");
     INFO(thin.err);
     CHECK(thin.status == 0);

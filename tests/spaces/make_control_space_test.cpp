@@ -42,7 +42,8 @@ TEST_CASE("a control space is made in one call as by its builder, with one grada
         const auto builder = entry.make(sized);
         builder->insert(sources);
         builder->grade({.ratio = options.ratio});
-        CHECK(answers(*made, x) == answers(*builder->build(), x));
+        const auto built = builder->build();
+        CHECK(answers(*made, x) == answers(*built, x));
     }
     // A structure that follows the sources closely shows the ratio: the length along x grows from
     // the first source at half a length per length.
@@ -51,6 +52,22 @@ TEST_CASE("a control space is made in one call as by its builder, with one grada
     const auto field = make_control_space("K_oV", one, options, 0.01, &report);
     CHECK(report.met);
     CHECK(sample_at(*field, {0.4, 0, 0}).xx == Approx(0.05 + 0.5 * 0.4).epsilon(0.08));
+}
+
+TEST_CASE("what is made in one call is compact, unless it takes later sources") {
+    const std::vector<PointSource> lengths{{Point(0.3, 0.2, 0.1), Metric::isotropic(0.02)},
+                                           {Point(-0.5, 0, 0.4), Metric::isotropic(0.05)}};
+    SpaceOptions later = options;
+    later.takes_later_sources = true;
+    for (const CatalogueEntry& entry : structures()) {
+        CAPTURE(entry.id);
+        CHECK(to_be_read(entry, options).precision.has_value() == entry.has<CompactForm>());
+        CHECK_FALSE(to_be_read(entry, later).precision);
+        if (!entry.has<CompactForm>()) continue;
+        const auto made = make_control_space(structures(), entry.id, lengths, options);
+        const auto built = make_filled_builder(entry, lengths, options)->build();
+        CHECK(made->footprint().bytes_total() < 0.8 * built->footprint().bytes_total());
+    }
 }
 
 TEST_CASE("names that no structure has are refused with those there are") {

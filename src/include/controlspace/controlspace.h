@@ -88,11 +88,15 @@ typedef struct cspace_options {
 } cspace_options;
 
 /** Builds the field of sources in one step: creates a control space, and inserts and grades the
- * sources, or adapts it to them.
+ * sources, or adapts it to them. It is only read from then on, which takes less time and, where
+ * all is isotropic, less memory: further sources, gradation and adaptation are refused, unless
+ * options->further has takes_later_sources=1.
  *
  *     cspace_sources sources = {.struct_size = sizeof(cspace_sources)};
  *     sources.n = n, sources.positions = positions, sources.lengths = lengths;
  *
+ * @param structure, domain  as of cspace_create()
+ * @param sources  inside the domain, with lengths or metrics, not both
  * @param options  may be NULL
  * @param reached  unless NULL receives what cspace_adapt() says; NaN where nothing was adapted
  * @param space    receives the control space; NULL after a failure */
@@ -101,7 +105,7 @@ CSPACE_API cspace_status cspace_build(const char* structure, const double* domai
                                       double* reached, cspace** space);
 
 /** Creates a control space. Before the first source, its metric is isotropic everywhere; the length
- * is half of the domain's diagonal.
+ * is half of the domain's diagonal, or h_max if that is less.
  *
  * @param structure  id of the data structure, "K_oV"; cspace_structure() lists them
  * @param domain     the box: x0 y0 z0 x1 y1 z1; a plane where low and high are equal along one axis
@@ -200,7 +204,8 @@ CSPACE_API cspace_status cspace_domain(const cspace* space, double* domain);
 /** Saves a control space to a .ctrl file. If that fails, no part of a file is left. */
 CSPACE_API cspace_status cspace_save(const cspace* space, const char* file);
 
-/** Loads a saved control space, to be freed by cspace_free(); NULL after a failure. */
+/** Loads a saved control space, to be freed by cspace_free(); NULL after a failure. One that was
+ * only read is only read again. */
 CSPACE_API cspace_status cspace_load(const char* file, cspace** space);
 
 /** Loads an octree that ranks of MPI wrote in pieces, from its index (.pctrl), to be read. Of a

@@ -125,7 +125,7 @@ class Field:
 
     def export(self, file: str | os.PathLike[str], **options: Any) -> None:
         """Writes `file` as `controlspace export`; its ending names the format: .vtu, .vti, .htg,
-        .pos, .csv, or .sol and .solb with mesh="its.mesh".
+        .npy, .pos, .csv, .structured, .msz, .msh, or .sol and .solb with mesh="its.mesh".
 
         Options are those of the program, `slice=("z", 0.1)` for `--slice z 0.1`, written as in
         `compare`. ValueError for an option or ending that cannot be used.
@@ -199,7 +199,7 @@ def build(
     None with a structure: sources are inserted and graded, which is faster and less accurate.
     h_min, h_max: limits of lengths, in all directions; without h_max lengths far from all sources
     grow up to half of the box's diagonal.
-    options: further ones of cspace_create (controlspace.h): tau=0.5, split="s_G", max_memory=1.
+    options: further ones of cspace_create (controlspace.h): tau=0.5, split="s_G", max_memory=1 [GiB].
 
     ValueError for what cannot be used; it names the source by its index.
     """

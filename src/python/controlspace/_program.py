@@ -57,7 +57,8 @@ def compare(
 ) -> list[dict[str, Any]]:
     """Builds structures of the same sources and measures them: one dict for each.
 
-    points, h, box, growth, delta: as in `build`. structures: names (None: all). Rows are those of
+    points, h, growth: as in `build`. box: None: as `controlspace compare` chooses it. delta: None:
+    structures are inserted and graded. structures: names (None: all). Rows are those of
     results.json: among others "structure", "bytes_total" [bytes], "t_creation_s" [s],
     "t_access_ns_random" [ns] and "delta_R_max"; None where there is no value.
     settings: options of `controlspace compare`, with _ for -: a list becomes words with commas, a

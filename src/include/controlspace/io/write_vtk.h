@@ -28,8 +28,9 @@ void write_leaf_pieces(const std::filesystem::path& path,
 /// The control nodes of `space` as vertices (.vtu), with their metrics as data of points.
 void write_nodes(const std::filesystem::path& path, const ControlSpace& space);
 
-/// An octree as vtkHyperTreeGrid (.htg): one tree of branch factor 2, with the metrics at the
-/// centres of all its boxes as data of cells. Throws InputError for other structures, too.
+/// An octree as vtkHyperTreeGrid (.htg): a tree of branch factor 2, or several side by side where
+/// the domain is oblong, with the metrics at the centres of all its boxes as data of cells. Throws
+/// InputError for other structures, and where it takes more than 65536 trees.
 void write_octree(const std::filesystem::path& path, const ControlSpace& space);
 
 /// A plane across the domain.
