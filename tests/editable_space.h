@@ -83,17 +83,9 @@ inline std::vector<Metric> answers(const ControlSpace& space, std::span<const Po
     return out;
 }
 
-/// Trees whose control nodes carry metrics, then those whose leaves keep sources.
-inline std::vector<CatalogueEntry> all_trees() {
-    std::vector<CatalogueEntry> all(tree_catalogue().begin(), tree_catalogue().end());
-    all.insert(all.end(), anchored_catalogue().begin(), anchored_catalogue().end());
-    return all;
-}
 /// The tree called `id`.
 inline const CatalogueEntry& tree_named(std::string_view id) {
-    for (const auto& rows : {tree_catalogue(), anchored_catalogue()}) {
-        if (const CatalogueEntry* entry = find_entry(rows, id)) return *entry;
-    }
+    if (const CatalogueEntry* entry = find_entry(all_trees(), id)) return *entry;
     throw std::out_of_range("no tree is called " + std::string(id));
 }
 /// Answers by searching its sources, without any cells.

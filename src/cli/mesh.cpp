@@ -51,7 +51,7 @@ void mesh_case(const Study& study, const Case& c, bool is_by_default, const Refe
     std::unique_ptr<ControlSpace> space;
     const auto make = [&](MeshRow& made) -> const ControlSpace& {
         start_library_of(c.structure);
-        const Filled filled = make_and_fill(study, c, program_rows(), reference.workload);
+        Filled filled = make_and_fill(study, c, program_rows(), reference.workload);
         space = filled.build(c);
         if (is_by_default && !filled.creation.shortfall.empty()) {
             const std::string remark = remark_on(filled.creation, space->footprint());

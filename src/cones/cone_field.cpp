@@ -9,29 +9,8 @@
 
 namespace controlspace {
 
-ConeField::ConeField(std::span<const PointSource> sources, double g, const Metric& largest,
-                     double tolerance, IntersectionRule rule)
-    : largest_(largest),
-      longest_(eigen_frame(largest).lengths[2]),
-      tolerance_(tolerance),
-      rule_(rule),
-      cones_(make_cones(sources, g)) {}
-
-ConeField::ConeField(const SourceColumns& sources, double g, const Metric& largest,
-                     double tolerance, IntersectionRule rule)
-    : largest_(largest),
-      longest_(eigen_frame(largest).lengths[2]),
-      tolerance_(tolerance),
-      rule_(rule),
-      cones_(make_cones(sources, g)) {}
-
 ConeField::Cones ConeField::make_cones(std::span<const PointSource> sources, double g) const {
-    const auto has_length = [](const PointSource& s) {
-        return controlspace::is_isotropic(s.metric);
-    };
-    if (std::ranges::all_of(sources, has_length)) {
-        return IsotropicCones(columns_of(sources), g, longest_);
-    }
+    if (all_isotropic(sources)) return IsotropicCones(columns_of(sources), g, longest_);
     if (rule_ == IntersectionRule::in_turn) return AnisotropicCones(sources, g, longest_);
     return OrderFreeCones(sources, g, largest_, tolerance_);
 }
@@ -132,12 +111,6 @@ void ConeField::governing(const Point& x, double tolerance, std::vector<std::uin
     if (h * (1 + tolerance) >= longest_) return;
     m = intersection(largest_, Metric::isotropic(h));
     sources.push_back(isotropic().source_of(x, h, memory.hint));
-}
-
-void ConeField::governing(const Point& x, double tolerance, std::vector<std::uint32_t>& sources,
-                          Metric& m) const {
-    Memory memory;
-    governing(x, tolerance, sources, m, memory);
 }
 
 bool ConeField::is_isotropic() const {

@@ -39,10 +39,14 @@ public:
     /// layered sources (anisotropies of 4 and 50, 36186 and 895534 sources, 60 to 2000 random
     /// places, t from 1e-6 to 1e-2) the non-conformity to the exact field was at most 2.3 t^2; 1e-3
     /// takes 60 % of the time, 1e-2 half.
-    ConeField(std::span<const PointSource> sources, double g, const Metric& largest,
-              double tolerance = 0, IntersectionRule rule = IntersectionRule::order_free);
-    ConeField(const SourceColumns& sources, double g, const Metric& largest, double tolerance = 0,
-              IntersectionRule rule = IntersectionRule::order_free);
+    template <class Sources>  // PointSources in a row, or SourceColumns
+    ConeField(const Sources& sources, double g, const Metric& largest, double tolerance = 0,
+              IntersectionRule rule = IntersectionRule::order_free)
+        : largest_(largest),
+          longest_(eigen_frame(largest).lengths[2]),
+          tolerance_(tolerance),
+          rule_(rule),
+          cones_(make_cones(sources, g)) {}
 
     /// What a search remembers from one call to the next: best kept from place to nearby place,
     /// by one thread for one field.
@@ -85,8 +89,6 @@ public:
     /// Empty where `largest` stands. Costs as much as `evaluate` at one place. Thread-safe.
     void governing(const Point& x, double tolerance, std::vector<std::uint32_t>& sources, Metric& m,
                    Memory& memory) const;
-    void governing(const Point& x, double tolerance, std::vector<std::uint32_t>& sources,
-                   Metric& m) const;
 
     /// Whether all sources, and `largest`, are isotropic.
     bool is_isotropic() const;

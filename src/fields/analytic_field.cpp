@@ -21,8 +21,7 @@ AnalyticField function_field(std::function<Metric(const Point&)> formula, double
         }
         return m;
     };
-    return {std::make_shared<FormulaField<decltype(checked)>>(std::move(checked), domain),
-            finest_length};
+    return {formula_field(std::move(checked), domain), finest_length};
 }
 
 void require_defined(const AnalyticField& field, const Box& domain, const std::string& name) {

@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "controlspace/fields/formula_field.h"
 #include "controlspace/sources/point_source.h"
 #include "files/text_file.h"
 #include "refuse.h"
@@ -182,26 +183,9 @@ std::vector<Point> places_on(const Point& a, const Point& b, double h) {
     return places;
 }
 
-class PrimitivesField final : public ControlSpace {
-public:
-    struct Law {
-        double h, slope;
-        std::function<double(const Point&)> distance;
-    };
-    explicit PrimitivesField(std::vector<Law> laws) : laws_(std::move(laws)) {}
-
-    void sample(std::span<const Point> x, std::span<Metric> out) const override {
-        assert(x.size() == out.size());
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            double h = largest_magnitude;
-            for (const Law& law : laws_) h = std::min(h, law.h + law.slope * law.distance(x[i]));
-            out[i] = Metric::isotropic(h);
-        }
-    }
-    Box domain() const override { return Box::everywhere(); }
-
-private:
-    std::vector<Law> laws_;
+struct Law {
+    double h, slope;
+    std::function<double(const Point&)> distance;
 };
 
 }  // namespace
@@ -256,7 +240,7 @@ AnalyticField primitives_field(std::span<const Primitive> primitives,
     AnalyticField field;
     field.is_isotropic = true;
     field.finest_length = std::ranges::min(primitives, {}, &Primitive::h).h;
-    std::vector<PrimitivesField::Law> laws;
+    std::vector<Law> laws;
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         const double g = primitives[i].ratio.value_or(ratio);
         if (!(g >= 1 && g <= steepest_primitive)) {
@@ -268,7 +252,11 @@ AnalyticField primitives_field(std::span<const Primitive> primitives,
         const std::vector<Point>& places = distances[i].places;
         field.places.insert(field.places.end(), places.begin(), places.end());
     }
-    field.field = std::make_shared<PrimitivesField>(std::move(laws));
+    field.field = formula_field([laws = std::move(laws)](const Point& x) {
+        double h = largest_magnitude;
+        for (const Law& law : laws) h = std::min(h, law.h + law.slope * law.distance(x));
+        return Metric::isotropic(h);
+    });
     return field;
 }
 

@@ -32,7 +32,7 @@ Metric metric_at(const SurfaceLengths& l, const Vector& normal, double distance)
 
 template <class Formula>
 AnalyticField with_lengths(const SurfaceLengths& lengths, Formula formula) {
-    return {std::make_shared<FormulaField<Formula>>(formula), finest_length(lengths)};
+    return {formula_field(formula), finest_length(lengths)};
 }
 
 }  // namespace

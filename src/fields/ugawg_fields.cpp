@@ -28,7 +28,7 @@ Metric cylindrical_metric(const Point& p, double r, double h_r, double h_t) {
 template <class Formula>
 AnalyticField in_unit_cube(Formula formula) {
     const Box unit_cube{Point::Zero(), Point::Ones()};
-    return {std::make_shared<FormulaField<Formula>>(formula, unit_cube), finest};
+    return {formula_field(formula, unit_cube), finest};
 }
 
 }  // namespace

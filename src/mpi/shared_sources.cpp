@@ -8,15 +8,9 @@
 #include <optional>
 
 #include "cones/isotropic_cones.h"
+#include "geometry/point_order.h"
 
 namespace controlspace {
-namespace {
-
-bool is_before(const Point& a, const Point& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-}
-
-}  // namespace
 
 /// A cone that bounds the field.
 struct SharedSources::Bound {
@@ -194,7 +188,7 @@ std::vector<Box> SharedSources::test_boxes(const LeafPlace& octant) const {
             }
         }
     }
-    std::ranges::sort(places, is_before);
+    std::ranges::sort(places, precedes);
     places.erase(std::unique(places.begin(), places.end()), places.end());
     for (const Point& x : places) boxes.push_back({x, x});
     return boxes;

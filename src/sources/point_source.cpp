@@ -16,6 +16,10 @@ double finest_length(std::span<const PointSource> sources) {
     return finest;
 }
 
+bool all_isotropic(std::span<const PointSource> sources) {
+    return std::ranges::all_of(sources, is_isotropic, &PointSource::metric);
+}
+
 bool is_coordinate(double x) { return std::abs(x) <= largest_magnitude; }
 
 bool is_length(double h) { return h >= 1 / largest_magnitude && h <= largest_magnitude; }

@@ -22,10 +22,7 @@ void SourceColumns::add(std::span<const PointSource> sources) {
         std::atomic_thread_fence(std::memory_order_acquire);
     }
     auto& [positions, lengths, metrics, growths] = *columns_;
-    const auto is_isotropic = [](const PointSource& s) {
-        return controlspace::is_isotropic(s.metric);
-    };
-    const bool are_lengths = metrics.empty() && std::ranges::all_of(sources, is_isotropic);
+    const bool are_lengths = metrics.empty() && all_isotropic(sources);
     if (!are_lengths && metrics.empty()) {
         for (const double h : lengths) metrics.push_back(Metric::isotropic(h));
         lengths = std::vector<double>();  // its memory too

@@ -66,9 +66,7 @@ std::unique_ptr<ControlSpace> make_control_space(std::string_view id,
                                                  const SpaceOptions& options,
                                                  std::optional<double> target,
                                                  AdaptationReport* report) {
-    std::vector<CatalogueEntry> trees(tree_catalogue().begin(), tree_catalogue().end());
-    trees.insert(trees.end(), anchored_catalogue().begin(), anchored_catalogue().end());
-    return make_control_space(trees, id, sources, options, target, report);
+    return make_control_space(all_trees(), id, sources, options, target, report);
 }
 
 }  // namespace controlspace

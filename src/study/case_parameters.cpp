@@ -242,10 +242,10 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
             word<Case>(&Case::neighbourhood), {"faces"}, unless_default("{} neighbours"),
             is_graded),
         row(structure, "frozen", "",
-            "Conversion of trees to their compact, read-only form, not timed: no; doubles, the "
-            "same bits (default where one field is made of no study file); floats, metrics rounded "
-            "by 6e-8; shorts, isotropic lengths in 16 bits, "
-            "rounded by 1e-4 (longest up to 4.9e5 times the shortest)",
+            "Conversion of trees to their compact, read-only form: no; doubles, the same bits "
+            "(default of build, query and export without a study file); floats, metrics rounded by "
+            "6e-8; shorts, isotropic lengths in 16 bits, rounded by 1e-4 (longest up to 4.9e5 "
+            "times the shortest)",
             word<Case>(&Case::frozen), {"no"}, unless_default("frozen with {}"), has<CompactForm>),
         row(structure, "prune_delta", "",
             "Non-conformity up to which graded OpenVDB grids merge voxels; 0: not merged",

@@ -154,13 +154,15 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     return filled;
 }
 
-std::unique_ptr<ControlSpace> Filled::build(const Case& c) const {
+std::unique_ptr<ControlSpace> Filled::build(const Case& c) {
     if (c.frozen == Frozen::no) return builder->build();
-    const auto compact = [&](Precision precision) {
-        return builder->build({.precision = precision});
-    };
-    if (c.frozen == Frozen::shorts) return compact(Precision::shorts);
-    return compact(c.frozen == Frozen::floats ? Precision::floats : Precision::doubles);
+    const Precision precision = c.frozen == Frozen::shorts   ? Precision::shorts
+                                : c.frozen == Frozen::floats ? Precision::floats
+                                                             : Precision::doubles;
+    const Stopwatch time;
+    auto compact = builder->build({.precision = precision});
+    creation.gradation_s.back() += time.seconds();
+    return compact;
 }
 
 }  // namespace controlspace

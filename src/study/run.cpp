@@ -139,7 +139,7 @@ private:
         std::uint64_t expected = 0;
         for (int repeat = 0; repeat < study_.creation_repeats; ++repeat) {
             member.space.reset();  // its memory first
-            const Filled filled = make_and_fill(study_, c, rows_, workload, observer_);
+            Filled filled = make_and_fill(study_, c, rows_, workload, observer_);
             member.space = filled.build(c);
             const std::uint64_t sum = checksum(sample_parallel(*member.space, places));
             if (repeat == 0) {

@@ -66,7 +66,7 @@ AnalyticField limited(const AnalyticField& field, const SourcesChoice& limits) {
     const auto at = [inner = field.field, limits](const Point& p) {
         return limited(sample_at(*inner, p), limits);
     };
-    return {std::make_shared<FormulaField<decltype(at)>>(at, field.field->domain()),
+    return {formula_field(at, field.field->domain()),
             std::clamp(field.finest_length, limits.h_min, limits.h_max), field.places,
             field.is_isotropic};
 }
@@ -112,11 +112,7 @@ Box domain_of(const Study& study, const SourcesChoice& choice, std::span<const P
 void require_inside(const SourcesChoice& choice, const std::vector<DistanceField>& distances,
                     const Box& domain) {
     for (std::size_t i = 0; i < distances.size(); ++i) {
-        const Box& box = distances[i].box;
-        if ((box.low.array() <= domain.high.array()).all() &&
-            (box.high.array() >= domain.low.array()).all()) {
-            continue;
-        }
+        if (touch(distances[i].box, domain)) continue;
         refuse("{} lies outside the domain {}: enlarge the domain or drop it",
                to_string(choice.primitives[i]), to_string(domain));
     }

@@ -198,9 +198,6 @@ public:
     }
 
 private:
-    static bool touch(const Box& a, const Box& b) {
-        return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
-    }
     [[noreturn]] static void fail_octant(const Box& octant, const std::filesystem::path& path) {
         throw InputError(fmt::format("{}: {} is no octant of its domain, or there twice",
                                      path.string(), to_string(octant)));

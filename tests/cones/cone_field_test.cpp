@@ -302,7 +302,8 @@ TEST_CASE("Sources that cut by less than the tolerance do not govern") {
         for (const Point& p : points) {
             std::vector<std::uint32_t> governing;
             Metric m;
-            field.governing(p, tolerance, governing, m);
+            ConeField::Memory memory;
+            field.governing(p, tolerance, governing, m, memory);
             count += governing.size();
             Metric again = wide;
             for (const std::uint32_t s : governing) {

@@ -65,7 +65,7 @@ double share_beyond(double target, const ControlSpace& space, const ControlSpace
 
 /// Trees whose answers are bounded everywhere: all but those of quadratic leaves.
 std::vector<CatalogueEntry> bounded_trees() {
-    std::vector<CatalogueEntry> bounded = all_trees();
+    std::vector<CatalogueEntry> bounded(all_trees().begin(), all_trees().end());
     std::erase_if(bounded, [](const CatalogueEntry& entry) { return entry.order == 2; });
     return bounded;
 }

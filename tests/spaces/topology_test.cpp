@@ -223,7 +223,8 @@ TEST_CASE("octrees halve the long axes first, until boxes are near cubes, and a 
 
 TEST_CASE("a graph from pairs lists every link at both ends, and rows can be made unique") {
     const std::vector<std::pair<NodeIndex, NodeIndex>> pairs{{0, 2}, {2, 1}, {0, 2}, {3, 0}};
-    NodeGraph graph = graph_from_pairs(5, pairs);
+    NodeGraph graph;
+    link_pairs(graph, 5, pairs);
     CHECK(graph.first == std::vector<std::size_t>{0, 3, 4, 7, 8, 8});
     sort_rows_uniquely(graph);
     CHECK(graph.first == std::vector<std::size_t>{0, 2, 3, 5, 6, 6});

@@ -91,8 +91,4 @@ std::vector<PointSource> sources_from(std::span<const Point> positions,
     return sources;
 }
 
-bool all_isotropic(std::span<const PointSource> sources) {
-    return std::ranges::all_of(sources, is_isotropic, &PointSource::metric);
-}
-
 }  // namespace controlspace

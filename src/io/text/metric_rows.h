@@ -95,7 +95,4 @@ void require_coordinates(const Point& x, std::string_view what, std::size_t numb
 std::vector<PointSource> sources_from(std::span<const Point> positions,
                                       std::span<const Metric> metrics);
 
-/// Whether all sources are isotropic: formats then store sizes rather than tensors.
-bool all_isotropic(std::span<const PointSource> sources);
-
 }  // namespace controlspace

@@ -7,6 +7,7 @@
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/cone.h"
+#include "controlspace/sources/riemannian.h"
 #include "controlspace/trees/detail/in_parallel.h"
 #include "metric/tensor_lanes.h"
 
@@ -58,11 +59,8 @@ SingleCones::SingleCones(std::span<const PointSource> sources, double ratio, dou
       most_(largest_factor_within(target)),
       most_along_(largest_factor_along(target)),
       inverse_squares_(sources.size()) {
-    in_parallel(sources_.size(), [&](std::size_t i) {
-        EigenFrame frame = eigen_frame(sources_[i].metric);
-        for (double& length : frame.lengths) length = 1 / (length * length);
-        inverse_squares_[i] = metric_from_frame(frame.lengths, frame.directions);
-    });
+    in_parallel(sources_.size(),
+                [&](std::size_t i) { inverse_squares_[i] = to_riemannian(sources_[i].metric); });
 }
 
 Departure SingleCones::at_nearest_place(std::size_t source, const Box& box,

@@ -18,13 +18,6 @@ void link_pairs(NodeGraph& graph, std::size_t nodes,
     });
 }
 
-NodeGraph graph_from_pairs(std::size_t nodes,
-                           std::span<const std::pair<NodeIndex, NodeIndex>> pairs) {
-    NodeGraph graph;
-    link_pairs(graph, nodes, pairs);
-    return graph;
-}
-
 NodeGraph vertex_graph(std::span<const Corners> leaves, std::vector<Point> positions,
                        Neighbourhood neighbourhood) {
     // Each thread enters the neighbours of nodes of its own; rows get sorted in the end.

@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cstddef>
+#include <memory>
 #include <utility>
 
 #include "controlspace/space/control_space.h"
@@ -28,5 +29,12 @@ private:
     Formula formula_;
     Box domain_;
 };
+
+/// The same, shared.
+template <class Formula>
+std::shared_ptr<const ControlSpace> formula_field(Formula formula,
+                                                  const Box& domain = Box::everywhere()) {
+    return std::make_shared<FormulaField<Formula>>(std::move(formula), domain);
+}
 
 }  // namespace controlspace

@@ -39,6 +39,11 @@ inline Point nearest_in(const Box& box, const Point& x) {
     return x.cwiseMax(box.low).cwiseMin(box.high);
 }
 
+/// Whether two boxes have a place in common.
+inline bool touch(const Box& a, const Box& b) {
+    return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
+}
+
 /// Smallest box around `points`, each side moved outwards by `margin` times the longest edge.
 /// Where the points have no extent along an axis (a plane, a line, one point), the box gets that of
 /// its longest edge, or 1 if there is none, so that it always has a volume. Throws InputError for

@@ -22,6 +22,9 @@ struct PointSource {
 /// are none.
 double finest_length(std::span<const PointSource> sources);
 
+/// Whether all have isotropic metrics.
+bool all_isotropic(std::span<const PointSource> sources);
+
 /// Whether a number can be a coordinate (finite, up to largest_magnitude), a length (positive, and
 /// its inverse too); whether a metric can be that of a source (positive definite, its diagonal of
 /// lengths).

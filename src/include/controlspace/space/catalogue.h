@@ -77,4 +77,7 @@ std::span<const CatalogueEntry> tree_catalogue();
 /// Trees whose leaves keep sources in place of metrics.
 std::span<const CatalogueEntry> anchored_catalogue();
 
+/// Both.
+std::span<const CatalogueEntry> all_trees();
+
 }  // namespace controlspace

@@ -78,8 +78,8 @@ struct Filled {
     std::unique_ptr<ControlSpaceBuilder> builder;
     Creation creation;  ///< of this one
 
-    /// In the requested form.
-    std::unique_ptr<ControlSpace> build(const Case& c) const;
+    /// In the requested form; conversion to a compact one is part of the creation.
+    std::unique_ptr<ControlSpace> build(const Case& c);
 };
 Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
                      const Workload& workload, const StudyObserver& observer = {});

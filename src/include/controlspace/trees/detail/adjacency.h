@@ -57,10 +57,6 @@ void link(NodeGraph& graph, std::size_t nodes, ForEachLink&& for_each_link) {
 void link_pairs(NodeGraph& graph, std::size_t nodes,
                 std::span<const std::pair<NodeIndex, NodeIndex>> pairs);
 
-/// Undirected links in no particular order, as rows of neighbours; `positions` stays empty.
-NodeGraph graph_from_pairs(std::size_t nodes,
-                           std::span<const std::pair<NodeIndex, NodeIndex>> pairs);
-
 /// Removes repeated neighbours and sorts each row.
 void sort_rows_uniquely(NodeGraph& graph);
 

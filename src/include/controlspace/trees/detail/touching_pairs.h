@@ -36,10 +36,6 @@ private:
         }
     }
 
-    static bool touch(const Box& a, const Box& b) {
-        return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
-    }
-
     const Topology<Node>& tree_;
     Visit& visit_;
 };
