@@ -34,8 +34,8 @@ void change(cspace* handle, Edit&& edit) {
     require(handle, "space");
     if (!handle->builder) {
         refuse(
-            "it is only read: insert, grade and adapt one of cspace_create(), or give "
-            "takes_later_sources=1 to cspace_build()");
+            "it is only read: insert, grade and adapt one of cspace_create(), or build it with "
+            "takes_later_sources=1, or by controlspace build --frozen no");
     }
     handle->cursor.reset();
     handle->space.reset();  // so that nothing has to be copied
