@@ -36,8 +36,8 @@ std::unique_ptr<ControlSpace> make_control_space(std::span<const CatalogueEntry>
                                                  AdaptationReport* report = nullptr);
 
 /// How a control space is built that is only read from then on: in its compact form with doubles,
-/// if it has one and does not take_later_sources. It answers the same bits in less time, and takes
-/// less memory where all is isotropic.
+/// if it has one, unless options.takes_later_sources. It answers the same bits in less time, and
+/// takes less memory where all is isotropic.
 BuildOptions to_be_read(const CatalogueEntry& entry, const SpaceOptions& options);
 
 /// The same, for more sources to come: the builder, filled. With options.takes_later_sources they
