@@ -86,10 +86,14 @@ EigenFrame eigen_frame(const Metric& m) {
     return frame;
 }
 
-Svd svd(const Eigen::Matrix3d& matrix) {
-    Eigen::Matrix3d b = matrix;
-    Eigen::Matrix3d v = Eigen::Matrix3d::Identity();
-    std::array<double, 3> s{b.col(0).squaredNorm(), b.col(1).squaredNorm(), b.col(2).squaredNorm()};
+namespace {
+
+// `v`, if given, is rotated as the columns of the matrix are: the identity becomes V.
+template <class... V>
+LeftSvd jacobi_svd(const Eigen::Matrix3d& matrix, V&... v) {
+    LeftSvd d{matrix, {}};
+    auto& [b, s] = d;
+    for (int i = 0; i < 3; ++i) s[index(i)] = b.col(i).squaredNorm();
     // Rotates columns p and q until they are orthogonal; false if they were.
     const auto orthogonalise = [&](int p, int q) {
         constexpr double cosine = 4e-16;  // of columns that rounding alone keeps apart
@@ -99,7 +103,7 @@ Svd svd(const Eigen::Matrix3d& matrix) {
         if (pq * pq <= cosine * cosine * pp * qq) return false;
         const JacobiRotation rotation(pp, qq, pq);
         rotation.apply(b, p, q);
-        rotation.apply(v, p, q);
+        (rotation.apply(v, p, q), ...);
         pp = b.col(p).squaredNorm();
         qq = b.col(q).squaredNorm();
         return true;
@@ -110,15 +114,25 @@ Svd svd(const Eigen::Matrix3d& matrix) {
         if (s[index(i)] >= s[index(j)]) return;
         std::swap(s[index(i)], s[index(j)]);
         b.col(i).swap(b.col(j));
-        v.col(i).swap(v.col(j));
+        (v.col(i).swap(v.col(j)), ...);
     });
     for (int i = 0; i < 3; ++i) b.col(i) /= s[index(i)];
-    return {b, s, v};
+    return d;
 }
 
+}  // namespace
+
+Svd svd(const Eigen::Matrix3d& b) {
+    Eigen::Matrix3d v = Eigen::Matrix3d::Identity();
+    const auto [u, s] = jacobi_svd(b, v);
+    return {u, s, v};
+}
+
+LeftSvd left_svd(const Eigen::Matrix3d& b) { return jacobi_svd(b); }
+
 Metric left_polar_factor(const Eigen::Matrix3d& b) {
-    const Svd d = svd(b);
-    return metric_from_frame(d.s, d.u);
+    const auto [u, s] = left_svd(b);
+    return metric_from_frame(s, u);
 }
 
 double condition(const Metric& m, const Cholesky& factor) {

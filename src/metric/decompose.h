@@ -17,6 +17,13 @@ struct Svd {
 /// when the columns of B are of very different size, and equal ones need no special case.
 Svd svd(const Eigen::Matrix3d& b);
 
+/// The same without V.
+struct LeftSvd {
+    Eigen::Matrix3d u;
+    std::array<double, 3> s;
+};
+LeftSvd left_svd(const Eigen::Matrix3d& b);
+
 /// U diag(s) U^T for B = U diag(s) V^T, that is (B B^T)^1/2.
 Metric left_polar_factor(const Eigen::Matrix3d& b);
 

@@ -68,7 +68,7 @@ double growth(const Metric& a, const Metric& b) {
     if (is_axis_aligned(a) && is_axis_aligned(b)) {
         return std::max({a.xx / b.xx, a.yy / b.yy, a.zz / b.zz});
     }
-    return svd(Cholesky(b).solve(a.matrix())).s[0];
+    return left_svd(Cholesky(b).solve(a.matrix())).s[0];
 }
 
 bool is_within(const Metric& a, double factor, const Metric& b) {
@@ -95,7 +95,7 @@ bool is_within(const Metric& a, double factor, const Metric& b) {
     const Vector w = c * v;
     constexpr double clearly = 1 + 1e-12;
     if (w.squaredNorm() > clearly * longest * longest * v.squaredNorm()) return false;
-    return svd(c).s[0] <= longest;
+    return left_svd(c).s[0] <= longest;
 }
 
 }  // namespace controlspace

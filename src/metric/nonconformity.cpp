@@ -18,7 +18,17 @@ double norm_of_excess(double x, double y, double z) {
     return std::sqrt(excess(x) * excess(x) + excess(y) * excess(y) + excess(z) * excess(z));
 }
 
-// Of lengths along one direction: at least 1.
+}  // namespace
+
+double nonconformity(const Metric& a, const Metric& b) {
+    if (is_axis_aligned(a) && is_axis_aligned(b)) {
+        return norm_of_excess(a.xx / b.xx, a.yy / b.yy, a.zz / b.zz);
+    }
+    return (Cholesky(a).solve(b.matrix()) + Cholesky(b).solve(a.matrix()) -
+            2 * Eigen::Matrix3d::Identity())
+        .norm();
+}
+
 double largest_ratio(const Metric& a, const Metric& b) {
     if (is_axis_aligned(a) && is_axis_aligned(b)) return std::max(growth(a, b), growth(b, a));
     const Eigen::Matrix3d seen = Cholesky(b).solve(a.matrix());
@@ -30,19 +40,8 @@ double largest_ratio(const Metric& a, const Metric& b) {
     if (least > 0 && greatest < most_far_apart * least) {
         return std::sqrt(std::max(greatest, 1 / least));
     }
-    const auto ratios = svd(seen).s;
+    const auto ratios = left_svd(seen).s;
     return std::max(ratios[0], 1 / ratios[2]);
-}
-
-}  // namespace
-
-double nonconformity(const Metric& a, const Metric& b) {
-    if (is_axis_aligned(a) && is_axis_aligned(b)) {
-        return norm_of_excess(a.xx / b.xx, a.yy / b.yy, a.zz / b.zz);
-    }
-    return (Cholesky(a).solve(b.matrix()) + Cholesky(b).solve(a.matrix()) -
-            2 * Eigen::Matrix3d::Identity())
-        .norm();
 }
 
 double directional_nonconformity(const Metric& a, const Metric& b) {

@@ -20,6 +20,9 @@ void check_svd(const Eigen::Matrix3d& b) {
     CHECK((d.u.transpose() * d.u).isApprox(identity, 1e-14));
     CHECK((d.v.transpose() * d.v).isApprox(identity, 1e-14));
     CHECK((product(d) - b).norm() <= 3e-15 * b.norm());
+    const auto [u, s] = left_svd(b);
+    CHECK(u == d.u);
+    CHECK(s == d.s);
     const Vector expected = Eigen::JacobiSVD<Eigen::Matrix3d>(b).singularValues();
     for (int i = 0; i < 3; ++i) {
         CHECK(d.s[static_cast<std::size_t>(i)] ==

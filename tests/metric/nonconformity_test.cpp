@@ -45,6 +45,28 @@ TEST_CASE("nonconformity is the Frobenius norm of its definition") {
     }
 }
 
+TEST_CASE("the largest ratio is that of lengths along some direction, and above all others") {
+    CHECK(largest_ratio(Metric::isotropic(0.3), Metric::isotropic(0.6)) == 2);
+    CHECK(largest_ratio({.1, .4, .2, 0, 0, 0}, {.5, .1, .3, 0, 0, 0}) == Approx(5));
+    Draw draw(33);
+    for (const double anisotropy : {1.0, 30.0, 1e6}) {
+        for (int i = 0; i < 50; ++i) {
+            const Metric a = draw.metric(1, anisotropy);
+            const Metric b = draw.metric(2, anisotropy);
+            const double most = largest_ratio(a, b);
+            const double tolerance = std::max(1e-10, 1e-12 * anisotropy);
+            CHECK(most >= 1 - tolerance);
+            CHECK(most == Approx(largest_ratio(b, a)).epsilon(tolerance));
+            CHECK(most == Approx(std::max(growth(a, b), growth(b, a))).epsilon(tolerance));
+            for (int k = 0; k < 50; ++k) {
+                const Vector v = draw.vector();
+                const double ratio = metric_length(a, v) / metric_length(b, v);
+                CHECK(std::max(ratio, 1 / ratio) <= most * (1 + tolerance));
+            }
+        }
+    }
+}
+
 TEST_CASE("nonconformity is zero for equals, symmetric, and free of frame and unit") {
     Draw draw(32);
     for (double anisotropy : {1.0, 3.0, 1e3, 1e6}) {

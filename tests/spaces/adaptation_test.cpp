@@ -35,6 +35,18 @@ public:
     }
 };
 
+// Discs that turn about z along x: no length of theirs changes.
+class Turning final : public ControlSpace {
+public:
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const Vector u(std::cos(1.2 * x[i].x()), std::sin(1.2 * x[i].x()), 0);
+            out[i] =
+                Metric::from_matrix(0.4 * Eigen::Matrix3d::Identity() - 0.3 * u * u.transpose());
+        }
+    }
+};
+
 // Discs of random size and direction.
 std::vector<PointSource> tensors(std::size_t n) {
     const std::vector<Point> places = random_points(domain, n, 3);
@@ -353,6 +365,22 @@ CASE_OF_EACH(
     if (entry.id == "K_V" || entry.id == "K_oV" || entry.family == "anchored") {
         CHECK(space->footprint().cells == 1);
         CHECK(report.reached < 1e-12);
+    }
+}
+
+TEST_CASE("kd-trees are cut where metrics turn, though their lengths are the same everywhere") {
+    const auto turning = std::make_shared<Turning>();
+    for (const char* id : {"K_L", "K_Li", "K_V"}) {
+        CAPTURE(id);
+        const auto space = editable(tree_named(id).make({.domain = domain}));
+        CHECK(space->adapt({{}, turning, g, 0.1}).met);
+        CHECK(space->footprint().cells >= 4);
+        for (const Point& x : random_points(domain, 500, 5)) {
+            const Vector edges = space->cell_at(x).value().edges();
+            CHECK(edges.x() < 2);
+            CHECK(edges.y() == 2);
+            CHECK(edges.z() == 2);
+        }
     }
 }
 

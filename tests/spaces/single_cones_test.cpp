@@ -146,7 +146,7 @@ TEST_CASE("places around the tip of a cone are in boxes that are large beside th
     const SingleCones cones({&source, 1}, ratio, target);
     const Box box{Point(0, 0, 0), Point(1, 1, 1)};
     std::vector<Point> places;
-    cones.append_around_tips(box, places);
+    cones.append_around_tips(box, 3, places);
     CHECK(places.size() >= 12);
     int on_face = 0, near = 0;
     for (const Point& x : places) {
@@ -159,9 +159,35 @@ TEST_CASE("places around the tip of a cone are in boxes that are large beside th
     CHECK(near > 0);
 
     std::vector<Point> none;
-    cones.append_around_tips({Point(0, 0, -2), Point(1, 1, -1)}, none);
-    cones.append_around_tips({Point(0.39, 0.59, 0.94), Point(0.41, 0.61, 0.96)}, none);
+    cones.append_around_tips({Point(0, 0, -2), Point(1, 1, -1)}, 3, none);
+    cones.append_around_tips({Point(0.39, 0.59, 0.94), Point(0.41, 0.61, 0.96)}, 3, none);
     CHECK(none.empty());
+}
+
+TEST_CASE(
+    "places around the tip of a cone are there once, and on its edges and corners if wanted") {
+    // Steps as long as the box end at its corners, on its edges and on its faces.
+    const PointSource source{Point(0.4, 0.6, 1.001), Metric::isotropic(0.5)};
+    const SingleCones cones({&source, 1}, ratio, target);
+    const Box box{Point(0, 0, 0), Point(1, 1, 1)};
+    const auto faces_at = [](const Point& x) {
+        return ((x.array() == 0) || (x.array() == 1)).count();
+    };
+    std::vector<Point> all;
+    cones.append_around_tips(box, 3, all);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        CHECK(std::count(all.begin(), all.end(), all[i]) == 1);
+    }
+    for (const std::ptrdiff_t most_faces : {1, 2}) {
+        std::vector<Point> places;
+        cones.append_around_tips(box, most_faces, places);
+        std::vector<Point> expected;
+        std::copy_if(all.begin(), all.end(), std::back_inserter(expected),
+                     [&](const Point& x) { return faces_at(x) <= most_faces; });
+        CHECK(places == expected);
+        CHECK(places.size() < all.size());
+        CHECK_FALSE(places.empty());
+    }
 }
 
 TEST_CASE("metrics beyond a cone are in contact with it, if only a little") {

@@ -42,6 +42,11 @@ namespace {
 
 constexpr double share_of_interest = 0.25;
 
+// Of the box: three at its corners, two on its edges.
+std::ptrdiff_t faces_at(const Box& box, const Point& x) {
+    return ((x.array() == box.low.array()) || (x.array() == box.high.array())).count();
+}
+
 // Bit c: corner c has the higher coordinate along the axis.
 Lanes side_of_corners(Axis axis) {
     Lanes side;
@@ -114,7 +119,8 @@ Departure SingleCones::worst_in(const Box& box, const std::array<Metric, 8>& at_
     return worst;
 }
 
-void SingleCones::append_around_tips(const Box& box, std::vector<Point>& places) const {
+void SingleCones::append_around_tips(const Box& box, std::ptrdiff_t most_faces,
+                                     std::vector<Point>& places) const {
     constexpr double near = 0.25;  // as a share of the box
     for (std::size_t k = 0; k < size(); ++k) {
         const Metric& metric = sources_[k].metric;
@@ -126,6 +132,7 @@ void SingleCones::append_around_tips(const Box& box, std::vector<Point>& places)
         const double distance = metric_length(metric, nearest - position(k));
         if (distance > reach) continue;
         const EigenFrame frame = eigen_frame(metric);
+        const std::ptrdiff_t first = std::ssize(places);
         for (const double share : {0.5, 1.5, 4.0}) {
             const double size = share * std::max(distance, 0.5);
             if (size > 2 * reach / near) break;
@@ -141,7 +148,10 @@ void SingleCones::append_around_tips(const Box& box, std::vector<Point>& places)
                             frame.directions.col(a);
                 }
                 const Point x = nearest_in(box, nearest + size / std::sqrt(steps) * step);
-                if (x != nearest) places.push_back(x);
+                const bool is_known =
+                    x == nearest || faces_at(box, x) > most_faces ||
+                    std::find(places.begin() + first, places.end(), x) != places.end();
+                if (!is_known) places.push_back(x);
             }
         }
     }

@@ -44,7 +44,7 @@ double largest_departure(const Metric& own, const Metric& departure) {
     if (is_axis_aligned(own) && is_axis_aligned(departure)) {
         return std::max({departure.xx / own.xx, departure.yy / own.yy, departure.zz / own.zz});
     }
-    return svd(Cholesky(own).solve(departure.matrix())).s[0];
+    return left_svd(Cholesky(own).solve(departure.matrix())).s[0];
 }
 
 }  // namespace

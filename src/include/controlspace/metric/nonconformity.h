@@ -15,6 +15,9 @@ double nonconformity(const Metric& a, const Metric& b);
 /// metrics are turned a little, although some length differs by several times.
 double directional_nonconformity(const Metric& a, const Metric& b);
 
+/// The largest factor, at least 1, between lengths of two metrics along one direction.
+double largest_ratio(const Metric& a, const Metric& b);
+
 /// √3 (k + 1/k - 2): δ of isotropic metrics that differ by a factor k > 0.
 double nonconformity_of_factor(double k);
 

@@ -65,7 +65,8 @@ public:
         // A peak is rarely found to its very top.
         const bool are_few = field_.has_few_sources();
         const double share_where_sampled = are_few ? 0.96 : 0.99;
-        is_thorough_ = proved && !field_.has_ranges() && (are_few || field_.is_order_free());
+        is_thorough_ =
+            proved && !shows_bounds() && (are_few || field_.is_order_free() || field_.has_ranges());
         if (is_thorough_) aim_ = share_where_sampled * field_.target();
         states_.assign(tree_.leaves(), LeafState::fresh);
         departures_.resize(tree_.leaves());
@@ -299,11 +300,11 @@ private:
         };
         const double slope = field_.largest_ratio() - 1;
         // Where the field has a crease across an edge, the middle of that shows little of it.
-        if (is_near(0.3)) judge.at_places_between(l, nearby, found);
+        if (is_near(0.5)) judge.at_places_between(l, nearby, found);
         if constexpr (HasTrilinearLeaves<Storage>) {
             if (is_near(0)) judge.along_edges(l, nearby, slope, found);
         }
-        if (is_near(0.6)) judge.at_sequence(l, nearby, end, end + more, found);
+        if (is_near(0.7)) judge.at_sequence(l, nearby, end, end + more, found);
         judge.climb(l, nearby, slope, is_thorough_, found);
     }
 

@@ -40,21 +40,21 @@ public:
     /// At the places of the leaf; the others are skipped where some of them show that it has to be
     /// cut, and how.
     void at_places_of(const LeafBox& of, NearbyField& nearby, Findings& found) const {
-        LogRatios log_ratio{};
+        Compared compared;
         for (std::size_t r = 0; r < ranges().size(); ++r) {
             compare_at(of, nearby, ranges()[r], r < shared_ranges ? Cones::shared : Cones::all,
-                       found, log_ratio);
+                       found, compared);
             if (found.departure.worst > target_) break;
         }
-        if constexpr (Node::arity == 2) found.departure.along = sums_along(log_ratio);
+        if constexpr (Node::arity == 2) found.departure.along = sums_along(compared);
     }
 
     /// How much speaks for a cut across each axis.
     std::array<double, 3> along(const LeafBox& of, NearbyField& nearby) const {
         Findings found(of);
-        LogRatios log_ratio{};
-        compare_at(of, nearby, ranges().front(), Cones::shared, found, log_ratio);
-        return sums_along(log_ratio);
+        Compared compared;
+        compare_at(of, nearby, ranges().front(), Cones::shared, found, compared);
+        return sums_along(compared);
     }
 
     /// At places number `first` to `end - 1` of the sequence in a box that is larger than the leaf:
@@ -67,7 +67,7 @@ public:
         while (first < end) {
             const std::size_t n = std::min<std::uint64_t>(x.size(), end - first);
             for (std::size_t i = 0; i < n; ++i) x[i] = nearest_in(of.box, place_in(box, first++));
-            compare_with(of, nearby, std::span(x).first(n), Cones::close, found, {});
+            compare_with(of, nearby, std::span(x).first(n), Cones::close, found);
         }
     }
 
@@ -81,7 +81,7 @@ public:
                 x[i] =
                     of.box.low + leaf_places().at_between[first + i].cwiseProduct(of.box.edges());
             }
-            compare_with(of, nearby, x, Cones::close, found, {});
+            compare_with(of, nearby, x, Cones::close, found);
         }
     }
 
@@ -166,19 +166,21 @@ public:
         constexpr double far_above = 1.2;
         if (estimate.worst > far_above * target_) return found.take(estimate.worst, estimate.where);
         if (estimate.worst > 0) {
-            compare_with(of, nearby, {&estimate.where, 1}, Cones::close, found, {});
+            compare_with(of, nearby, {&estimate.where, 1}, Cones::close, found);
         }
         while (!others.empty() && !(found.departure.worst > target_)) {
             const std::size_t n = std::min<std::size_t>(others.size(), LeafPlaces::all);
-            compare_with(of, nearby, others.first(n), Cones::close, found, {});
+            compare_with(of, nearby, others.first(n), Cones::close, found);
             others = others.subspan(n);
         }
     }
 
     /// Hill climbs from the worst peak found so far, `thorough` from all, as long as they come near
-    /// enough to the target: the nearer, the longer they have taken. At places all around: what is
-    /// climbed has creases, where other cones begin to matter. They end where the target is farther
-    /// away than the places, and beside the summit of a climb before that is as high.
+    /// enough to the target: the nearer, the longer they have taken, and from further peaks nearer
+    /// from the start, for those that begin far below it hardly ever reach it. At places all
+    /// around: what is climbed has creases, where other cones begin to matter. They end where the
+    /// target is farther away than the places, and beside the summit of a climb before that is as
+    /// high.
     void climb(const LeafBox& of, NearbyField& nearby, double slope, bool thorough,
                Findings& found) const {
         constexpr int rounds = 16;
@@ -195,9 +197,11 @@ public:
             climbed.departure.take(start.delta, start.where);
             Departure& best = climbed.departure;
             Vector reach = 0.25 * of.box.edges();
+            const double near_from_start = &start == sorted.data() ? 0.5 : 0.65;
             for (int round = 0; round < (thorough ? rounds + further_rounds : rounds); ++round) {
                 if (found.departure.worst > target_) return;
-                const double near = std::min(0.5 * (1 + static_cast<double>(round) / rounds), 0.9);
+                const double near = std::clamp(0.5 * (1 + static_cast<double>(round) / rounds),
+                                               near_from_start, 0.9);
                 if (!(best.worst > near * target_)) break;
                 if (summits.has_beside(best.worst, best.where)) break;
                 if (round == rounds) reach = 0.1 * of.box.edges();
@@ -230,7 +234,7 @@ public:
                     }
                 }
                 const double before = best.worst;
-                compare_with(of, nearby, x, Cones::close, climbed, {});
+                compare_with(of, nearby, x, Cones::close, climbed);
                 if (!(best.worst > before)) reach *= round < rounds ? 0.6 : 0.8;
                 found.departure.take(best.worst, best.where);
             }
@@ -263,29 +267,34 @@ public:
 
 private:
     using Cones = NearbyField::Cones;
-    using LogRatios = std::array<double, LeafPlaces::all>;
+    // Metrics of the leaf and of the field.
+    struct Compared {
+        std::array<Metric, LeafPlaces::all> own, field;
+    };
 
     void compare_at(const LeafBox& of, NearbyField& nearby, const Range& range, Cones cones,
-                    Findings& found, LogRatios& log_ratio) const {
+                    Findings& found, Compared& compared) const {
         std::array<Point, LeafPlaces::all> x;
         const std::size_t n = range.to - range.from;
         for (std::size_t i = 0; i < n; ++i) x[i] = leaf_places().in(of.box, range.from + i);
-        compare_with(
-            of, nearby, std::span(x).first(n), cones, found,
-            Node::arity == 2 ? std::span(log_ratio).subspan(range.from) : std::span<double>());
+        compare_with(of, nearby, std::span(x).first(n), cones, found,
+                     std::span(compared.own).subspan(range.from, n),
+                     std::span(compared.field).subspan(range.from, n));
     }
 
-    // Writes, if there is room, the logarithms of how much longer the leaf's lengths are.
     void compare_with(const LeafBox& of, NearbyField& nearby, std::span<const Point> x, Cones cones,
-                      Findings& found, std::span<double> log_ratio) const {
-        std::array<Metric, LeafPlaces::all> own, field;
+                      Findings& found) const {
+        Compared compared;
+        compare_with(of, nearby, x, cones, found, std::span(compared.own).first(x.size()),
+                     std::span(compared.field).first(x.size()));
+    }
+
+    void compare_with(const LeafBox& of, NearbyField& nearby, std::span<const Point> x, Cones cones,
+                      Findings& found, std::span<Metric> own, std::span<Metric> field) const {
         values_in(of.leaf, x, own);
-        const double factor = nearby.evaluate_roughly(x, cones, std::span(field).first(x.size()));
+        const double factor = nearby.evaluate_roughly(x, cones, field);
         for (std::size_t i = 0; i < x.size(); ++i) {
             compare(own[i], field[i], factor, x[i], nearby, found);
-            if (!log_ratio.empty()) {
-                log_ratio[i] = std::log(mean_length(own[i]) / mean_length(field[i]));
-            }
         }
     }
 
@@ -326,22 +335,25 @@ private:
     // Of the largest factor of lengths in one direction.
     static double logarithm_of(double delta) { return std::log(largest_factor_along(delta)); }
 
-    static std::array<double, 3> sums_along(const LogRatios& departure) {
+    // Axes across which the field changes, or departs from the leaf's own, most.
+    static std::array<double, 3> sums_along(const Compared& compared) {
+        const auto& [own, field] = compared;
+        const auto departure = [&](std::size_t i) {
+            return std::log(largest_ratio(own[i], field[i]));
+        };
         std::array<double, 3> along{};
         for (std::size_t a = 0; a < 3; ++a) {
             if constexpr (Storage::cut_by == CutBy::corners) {
                 for (std::size_t c = 0; c < 8; ++c) {
-                    if ((c >> a & 1) != 0) continue;
-                    along[a] += std::abs(departure[c | std::size_t{1} << a] - departure[c]);
+                    const std::size_t opposite = c | std::size_t{1} << a;
+                    if (opposite != c)
+                        along[a] += std::log(largest_ratio(field[c], field[opposite]));
                 }
             } else if constexpr (Storage::cut_by == CutBy::faces) {
-                along[a] = std::abs(departure[LeafPlaces::low_face(a)]) +
-                           std::abs(departure[LeafPlaces::high_face(a)]);
+                along[a] = departure(LeafPlaces::low_face(a)) + departure(LeafPlaces::high_face(a));
             } else if constexpr (Storage::cut_by == CutBy::edges) {
                 for (std::size_t i = LeafPlaces::edges; i < LeafPlaces::all; ++i) {
-                    if (leaf_places().at[i][static_cast<Axis>(a)] == 0.5) {
-                        along[a] += std::abs(departure[i]);
-                    }
+                    if (leaf_places().at[i][static_cast<Axis>(a)] == 0.5) along[a] += departure(i);
                 }
             }
         }

@@ -66,7 +66,8 @@ public:
     /// `further` where it exceeds cones, and places around the tips of cones.
     Departure worst_in(const LeafBox& of, std::vector<Point>& further) const {
         if (!are_few()) return beside_[of.leaf];
-        cones_->append_around_tips(of.box, further);
+        // Corners are among the places of the leaf, and where it is trilinear, edges are searched.
+        cones_->append_around_tips(of.box, HasTrilinearLeaves<Storage> ? 1 : 2, further);
         Departure worst;
         if constexpr (HasTrilinearLeaves<Storage>) {
             worst = cones_->worst_in(of.box, at_corners(of.leaf), metric_in(of.leaf), &further);

@@ -43,8 +43,11 @@ public:
                        const MetricAt& metric_at, std::vector<Point>* contacts = nullptr) const;
 
     /// Appends places of the box around those that are nearest to sources much nearer than the box
-    /// is large, in their metrics: there the field bends within a small part of the box.
-    void append_around_tips(const Box& box, std::vector<Point>& places) const;
+    /// is large, in their metrics: there the field bends within a small part of the box. Each place
+    /// once, and none on more faces of the box than `most_faces`: 2 leaves out its corners, 1 also
+    /// its edges.
+    void append_around_tips(const Box& box, std::ptrdiff_t most_faces,
+                            std::vector<Point>& places) const;
 
 private:
     struct Part;
