@@ -429,7 +429,7 @@ CASE_OF_EACH(entry, vertex_trees(),
              "a tree of limited size comes nearer to the field with its size") {
     const std::vector<PointSource> sources = tensors(40);
     double before = std::numeric_limits<double>::infinity();
-    for (const std::size_t most : {40, 400}) {
+    for (const std::size_t most : {40, 300}) {
         CAPTURE(most);
         const auto space = editable(entry.make({.domain = domain}));
         AdaptationGoal goal{sources, nullptr, g, 0.02};

@@ -176,11 +176,10 @@ public:
     }
 
     /// Hill climbs from the worst peak found so far, `thorough` from all, as long as they come near
-    /// enough to the target: the nearer, the longer they have taken, and from further peaks nearer
-    /// from the start, for those that begin far below it hardly ever reach it. At places all
-    /// around: what is climbed has creases, where other cones begin to matter. They end where the
-    /// target is farther away than the places, and beside the summit of a climb before that is as
-    /// high.
+    /// enough to the target: the nearer, the longer they have taken, in the first rounds most of
+    /// all, for most climbs from far below lead nowhere. At places all around: what is climbed has
+    /// creases, where other cones begin to matter. They end where the target is farther away than
+    /// the places, and beside the summit of a climb before that is as high.
     void climb(const LeafBox& of, NearbyField& nearby, double slope, bool thorough,
                Findings& found) const {
         constexpr int rounds = 16;
@@ -197,11 +196,11 @@ public:
             climbed.departure.take(start.delta, start.where);
             Departure& best = climbed.departure;
             Vector reach = 0.25 * of.box.edges();
-            const double near_from_start = &start == sorted.data() ? 0.5 : 0.65;
             for (int round = 0; round < (thorough ? rounds + further_rounds : rounds); ++round) {
                 if (found.departure.worst > target_) return;
-                const double near = std::clamp(0.5 * (1 + static_cast<double>(round) / rounds),
-                                               near_from_start, 0.9);
+                const double near =
+                    std::max(std::min(0.5 + 0.05 * round, 0.65),
+                             std::min(0.5 * (1 + static_cast<double>(round) / rounds), 0.9));
                 if (!(best.worst > near * target_)) break;
                 if (summits.has_beside(best.worst, best.where)) break;
                 if (round == rounds) reach = 0.1 * of.box.edges();
