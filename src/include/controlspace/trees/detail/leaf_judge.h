@@ -337,16 +337,16 @@ private:
     // Axes across which the field changes, or departs from the leaf's own, most.
     static std::array<double, 3> sums_along(const Compared& compared) {
         const auto& [own, field] = compared;
-        const auto departure = [&](std::size_t i) {
-            return std::log(largest_ratio(own[i], field[i]));
+        const auto change = [](const Metric& from, const Metric& to) {
+            return std::log(largest_ratio(from, to));
         };
+        const auto departure = [&](std::size_t i) { return change(own[i], field[i]); };
         std::array<double, 3> along{};
         for (std::size_t a = 0; a < 3; ++a) {
             if constexpr (Storage::cut_by == CutBy::corners) {
                 for (std::size_t c = 0; c < 8; ++c) {
-                    const std::size_t opposite = c | std::size_t{1} << a;
-                    if (opposite != c)
-                        along[a] += std::log(largest_ratio(field[c], field[opposite]));
+                    if ((c >> a & 1) != 0) continue;
+                    along[a] += change(field[c], field[c | std::size_t{1} << a]);
                 }
             } else if constexpr (Storage::cut_by == CutBy::faces) {
                 along[a] = departure(LeafPlaces::low_face(a)) + departure(LeafPlaces::high_face(a));
