@@ -61,6 +61,7 @@ GoalField::~GoalField() = default;
 
 bool GoalField::has_ranges() const { return continuous_ == nullptr && cones_->is_isotropic(); }
 bool GoalField::is_order_free() const { return cones_->has_starts(); }
+bool GoalField::jumps() const { return !cones_->is_isotropic() && !is_order_free(); }
 std::span<const std::uint32_t> GoalField::kept() const { return cones_->isotropic().kept(); }
 double GoalField::negligible() const { return negligible_for(target_); }
 

@@ -52,6 +52,8 @@ public:
     const ConeField& cones() const { return *cones_; }
     /// Whether tensors are intersected without an order.
     bool is_order_free() const;
+    /// Whether it may, where tensors are intersected in turn.
+    bool jumps() const;
     /// Whether there are sources, and so few that the field can be evaluated closely everywhere.
     bool has_few_sources() const { return has_sources_up_to(few_sources); }
     bool has_sources_up_to(std::size_t most) const {

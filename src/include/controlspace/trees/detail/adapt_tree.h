@@ -65,8 +65,11 @@ public:
         // A peak is rarely found to its very top.
         const bool are_few = field_.has_few_sources();
         const double share_where_sampled = are_few ? 0.96 : 0.99;
-        is_thorough_ =
-            proved && !shows_bounds() && (are_few || field_.is_order_free() || field_.has_ranges());
+        // Leaves of kd-trees may be long along axes where a continuous field hardly changes; those
+        // of octrees are small, and many.
+        const bool is_known = field_.is_order_free() || field_.has_ranges();
+        is_thorough_ = proved && !shows_bounds() &&
+                       (are_few || is_known || (Node::arity == 2 && !field_.jumps()));
         if (is_thorough_) aim_ = share_where_sampled * field_.target();
         states_.assign(tree_.leaves(), LeafState::fresh);
         departures_.resize(tree_.leaves());
