@@ -8,7 +8,7 @@
 #include "controlspace/space/catalogue.h"
 
 // CASE_OF_EACH(entry, tree_catalogue(), "what holds") { ... entry ... } is a test case for each
-// item of the range, called after it: "what holds: K_L", "what holds: K_V", and so on. Each is
+// item of the range, called after it: "what holds - K_L", "what holds - K_V", and so on. Each is
 // listed, run and failed by itself. Another argument gives Catch2's tags.
 
 namespace controlspace {
@@ -24,7 +24,7 @@ public:
     CasesOfEach(Body body, const Catch::SourceLineInfo& line, const Range& items,
                 const std::string& what, const std::string& tags = "") {
         for (const Item& item : items) {
-            const std::string name = what + ": " + case_name(item);
+            const std::string name = what + " - " + case_name(item);
             Catch::AutoReg(new Case(body, item), line, Catch::StringRef(), {name, tags});
         }
     }

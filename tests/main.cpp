@@ -1,16 +1,9 @@
 #define CATCH_CONFIG_RUNNER
 #include <catch2/catch.hpp>
-#include <iostream>
 
-// CTest splits lists at semicolons, and would not run a test with one in its name. Listed in place
-// of all tests of the program, the complaint is a test that fails.
+// As -w NoAssertions on each command line: a test that asserts nothing cannot fail, and so fails.
 int main(int argc, char** argv) {
-    for (const auto& test : Catch::getRegistryHub().getTestCaseRegistry().getAllTests()) {
-        std::string name = test.name;
-        if (name.find(';') == std::string::npos) continue;
-        std::replace(name.begin(), name.end(), ';', ' ');
-        std::cout << "no semicolon in the name of a test: " << name << '\n';
-        return 1;
-    }
-    return Catch::Session().run(argc, argv);
+    Catch::Session session;
+    session.configData().warnings = Catch::WarnAbout::NoAssertions;
+    return session.run(argc, argv);
 }

@@ -9,8 +9,7 @@
 
 using Catch::Matchers::Contains;
 
-namespace controlspace {
-
+namespace controlspace::direct_test {
 namespace {
 
 SpaceOptions with_ratio(double ratio) {
@@ -158,4 +157,4 @@ TEST_CASE("direct refuses a ratio that is none") {
     }
 }
 
-}  // namespace controlspace
+}  // namespace controlspace::direct_test

@@ -4,7 +4,7 @@
 #include "counting_allocator.h"
 #include "editable_space.h"
 
-namespace controlspace {
+namespace controlspace::footprint_test {
 namespace {
 
 const CatalogueEntry& any_grid() {
@@ -55,4 +55,4 @@ TEST_CASE("a grid and its gradation stay below the memory cap") {
     CHECK_THAT(footprint.remark, Catch::Contains("; 4000 x 2560 x 1780 would need"));
 }
 
-}  // namespace controlspace
+}  // namespace controlspace::footprint_test

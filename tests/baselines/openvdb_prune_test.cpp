@@ -4,7 +4,7 @@
 
 #include "baselines/openvdb/prune.h"
 
-namespace controlspace {
+namespace controlspace::openvdb_prune_test {
 
 TEST_CASE("leaves that are alike become tiles of the metric that all of them allow") {
     openvdb::tree::Tree4<VdbMetric, 3, 3, 2>::Type tree(VdbMetric(0));
@@ -45,4 +45,4 @@ TEST_CASE("the arithmetic of OpenVDB's values is entry by entry") {
     CHECK(a > VdbMetric(1));
 }
 
-}  // namespace controlspace
+}  // namespace controlspace::openvdb_prune_test

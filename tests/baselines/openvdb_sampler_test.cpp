@@ -5,7 +5,7 @@
 #include "baselines/fixtures.h"
 #include "baselines/openvdb/openvdb_value.h"
 
-namespace controlspace {
+namespace controlspace::openvdb_sampler_test {
 
 TEST_CASE("the trilinear grids answer as OpenVDB's own BoxSampler does") {
     const SpaceOptions options = small_grid();
@@ -30,4 +30,4 @@ TEST_CASE("the trilinear grids answer as OpenVDB's own BoxSampler does") {
     }
 }
 
-}  // namespace controlspace
+}  // namespace controlspace::openvdb_sampler_test

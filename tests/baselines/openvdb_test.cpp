@@ -7,7 +7,7 @@
 #include "counting_allocator.h"
 #include "editable_space.h"
 
-namespace controlspace {
+namespace controlspace::openvdb_test {
 
 TEST_CASE("OpenVDB and the uniform grid agree to the bit") {
     const std::string suffix = GENERATE("-nearest", "-trilinear");
@@ -143,4 +143,4 @@ TEST_CASE("pruning never makes a metric larger, nor smaller by more than its tol
     CHECK(at_nodes(*pruned) == uneven);
 }
 
-}  // namespace controlspace
+}  // namespace controlspace::openvdb_test

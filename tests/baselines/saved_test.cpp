@@ -7,7 +7,7 @@
 
 // Files of all structures, over domains and sources that leave most of a structure empty.
 
-namespace controlspace {
+namespace controlspace::saved_test {
 namespace {
 
 struct Workload {
@@ -51,7 +51,10 @@ TEST_CASE("every structure loads again from tiny, thin, flat and nearly empty do
     const auto entry = GENERATE(from_range(structures().begin(), structures().end()));
     const Workload work = GENERATE(from_range(workloads()));
     INFO(entry.id << ", " << work.name);
-    if (work.options.takes_later_sources && entry.id == "openvdb-vec3s-trilinear") return;
+    if (work.options.takes_later_sources && entry.id == "openvdb-vec3s-trilinear") {
+        CHECK_THROWS_AS(entry.make(work.options), InputError);
+        return;
+    }
     const auto builder = entry.make(work.options);
     builder->insert(work.sources);
     builder->grade({});
@@ -71,4 +74,4 @@ TEST_CASE("every structure loads again from tiny, thin, flat and nearly empty do
     CHECK(saved.space->footprint().bytes_total() <= space->footprint().bytes_total());
 }
 
-}  // namespace controlspace
+}  // namespace controlspace::saved_test

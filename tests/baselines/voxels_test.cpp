@@ -5,7 +5,7 @@
 
 #include "controlspace/error.h"
 
-namespace controlspace {
+namespace controlspace::voxels_test {
 namespace {
 
 // What a flat array of metrics takes; with gradation's copy, index and flag 101 bytes a node.
@@ -129,4 +129,4 @@ TEST_CASE("a grid refuses options that give it no voxels") {
     CHECK_THROWS_AS(choose_voxels(options, Interpolation::nearest, flat_bytes), InputError);
 }
 
-}  // namespace controlspace
+}  // namespace controlspace::voxels_test

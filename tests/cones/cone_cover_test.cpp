@@ -12,8 +12,7 @@
 #include "controlspace/sources/sampled_surfaces.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::cone_cover_test {
 namespace {
 
 constexpr double g = 1.25;
@@ -119,3 +118,5 @@ TEST_CASE("a box that more sources govern than there is room for is not covered"
     CHECK(field.isotropic().cover({Point::Constant(0), Point::Constant(1)}, 0.1, cover, hint));
     CHECK(cover.sources().size() == 8);
 }
+
+}  // namespace controlspace::cone_cover_test

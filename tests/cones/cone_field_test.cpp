@@ -12,8 +12,7 @@
 #include "controlspace/sources/sampled_surfaces.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::cone_field_test {
 namespace {
 
 constexpr double g = 1.25;
@@ -346,3 +345,5 @@ TEST_CASE("A spatial order names every point once, and neighbours together") {
     points[11] = Point::Constant(std::numeric_limits<double>::infinity());
     CHECK(spatial_order(points).size() == points.size());
 }
+
+}  // namespace controlspace::cone_field_test

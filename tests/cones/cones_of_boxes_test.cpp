@@ -8,8 +8,7 @@
 #include "controlspace/sources/sampled_surfaces.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::cones_of_boxes_test {
 namespace {
 
 constexpr double g = 1.25;
@@ -157,3 +156,5 @@ TEST_CASE("a source is found where it is below a length, and nowhere else") {
         CHECK(own == Approx(exact).epsilon(1e-12));
     }
 }
+
+}  // namespace controlspace::cones_of_boxes_test

@@ -7,8 +7,7 @@
 #include "controlspace/measure/reference.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::laws_test {
 namespace {
 
 constexpr double g = 1.25;
@@ -103,3 +102,5 @@ TEST_CASE("With axes renamed, the exact field has renamed axes") {
                 (anisotropy > 1 ? 1e-10 : 1e-14));
     }
 }
+
+}  // namespace controlspace::laws_test

@@ -5,7 +5,7 @@
 
 #include "metric/draw.h"
 
-using namespace controlspace;
+namespace controlspace::length_queue_test {
 
 TEST_CASE("What waits comes out bucket by bucket, all of it and in their order") {
     Draw draw(1);
@@ -59,3 +59,5 @@ TEST_CASE("Of equal lengths the lower rank comes first") {
     CHECK_FALSE(a < LengthQueue::Waiting{1, 2, 0, 0});
     CHECK(a < LengthQueue::Waiting{2, 2, 0, 0});
 }
+
+}  // namespace controlspace::length_queue_test

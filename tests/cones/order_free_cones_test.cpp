@@ -15,8 +15,7 @@
 #include "metric/draw.h"
 #include "metric/largest_within.h"
 
-using namespace controlspace;
-
+namespace controlspace::order_free_cones_test {
 namespace {
 
 constexpr double g = 1.25;
@@ -366,3 +365,5 @@ TEST_CASE("order-free cones: sources of too large an anisotropy are refused") {
     CHECK_THROWS_WITH(OrderFreeCones(sources, g, wide, 1e-2),
                       Catch::Contains("source 1") && Catch::Contains("anisotropy"));
 }
+
+}  // namespace controlspace::order_free_cones_test

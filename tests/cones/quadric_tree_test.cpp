@@ -11,8 +11,7 @@
 #include "metric/draw.h"
 #include "metric/largest_within.h"
 
-using namespace controlspace;
-
+namespace controlspace::quadric_tree_test {
 namespace {
 
 using Sources = std::vector<PointSource>;
@@ -191,3 +190,5 @@ TEST_CASE("quadric tree: nothing is passed over that has an exceeded cone") {
         if (anisotropy < 1e3) CHECK(idle == 0);
     }
 }
+
+}  // namespace controlspace::quadric_tree_test

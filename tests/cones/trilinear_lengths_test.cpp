@@ -9,8 +9,7 @@
 #include "cones/isotropic_cones.h"
 #include "controlspace/measure/access_time.h"
 
-using namespace controlspace;
-
+namespace controlspace::trilinear_lengths_test {
 namespace {
 
 Box domain_at(const Point& origin) { return {origin + Point(-1, 2, 0.5), origin + Point(1, 3, 4)}; }
@@ -147,3 +146,5 @@ TEST_CASE("what rounding hides is not shown") {
     REQUIRE(doubt);
     CHECK_FALSE(doubt->is_certain);
 }
+
+}  // namespace controlspace::trilinear_lengths_test

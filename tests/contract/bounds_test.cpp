@@ -9,7 +9,8 @@
 #include "controlspace/metric/intersection.h"
 #include "editable_space.h"
 
-using namespace controlspace;
+namespace controlspace::bounds_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -49,9 +50,8 @@ void check_between_nodes(const ControlSpace& space, int order, const Work& work)
     CHECK(worst <= 1 + 1e-6);
 }
 
-bool blends_values(const Structure& structure) {
-    return splits_in_the_middle(structure) && keeps_values(*structure.entry) &&
-           !is_direct(*structure.entry);
+bool blends_values(const CatalogueEntry& structure) {
+    return does_not_round(structure) && keeps_values(structure) && !is_direct(structure);
 }
 
 }  // namespace
@@ -62,9 +62,9 @@ STRUCTURE_CASE(
     const Work work = GENERATE(anisotropic_sphere(), anisotropic_oblong_box());
     CAPTURE(work.name);
     const auto space = work.graded(structure, {.ratio = g});
-    check_between_nodes(*space, structure.entry->order, work);
+    check_between_nodes(*space, structure.order, work);
     space->adapt({.sources = work.sources, .continuous = nullptr, .ratio = g, .target = 1});
-    check_between_nodes(*space, structure.entry->order, work);
+    check_between_nodes(*space, structure.order, work);
 }
 
 STRUCTURE_CASE(every_structure, "sampled lengths are the smallest that the metrics request") {
@@ -86,9 +86,9 @@ STRUCTURE_CASE(every_structure, "sampled lengths are the smallest that the metri
 
 STRUCTURE_CASE(every_structure, "unknown rules and laws are refused, and change nothing") {
     const Work work = isotropic_sphere();
-    SpaceOptions options = work.options(structure.split);
+    SpaceOptions options = work.options();
     options.split = static_cast<SplitRule>(77);
-    CHECK_THROWS_WITH(structure.entry->make(options), Contains("split is 77"));
+    CHECK_THROWS_WITH(structure.make(options), Contains("split is 77"));
     const auto space = work.inserted(structure);
     const std::vector<Point> x = random_points(work.domain, 50, 1);
     const std::vector<Metric> before = answers(*space, x);
@@ -100,3 +100,5 @@ STRUCTURE_CASE(every_structure, "unknown rules and laws are refused, and change 
                       Contains("neighbourhood is 77"));
     CHECK(answers(*space, x) == before);
 }
+
+}  // namespace controlspace::bounds_test

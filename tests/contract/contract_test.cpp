@@ -14,7 +14,8 @@
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"
 
-using namespace controlspace;
+namespace controlspace::contract_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -26,11 +27,6 @@ Work any_work() {
                     anisotropic_oblong_box(), flat_box(), anisotropic_flat_box());
 }
 Work any_isotropic_work() { return GENERATE(isotropic_sphere(), oblong_box(), flat_box()); }
-
-// How much larger `held` is than `requested` allows: δ to what it should at most be.
-double coarser_than_requested(const Metric& held, const Metric& requested) {
-    return nonconformity(held, intersection(held, requested));
-}
 
 // Length of a path along the axes by `v`, in metric `m`: no path through faces is shorter than the
 // straight line, and this one always exists.
@@ -55,26 +51,11 @@ STRUCTURE_CASE(does_not_round,
                "a new control space holds H I everywhere, H half of the domain's diagonal") {
     const Work work = any_isotropic_work();
     CAPTURE(work.name);
-    const auto space = editable(structure.entry->make(work.options(structure.split)));
+    const auto space = editable(structure.make(work.options()));
     for (const Metric& m : answers(*space, random_points(work.domain, 100, 1))) {
         CHECK(nonconformity(m, Metric::isotropic(work.domain.half_diagonal())) < 1e-12);
     }
     CHECK(space->domain() == work.domain);
-}
-
-STRUCTURE_CASE(does_not_round,
-               "answers are positive definite everywhere, before and after gradation") {
-    const Work work = any_work();
-    CAPTURE(work.name);
-    const std::vector<Point> x = random_points(work.domain, 3000, 2);
-    const auto space = work.inserted(structure);
-    const auto all_positive = [&] {
-        const std::vector<Metric> m = answers(*space, x);
-        return std::all_of(m.begin(), m.end(), is_positive_definite);
-    };
-    CHECK(all_positive());
-    space->grade({});
-    CHECK(all_positive());
 }
 
 STRUCTURE_CASE(every_structure,
@@ -85,8 +66,8 @@ STRUCTURE_CASE(every_structure,
     const auto sources = std::span(work.sources).first(half);
     const auto more = std::span(work.sources).subspan(half);
     const SourceColumns columns = columns_of(sources);
-    const auto by_columns = structure.entry->make(work.options(structure.split));
-    const auto by_array = structure.entry->make(work.options(structure.split));
+    const auto by_columns = structure.make(work.options());
+    const auto by_array = structure.make(work.options());
     const auto require_same = [&] {
         const std::vector<Point> x = random_points(work.domain, 1000, 3);
         CHECK(answers(*by_columns->build(), x) == answers(*by_array->build(), x));
@@ -111,55 +92,12 @@ STRUCTURE_CASE(every_structure,
 }
 
 STRUCTURE_CASE(does_not_round,
-               "at its place a source is met: never coarser than requested by epsilon") {
-    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere(), oblong_box());
-    CAPTURE(work.name);
-    const auto space = work.graded(structure);
-    double worst = 0;
-    for (const PointSource& source : work.sources) {
-        worst = std::max(worst,
-                         coarser_than_requested(sample_at(*space, source.position), source.metric));
-    }
-    CHECK(worst < 0.2);
-}
-
-STRUCTURE_CASE(does_not_round,
-               "gradation from node to node only makes smaller, and holds afterwards") {
-    const auto law = GENERATE(GradationLaw::cone, GradationLaw::mean_length);
-    const Work work = any_work();
-    CAPTURE(work.name);
-    const std::vector<Point> x = random_points(work.domain, 3000, 10);
-    const auto space = work.inserted(structure);
-    const std::vector<Metric> before = answers(*space, x);
-    const GradationReport report =
-        space->grade({.law = law, .schedule = GradationSchedule::queue, .ratio = g});
-    // Three sources cannot stand for all tensors that cut a leaf.
-    const bool holds = keeps_values(*structure.entry) || work.isotropic();
-    if (holds) CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
-    for (const auto neighbourhood : {Neighbourhood::faces, Neighbourhood::all}) {
-        const ControlNodes nodes = space->control_nodes(neighbourhood);
-        CHECK(space->largest_gradation(neighbourhood, law) ==
-              largest_gradation(nodes.graph, nodes.metrics, law));
-    }
-    const std::vector<Metric> after = answers(*space, x);
-    std::size_t larger = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        larger += !is_within(after[i], 1 + 1e-9, before[i]);
-    }
-    // Quadratic functions undershoot where a neighbour is far larger, which gradation ends; and
-    // blends of smaller tensors are smaller as matrices, not always along each direction.
-    const int order = structure.entry->order;
-    if (holds && (order == 0 || (order == 1 && work.isotropic()))) CHECK(larger == 0);
-    CHECK((after != before) != is_direct(*structure.entry));
-}
-
-STRUCTURE_CASE(does_not_round,
                "with all neighbours, no node is larger than with those across faces alone") {
     const Work work = isotropic_sphere();
     CAPTURE(work.name);
-    SpaceOptions options = work.options(structure.split);
+    SpaceOptions options = work.options();
     const auto graded = [&](Neighbourhood neighbourhood) {
-        auto space = editable(structure.entry->make(options));
+        auto space = editable(structure.make(options));
         space->insert(work.sources);
         const auto report = space->grade(
             {.schedule = GradationSchedule::queue, .ratio = g, .neighbourhood = neighbourhood});
@@ -169,7 +107,7 @@ STRUCTURE_CASE(does_not_round,
     const ControlNodes few = graded(Neighbourhood::faces)->control_nodes(Neighbourhood::all);
     const ControlNodes all = graded(Neighbourhood::all)->control_nodes(Neighbourhood::all);
     REQUIRE(few.metrics.size() == all.metrics.size());
-    if (structure.entry->has<KeptSources>()) {
+    if (structure.has<KeptSources>()) {
         CHECK(few.metrics == all.metrics);
         return;
     }
@@ -192,7 +130,7 @@ STRUCTURE_CASE(does_not_round,
     const Work work = any_isotropic_work();
     CAPTURE(work.name);
     const std::vector<Point> x = random_points(work.domain, 400, 3);
-    const auto space = editable(structure.entry->make(work.options(structure.split)));
+    const auto space = editable(structure.make(work.options()));
     std::vector<PointSource> inserted;
     for (const PointSource& source : work.sources) {
         if (space->insert(source) == Insertion::inserted) inserted.push_back(source);
@@ -216,10 +154,9 @@ STRUCTURE_CASE(does_not_round,
     CHECK(worst <= 1);
 }
 
-STRUCTURE_CASE(does_not_round, "a control node's own metric at its own place") {
+STRUCTURE_CASE(stores_a_field, "a control node's own metric at its own place") {
     const Work work = any_isotropic_work();
     CAPTURE(work.name);
-    if (is_direct(*structure.entry)) return;
     const auto space = work.graded(structure);
     const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
     std::visit(
@@ -229,7 +166,7 @@ STRUCTURE_CASE(does_not_round, "a control node's own metric at its own place") {
             for (NodeIndex i = 0; i < graph.size(); i += 5) {
                 const Point p = graph.position(i);
                 // A hanging vertex counts in the finer elements at it only.
-                if (structure.entry->order == 1 &&
+                if (structure.order == 1 &&
                     !is_corner(space->cell_at(p).value(), p, rounding(work)))
                     continue;
                 const double delta = nonconformity(sample_at(*space, p), nodes.metrics[i]);
@@ -252,7 +189,7 @@ STRUCTURE_CASE(does_not_round,
     const std::vector<Metric> before = answers(*space, x);
     ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
     const bool has_nodes = dynamic_cast<NodeBuilder*>(&space->builder()) != nullptr;
-    REQUIRE(has_nodes == structure.entry->has<MetricNodes>());
+    REQUIRE(has_nodes == structure.has<MetricNodes>());
     if (!has_nodes) return;
     space->assign(nodes.metrics);
     CHECK(answers(*space, x) == before);
@@ -320,37 +257,22 @@ STRUCTURE_CASE(does_not_round,
     CAPTURE(work.name);
     const std::vector<Point> x = random_points(work.domain, 2000, 8);
     const auto first = work.graded(structure);
-    const auto second = editable(structure.entry->make(work.options(structure.split)));
+    const auto second = editable(structure.make(work.options()));
     for (const PointSource& source : work.sources) second->insert(source);
     second->grade({});
     CHECK(checksum(answers(*first, x)) == checksum(answers(*second, x)));
 }
 
-STRUCTURE_CASE(does_not_round,
-               "elements hold the places that they answer for, and lie in the domain") {
-    const Work work = any_isotropic_work();
-    CAPTURE(work.name);
-    const auto space = work.inserted(structure);
-    for (const Point& x : random_points(work.domain, 300, 9)) {
-        const Box element = space->cell_at(x).value();
-        CHECK((x.array() >= element.low.array() - rounding(work)).all());
-        CHECK((x.array() <= element.high.array() + rounding(work)).all());
-        // Edges of no length are those of a flat domain alone.
-        CHECK(((element.edges().array() > 0) == (work.domain.edges().array() > 0)).all());
-        CHECK((element.low.array() >= work.domain.low.array() - rounding(work)).all());
-        CHECK((element.high.array() <= work.domain.high.array() + rounding(work)).all());
-    }
-}
-
 STRUCTURE_CASE(does_not_round, "sources of no use are not sources: refused by every structure") {
     const Work work = any_isotropic_work();
     CAPTURE(work.name);
-    const auto space = editable(structure.entry->make(work.options(structure.split)));
+    const auto space = editable(structure.make(work.options()));
     CHECK_THROWS_WITH(space->insert({work.domain.high + Vector(0.5, 0, 0), {}}),
                       Catch::Contains("outside"));
     CHECK_THROWS_WITH(space->insert({work.domain.centre(), {1, 1, 1, 3, 0, 0}}),
                       Catch::Contains("not positive definite"));
     CHECK(answers(*space, random_points(work.domain, 10, 1)) ==
-          answers(*editable(structure.entry->make(work.options(structure.split))),
-                  random_points(work.domain, 10, 1)));
+          answers(*editable(structure.make(work.options())), random_points(work.domain, 10, 1)));
 }
+
+}  // namespace controlspace::contract_test

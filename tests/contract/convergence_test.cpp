@@ -6,8 +6,7 @@
 #include "controlspace/measure/access_time.h"
 #include "editable_space.h"
 
-using namespace controlspace;
-
+namespace controlspace::convergence_test {
 namespace {
 
 double field(const Point& x) {
@@ -31,10 +30,9 @@ std::vector<PointSource> lattice(int n) {
 }
 
 // Largest error with the field's values at the control nodes of n³ cells.
-double error(const Structure& structure, int n) {
+double error(const CatalogueEntry& structure, int n) {
     const Box domain{Point::Zero(), Point::Ones()};
-    const auto space = editable(structure.entry->make(
-        {.domain = domain, .split = structure.split, .finest_length = 1.0 / n}));
+    const auto space = editable(structure.make({.domain = domain, .finest_length = 1.0 / n}));
     space->insert(lattice(n));
     const ControlNodes nodes = space->control_nodes(Neighbourhood::faces);
     std::vector<Metric> values;
@@ -50,9 +48,9 @@ double error(const Structure& structure, int n) {
     return worst;
 }
 
-bool has_smooth_nodes(const Structure& structure) {
-    return splits_in_the_middle(structure) && structure.entry->has<MetricNodes>() &&
-           !structure.entry->has<KeptSources>();
+bool has_smooth_nodes(const CatalogueEntry& structure) {
+    return does_not_round(structure) && structure.has<MetricNodes>() &&
+           !structure.has<KeptSources>();
 }
 
 }  // namespace
@@ -63,7 +61,9 @@ STRUCTURE_CASE(has_smooth_nodes,
     CAPTURE(rate);
     // K_Li's values on edges are means of two faces: it does not reproduce linear fields, and
     // converges little faster than a constant.
-    const int order = structure.entry->order;
+    const int order = structure.order;
     CHECK(rate > (order == 1 ? 1.8 : 0.9));
     CHECK(rate < (order == 0 ? 1.2 : order == 1 ? 2.2 : 1.5));
 }
+
+}  // namespace controlspace::convergence_test

@@ -9,8 +9,7 @@
 #include "controlspace/measure/access_time.h"
 #include "editable_space.h"
 
-using namespace controlspace;
-
+namespace controlspace::cursor_test {
 namespace {
 
 // Walks in short and long steps, which leave the domain now and then; corners, middles of edges and
@@ -70,7 +69,7 @@ STRUCTURE_CASE(every_structure, "a cursor answers as the space, in its compact f
     CAPTURE(work.name);
     const auto space = work.graded(structure);
     require_same(space->built());
-    if (!structure.entry->has<CompactForm>()) return;
+    if (!structure.has<CompactForm>()) return;
     require_same(*space->compact(Precision::doubles));
     require_same(*space->compact(Precision::floats));
     if (work.isotropic()) require_same(*space->compact(Precision::shorts));
@@ -78,13 +77,13 @@ STRUCTURE_CASE(every_structure, "a cursor answers as the space, in its compact f
 
 TEST_CASE("a space that comes to lie where another one lay is asked anew, in every thread",
           "[threads]") {
-    const Structure structure =
-        structures_that([](const Structure& s) { return s.entry->id == "K_oV"; }).front();
+    const CatalogueEntry structure =
+        structures_that([](const CatalogueEntry& s) { return s.id == "K_oV"; }).front();
     const Work work = isotropic_sphere();
     const auto ask = [&] {
-        const auto fine = editable(structure.entry->make(work.options(structure.split)));
+        const auto fine = editable(structure.make(work.options()));
         fine->insert({Point::Zero(), Metric::isotropic(0.1)});
-        const auto coarse = editable(structure.entry->make(work.options(structure.split)));
+        const auto coarse = editable(structure.make(work.options()));
         // More at a time than a thread keeps.
         std::vector<std::unique_ptr<ControlSpace>> spaces;
         std::vector<ThreadCursor> cursors;
@@ -112,3 +111,5 @@ TEST_CASE("a space that comes to lie where another one lay is asked anew, in eve
     for (std::thread& thread : threads) thread.join();
     CHECK(std::ranges::count(wrong, 0u) == 4);
 }
+
+}  // namespace controlspace::cursor_test

@@ -6,8 +6,7 @@
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/study/run.h"
 
-using namespace controlspace;
-
+namespace controlspace::equal_setting_test {
 namespace {
 
 std::vector<Row> rows_of(const Run& run) {
@@ -50,3 +49,5 @@ TEST_CASE("every grid keeps to a memory, and uses it") {
         CHECK(row.number("bytes_total") > 4'000'000);
     }
 }
+
+}  // namespace controlspace::equal_setting_test

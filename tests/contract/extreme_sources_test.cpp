@@ -10,8 +10,7 @@
 #include "editable_space.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::extreme_sources_test {
 namespace {
 
 constexpr double g = 1.25;
@@ -85,11 +84,11 @@ double least_length(const Work& work) {
 }
 
 /// Deep enough for lengths of 1e-12 (2^42 of them in the domain), and grids of 17^3 cells.
-std::unique_ptr<EditableSpace> inserted(const Work& work, const Structure& structure) {
-    SpaceOptions options = work.options(structure.split);
+std::unique_ptr<EditableSpace> inserted(const Work& work, const CatalogueEntry& structure) {
+    SpaceOptions options = work.options();
     options.octree_depth = 44;
-    if (structure.entry->has<VoxelSize>()) options.voxel = 0.12;
-    auto space = editable(structure.entry->make(options));
+    if (structure.has<VoxelSize>()) options.voxel = 0.12;
+    auto space = editable(structure.make(options));
     space->insert(work.sources);
     return space;
 }
@@ -159,7 +158,7 @@ STRUCTURE_CASE(does_not_round,
     const double smallest = least_length(work);
     const double largest = work.domain.half_diagonal();
     CAPTURE(work.name);
-    const int order = structure.entry->order;
+    const int order = structure.order;
     const auto space = inserted(work, structure);
     CHECK(bad_answers(*space, x, smallest, largest, order) == 0);
     CHECK(worst_at_sources(*space, work.sources, order) < 0.2);
@@ -168,7 +167,7 @@ STRUCTURE_CASE(does_not_round,
     CHECK(bad_answers(*space, x, smallest, largest, order) == 0);
     CHECK(worst_at_sources(*space, work.sources, order) < 0.2);
     // Three sources cannot stand for all tensors that cut a leaf.
-    if (keeps_values(*structure.entry) || work.isotropic()) {
+    if (keeps_values(structure) || work.isotropic()) {
         CHECK(report.largest_ratio_left <= g * (1 + 1e-4));
     }
 
@@ -185,5 +184,7 @@ STRUCTURE_CASE(does_not_round,
     CAPTURE(work.name);
     const auto space = inserted(work, structure);
     space->grade({.ratio = g});
-    CHECK(worst_at_sources(*space, work.sources, structure.entry->order, by_exact_nodes) < 0.2);
+    CHECK(worst_at_sources(*space, work.sources, structure.order, by_exact_nodes) < 0.2);
 }
+
+}  // namespace controlspace::extreme_sources_test

@@ -14,7 +14,8 @@
 #include "editable_space.h"
 #include "scratch_directory.h"
 
-using namespace controlspace;
+namespace controlspace::flat_domain_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -44,18 +45,18 @@ Work turned(Work work, int turns) {
     return work;
 }
 
-bool is_octree(const Structure& structure) {
-    return structure.entry->id.starts_with("K_o") && does_not_round(structure);
+bool is_octree(const CatalogueEntry& structure) {
+    return structure.id.starts_with("K_o") && does_not_round(structure);
 }
 
 }  // namespace
 
-STRUCTURE_CASE(splits_in_the_middle, "adapted on a plane, the target holds all over it") {
+STRUCTURE_CASE(does_not_round, "adapted on a plane, the target holds all over it") {
     constexpr double target = 0.1;
     const Work work = turned(flat_box(), GENERATE(0, 1, 2));
-    const auto space = editable(structure.entry->make(work.options(structure.split)));
+    const auto space = editable(structure.make(work.options()));
     const AdaptationReport report = space->adapt(goal_of(work, target));
-    const bool is_grid = structure.entry->has<VoxelSize>();
+    const bool is_grid = structure.has<VoxelSize>();
     CHECK((report.met || is_grid));
     if (!report.met) return;
     double worst = 0;
@@ -69,7 +70,7 @@ STRUCTURE_CASE(splits_in_the_middle, "adapted on a plane, the target holds all o
 
 STRUCTURE_CASE(is_octree, "trees reach their target on a plane, as quadtrees") {
     const Work work = flat_box();
-    const auto space = editable(structure.entry->make(work.options(structure.split)));
+    const auto space = editable(structure.make(work.options()));
     CHECK(space->adapt(goal_of(work, 0.1)).met);
     const Footprint footprint = space->footprint();
     CHECK(footprint.cells > 1);
@@ -87,14 +88,14 @@ STRUCTURE_CASE(is_octree, "trees reach their target on a plane, as quadtrees") {
 STRUCTURE_CASE(is_octree, "in thin boxes an octree has a few times the leaves of the kd-tree") {
     const Vector edges = GENERATE(Vector(1, 1, 0.001), Vector(100, 0.1, 0.1), Vector(0.01, 3, 1));
     const Work work = thin_box(edges);
-    std::string of_kd = structure.entry->id == "K_oLB" ? "K_L" : structure.entry->id;
+    std::string of_kd = structure.id == "K_oLB" ? "K_L" : structure.id;
     std::erase(of_kd, 'o');
     const CatalogueEntry* kd = find_entry(structures(), of_kd);
     REQUIRE(kd != nullptr);
     CAPTURE(edges.transpose(), of_kd);
     constexpr double most = 8;  // leaves of a cut in three axes
     const auto cells = [&](const CatalogueEntry& entry, bool adapted) {
-        auto space = editable(entry.make(work.options(SplitRule::middle)));
+        auto space = editable(entry.make(work.options()));
         if (adapted) {
             CHECK(space->adapt(goal_of(work, 0.1)).met);
         } else {
@@ -104,7 +105,7 @@ STRUCTURE_CASE(is_octree, "in thin boxes an octree has a few times the leaves of
         return static_cast<double>(space->footprint().cells);
     };
     for (const bool adapted : {false, true}) {
-        CHECK(cells(*structure.entry, adapted) <= most * cells(*kd, adapted));
+        CHECK(cells(structure, adapted) <= most * cells(*kd, adapted));
     }
 }
 
@@ -112,7 +113,7 @@ TEST_CASE("a balanced octree stays balanced in thin boxes and on planes") {
     const Work work = GENERATE(thin_box({1, 1, 0.001}), thin_box({20, 1, 3}), flat_box());
     const CatalogueEntry* balanced = find_entry(structures(), "K_oLB");
     REQUIRE(balanced != nullptr);
-    SpaceOptions options = work.options(SplitRule::middle);
+    SpaceOptions options = work.options();
     options.l_min = 0.5;
     const auto space = editable(balanced->make(options));
     space->insert(work.sources);
@@ -150,11 +151,10 @@ STRUCTURE_CASE(every_structure,
                "sources off the plane are refused by their index, lines as domains") {
     Work work = flat_box();
     work.sources[7].position.y() = 0.3000001;
-    const auto space = editable(structure.entry->make(work.options(structure.split)));
+    const auto space = editable(structure.make(work.options()));
     CHECK_THROWS_WITH(space->insert(work.sources), Contains("7") && Contains("outside"));
     work.domain.high.x() = work.domain.low.x();
-    CHECK_THROWS_WITH(structure.entry->make(work.options(structure.split)),
-                      Contains("no extent along two axes"));
+    CHECK_THROWS_WITH(structure.make(work.options()), Contains("no extent along two axes"));
 }
 
 TEST_CASE("grids of places on a plane are of one layer, and growth is found in it") {
@@ -169,3 +169,5 @@ TEST_CASE("grids of places on a plane are of one layer, and growth is found in i
     CHECK(found.dir > 1.2);
     CHECK(found.dir < 1.2501);
 }
+
+}  // namespace controlspace::flat_domain_test

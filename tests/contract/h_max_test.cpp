@@ -7,8 +7,7 @@
 #include "metric/draw.h"
 #include "scratch_directory.h"
 
-using namespace controlspace;
-
+namespace controlspace::h_max_test {
 namespace {
 
 const Box domain{{-1, -1, -1}, {1, 1, 2}};
@@ -39,13 +38,12 @@ double worst(const ControlSpace& space, double beyond) {
 
 }  // namespace
 
-STRUCTURE_CASE(splits_in_the_middle,
-               "no length is longer than h_max, new, graded, adapted and loaded") {
+STRUCTURE_CASE(does_not_round, "no length is longer than h_max, new, graded, adapted and loaded") {
     const ScratchDirectory folder;
     const SpaceOptions options{.domain = domain, .finest_length = 0.05, .h_max = h_max};
-    const auto make = [&] { return structure.entry->make(options); };
+    const auto make = [&] { return structure.make(options); };
     // Quadratic leaves interpolate beyond their nodes.
-    const double beyond = structure.entry->has<QuadraticLeaves>() ? 1.05 : 1 + 1e-6;
+    const double beyond = structure.has<QuadraticLeaves>() ? 1.05 : 1 + 1e-6;
     const Point far(-0.9, -0.9, -0.9);
     CHECK(value_at(*make()->build(), far).xx == Approx(h_max).epsilon(1e-6));
     const auto graded = make();
@@ -57,14 +55,14 @@ STRUCTURE_CASE(splits_in_the_middle,
     const auto loaded = load_control_space(folder / "f.ctrl", structures());
     CHECK(value_at(*loaded, far) == value_at(*graded->build(), far));
     CHECK(recipe_of(*loaded)->options.h_max == h_max);
-    if (structure.entry->has<VoxelSize>()) return;
+    if (structure.has<VoxelSize>()) return;
     const auto adapted = make();
     const AdaptationReport report =
         adapted->adapt({.sources = sources, .continuous = nullptr, .ratio = 1.25, .target = 0.05});
     CHECK(report.met);
     CHECK(worst(*adapted->build(), beyond) < 1.19);
     // A limit of the goal alone is saved too.
-    const auto limited = structure.entry->make({.domain = domain, .finest_length = 0.05});
+    const auto limited = structure.make({.domain = domain, .finest_length = 0.05});
     limited->adapt(
         {.sources = sources, .continuous = nullptr, .ratio = 1.25, .target = 0.05, .h_max = h_max});
     CHECK(value_at(*limited->build(), far).xx <= h_max * beyond);
@@ -72,3 +70,5 @@ STRUCTURE_CASE(splits_in_the_middle,
     CHECK(value_at(*load_control_space(folder / "limited.ctrl", structures()), far) ==
           value_at(*limited->build(), far));
 }
+
+}  // namespace controlspace::h_max_test

@@ -7,15 +7,14 @@
 #include "controlspace/sources/scattered_surfaces.h"
 #include "editable_space.h"
 
-using namespace controlspace;
-
+namespace controlspace::irregular_sources_test {
 namespace {
 
 // A grid as fine as 50:1 requests would take gigabytes.
-std::unique_ptr<EditableSpace> made(const Structure& structure, const Work& work) {
-    SpaceOptions options = work.options(structure.split);
+std::unique_ptr<EditableSpace> made(const CatalogueEntry& structure, const Work& work) {
+    SpaceOptions options = work.options();
     options.voxel = 0.2;
-    return editable(structure.entry->make(options));
+    return editable(structure.make(options));
 }
 
 // Largest ratio of a length that `space` answers at a source to what the source requests.
@@ -29,7 +28,7 @@ double largest_growth(const ControlSpace& space, const std::vector<PointSource>&
 
 }  // namespace
 
-STRUCTURE_CASE(has_no_slabs,
+STRUCTURE_CASE(does_not_round,
                "irregular sources of 50:1 give metrics everywhere, and are met at their places") {
     const Sampling sampling = GENERATE(Sampling::random, Sampling::clustered, Sampling::poisson);
     const Work work{"irregular",
@@ -49,7 +48,7 @@ STRUCTURE_CASE(has_no_slabs,
     // A δ of 0.2, which insertion lets pass, is a length 1.56 times as long in one direction.
     // Quadratic interpolation may leave the range of its nodes, and leaves that keep three
     // sources may hold more: they have no such bound at this anisotropy.
-    if (structure.entry->order < 2 && keeps_values(*structure.entry)) {
+    if (structure.order < 2 && keeps_values(structure)) {
         constexpr double let_pass = 1.56;
         constexpr double of_exact_nodes = 2;  // where cells are too coarse
         CHECK(largest_growth(*space, work.sources) <= of_exact_nodes * let_pass);
@@ -59,3 +58,5 @@ STRUCTURE_CASE(has_no_slabs,
         CHECK(largest_growth(*by_queue, work.sources) <= let_pass);
     }
 }
+
+}  // namespace controlspace::irregular_sources_test

@@ -9,8 +9,7 @@
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"
 
-using namespace controlspace;
-
+namespace controlspace::later_sources_test {
 namespace {
 
 using Batch = std::vector<PointSource>;
@@ -51,12 +50,8 @@ Batch layered(int n, unsigned seed) {
     return sources;
 }
 
-SpaceOptions later(SplitRule split) {
-    return {.domain = domain,
-            .split = split,
-            .kd_depth = 200,
-            .finest_length = 0.1,
-            .takes_later_sources = true};
+SpaceOptions later() {
+    return {.domain = domain, .kd_depth = 200, .finest_length = 0.1, .takes_later_sources = true};
 }
 
 std::vector<Metric> answers(const ControlSpace& space) {
@@ -67,20 +62,20 @@ std::vector<Metric> node_metrics(const ControlSpace& space) {
     return control_nodes(space, Neighbourhood::faces).value().metrics;
 }
 
-std::unique_ptr<EditableSpace> all_at_once(const Structure& structure,
+std::unique_ptr<EditableSpace> all_at_once(const CatalogueEntry& structure,
                                            const std::vector<Batch>& batches,
                                            const GradationOptions& gradation) {
-    auto space = editable(structure.entry->make(later(structure.split)));
+    auto space = editable(structure.make(later()));
     for (const Batch& batch : batches) space->insert(batch);
     space->grade(gradation);
     return space;
 }
 
 // Batch after batch, graded each time.
-std::unique_ptr<EditableSpace> in_turn(const Structure& structure,
+std::unique_ptr<EditableSpace> in_turn(const CatalogueEntry& structure,
                                        const std::vector<Batch>& batches,
                                        const GradationOptions& gradation) {
-    auto space = editable(structure.entry->make(later(structure.split)));
+    auto space = editable(structure.make(later()));
     for (const Batch& batch : batches) {
         space->insert(batch);
         space->grade(gradation);
@@ -93,19 +88,11 @@ void require_same(const ControlSpace& a, const ControlSpace& b) {
     CHECK(node_metrics(a) == node_metrics(b));
 }
 
-}  // namespace
-
-STRUCTURE_CASE(keeps_node_values,
-               "later sources, graded again: to the bit the field of all at once") {
-    const double g = GENERATE(1.0, 1.1, 1.25, 2.0);
-    const unsigned seed = GENERATE(1u, 2u);
-    const GradationOptions gradation = GENERATE_COPY(from_range(gradations(g)));
-    const std::vector<Batch> batches{scattered(150, seed), scattered(8, seed + 10),
-                                     scattered(1, seed + 20), scattered(60, seed + 30)};
-    CAPTURE(g, seed);
-    require_same(*in_turn(structure, batches, gradation),
-                 *all_at_once(structure, batches, gradation));
+bool does_not_overshoot(const CatalogueEntry& structure) {
+    return keeps_node_values(structure) && structure.order < 2;
 }
+
+}  // namespace
 
 // Leaves are cut, yet nothing gets smaller there: the nodes that hung on the leaf that is no more
 // must grow.
@@ -127,19 +114,18 @@ STRUCTURE_CASE(keeps_node_values,
                  *all_at_once(structure, batches, gradation));
 }
 
-STRUCTURE_CASE(keeps_node_values,
+STRUCTURE_CASE(stores_node_values,
                "what makes no difference is not followed, and what does is followed alone") {
     const Batch fine = scattered(100, 5);
     const Batch near = scattered(3, 6);
-    if (is_direct(*structure.entry)) return;
-    const auto space = editable(structure.entry->make(later(structure.split)));
+    const auto space = editable(structure.make(later()));
     space->insert(fine);
     CHECK_FALSE(space->grade(queue).visits.has_value());
     const std::vector<Metric> before = answers(*space);
 
     CHECK(space->grade(queue).visits == 0u);
     CHECK(space->insert({Point::Zero(), Metric::isotropic(1.8)}) == Insertion::already_met);
-    if (structure.entry->order < 2) {  // quadratic functions overshoot: some are wanted again
+    if (structure.order < 2) {  // quadratic functions overshoot: some are wanted again
         CHECK(space->insert(fine).inserted == 0);
     }
     CHECK(space->grade(queue).visits == 0u);
@@ -187,10 +173,9 @@ STRUCTURE_CASE(keeps_node_values,
 }
 
 // Quadratic functions overshoot, and cutting a leaf makes finer neighbours' vertices count.
-STRUCTURE_CASE(keeps_node_values,
+STRUCTURE_CASE(does_not_overshoot,
                "between insertion and gradation: the source is met, and nothing grows") {
     const Batch fine = scattered(100, 13);
-    if (structure.entry->order == 2) return;
     const auto space = all_at_once(structure, {fine}, {});
     const std::vector<Metric> before = answers(*space);
     double worst = 0;
@@ -199,7 +184,7 @@ STRUCTURE_CASE(keeps_node_values,
         worst = std::max(worst, sample_at(*space, source.position).xx / source.metric.xx);
     }
     CHECK(worst < 1.42);  // δ < 0.2
-    if (structure.entry->id == "K_V" || structure.entry->id == "K_oV") return;
+    if (structure.id == "K_V" || structure.id == "K_oV") return;
     const std::vector<Metric> after = answers(*space);
     double growth = 0;
     for (std::size_t i = 0; i < before.size(); ++i) {
@@ -208,8 +193,7 @@ STRUCTURE_CASE(keeps_node_values,
     CHECK(growth < 1 + 1e-12);
 }
 
-STRUCTURE_CASE(keeps_node_values, "an assigned field is what is requested from then on") {
-    if (is_direct(*structure.entry)) return;
+STRUCTURE_CASE(stores_node_values, "an assigned field is what is requested from then on") {
     const auto space = all_at_once(structure, {scattered(100, 15)}, {});
     std::vector<Metric> metrics = node_metrics(*space);
     std::fill(metrics.begin(), metrics.end(), Metric::isotropic(0.5));
@@ -237,3 +221,5 @@ STRUCTURE_CASE(keeps_sources_in_leaves, "structures that keep sources: close to 
     CHECK(worst < 0.25);
     CHECK(sum < 0.003 * static_cast<double>(once.size()));
 }
+
+}  // namespace controlspace::later_sources_test

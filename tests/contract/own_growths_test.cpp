@@ -11,14 +11,13 @@
 #include "editable_space.h"
 #include "scratch_directory.h"
 
-using namespace controlspace;
-
+namespace controlspace::own_growths_test {
 namespace {
 
 constexpr double g = 1.25;
 
-bool adapts(const Structure& structure) {
-    return does_not_round(structure) && !structure.entry->has<VoxelSize>();
+bool adapts(const CatalogueEntry& structure) {
+    return does_not_round(structure) && !structure.has<VoxelSize>();
 }
 
 double largest_nonconformity(const ControlSpace& space, const Work& work) {
@@ -40,12 +39,12 @@ STRUCTURE_CASE(adapts,
     constexpr double target = 0.2;
     const Work work = with_own_growths(GENERATE(isotropic_sphere(), oblong_box()));
     CAPTURE(work.name);
-    const auto space = editable(structure.entry->make(work.options(structure.split)));
+    const auto space = editable(structure.make(work.options()));
     const AdaptationReport report = space->adapt(
         {.sources = work.sources, .continuous = nullptr, .ratio = g, .target = target});
     CHECK(report.met);
     // Quadratic leaves are sampled, the others proved.
-    const double slack = structure.entry->has<QuadraticLeaves>() ? 1.3 : 1;
+    const double slack = structure.has<QuadraticLeaves>() ? 1.3 : 1;
     CHECK(largest_nonconformity(*space, work) <= slack * target);
     // Another ratio would be seen.
     Work alike = work;
@@ -64,19 +63,25 @@ STRUCTURE_CASE(every_structure,
 }
 
 STRUCTURE_CASE(every_structure, "a ratio that is none is refused, with the index of its source") {
-    const Work work = isotropic_sphere();
-    const auto space = editable(structure.entry->make(work.options(structure.split)));
+    const Work work = oblong_box();
+    const auto space = work.inserted(structure);
+    const std::vector<Point> x = random_points(work.domain, 200, 1);
+    const std::vector<Metric> before = answers(*space, x);
     for (const double bad : {0.9, -1.0, 1e7, std::numeric_limits<double>::quiet_NaN()}) {
         std::vector<PointSource> sources(work.sources.begin(), work.sources.begin() + 3);
         sources[2].growth = bad;
+        CAPTURE(bad);
         CHECK_THROWS_WITH(space->insert(sources),
                           Catch::Contains("source 2 has the gradation ratio"));
+        if (bad == 1e7) continue;  // of no source, but of a gradation
+        CHECK_THROWS_AS(space->grade({.ratio = bad}), InputError);
     }
+    CHECK(answers(*space, x) == before);
 }
 
 TEST_CASE("gradation from node to node is refused for ratios of their own") {
     const Work work = with_own_growths(isotropic_sphere());
-    const Structure structure = structures_that(splits_in_the_middle).front();
+    const CatalogueEntry structure = structures_that(does_not_round).front();
     const auto space = work.inserted(structure);
     CHECK_THROWS_WITH(space->grade({.law = GradationLaw::mean_length}),
                       Catch::Contains("ratios of their own"));
@@ -95,3 +100,5 @@ TEST_CASE("gradation from node to node is refused for ratios of their own") {
     const auto loaded = load_editable(scratch / "f.ctrl", structures());
     CHECK_THROWS_WITH(loaded->grade({}), Catch::Contains("not known any more"));
 }
+
+}  // namespace controlspace::own_growths_test

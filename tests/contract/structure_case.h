@@ -4,6 +4,6 @@
 #include "contract/structures_under_test.h"
 
 // STRUCTURE_CASE(filter, "what holds") { ... structure ... } is a test case for each structure that
-// passes the filter: "what holds: K_L s_L", and so on.
+// passes the filter: "what holds - K_L", and so on.
 #define STRUCTURE_CASE(filter, ...) \
     CASE_OF_EACH(structure, controlspace::structures_that(filter), __VA_ARGS__)

@@ -15,52 +15,37 @@
 
 namespace controlspace {
 
-/// A row of the catalogue with one of the split rules that apply to it.
-struct Structure {
-    const CatalogueEntry* entry;
-    SplitRule split;
-
-    std::string name() const {
-        static const char* const rules[] = {" s_L", " s_G", " s_M"};
-        return entry->id + (entry->has<SplitRules>() ? rules[static_cast<int>(split)] : "");
-    }
-};
-
-inline std::string case_name(const Structure& structure) { return structure.name(); }
-
-/// Of the whole catalogue with all split rules, what passes the filter.
+/// Of the whole catalogue, what passes the filter. Kd-trees cut in the middle here (s_L): the other
+/// rules move cuts and nothing else, and random scenes draw them (scenes/scenes_test.cpp).
 template <class Filter>
-std::vector<Structure> structures_that(const Filter& filter) {
-    std::vector<Structure> found;
+std::vector<CatalogueEntry> structures_that(const Filter& filter) {
+    std::vector<CatalogueEntry> found;
     for (const CatalogueEntry& entry : structures()) {
-        for (const SplitRule split : {SplitRule::middle, SplitRule::golden, SplitRule::metric}) {
-            if (split != SplitRule::middle && !entry.has<SplitRules>()) break;
-            if (filter(Structure{&entry, split})) found.push_back({&entry, split});
-        }
+        if (filter(entry)) found.push_back(entry);
     }
     return found;
 }
 
 // Filters of structures.
-inline bool every_structure(const Structure&) { return true; }
+inline bool every_structure(const CatalogueEntry&) { return true; }
 /// Those that round promise less.
-inline bool does_not_round(const Structure& structure) { return !is_rounding(*structure.entry); }
+inline bool does_not_round(const CatalogueEntry& structure) { return !is_rounding(structure); }
 /// Structures that hold metrics, and those whose every answer is the exact field anyway.
-inline bool keeps_node_values(const Structure& structure) {
-    return does_not_round(structure) && keeps_values(*structure.entry);
+inline bool keeps_node_values(const CatalogueEntry& structure) {
+    return does_not_round(structure) && keeps_values(structure);
 }
-inline bool keeps_sources_in_leaves(const Structure& structure) {
-    return !keeps_values(*structure.entry);
+/// Not the exact field itself.
+inline bool stores_a_field(const CatalogueEntry& structure) {
+    return does_not_round(structure) && !is_direct(structure);
 }
-inline bool has_compact_form(const Structure& structure) {
-    return structure.entry->has<CompactForm>();
+inline bool stores_node_values(const CatalogueEntry& structure) {
+    return keeps_node_values(structure) && !is_direct(structure);
 }
-/// One split rule is enough where others only take longer.
-inline bool splits_in_the_middle(const Structure& structure) {
-    return does_not_round(structure) && structure.split == SplitRule::middle;
+inline bool keeps_sources_in_leaves(const CatalogueEntry& structure) {
+    return !keeps_values(structure);
 }
-inline bool has_no_slabs(const Structure& structure) {
-    return does_not_round(structure) && structure.split != SplitRule::metric;
+inline bool has_compact_form(const CatalogueEntry& structure) {
+    return structure.has<CompactForm>();
 }
 
 /// Sources few enough to test many structures on them.
@@ -73,19 +58,16 @@ struct Work {
         return std::all_of(sources.begin(), sources.end(),
                            [](const PointSource& s) { return is_isotropic(s.metric); });
     }
-    SpaceOptions options(SplitRule split) const {
-        // Deep enough that no rule is stopped by the depth: s_M peels slab after slab.
-        return {.domain = domain,
-                .split = split,
-                .kd_depth = 200,
-                .finest_length = finest_length(sources)};
+    SpaceOptions options() const {
+        // Deep enough that no tree is stopped by the depth.
+        return {.domain = domain, .kd_depth = 200, .finest_length = finest_length(sources)};
     }
-    std::unique_ptr<EditableSpace> inserted(const Structure& structure) const {
-        auto space = editable(structure.entry->make(options(structure.split)));
+    std::unique_ptr<EditableSpace> inserted(const CatalogueEntry& structure) const {
+        auto space = editable(structure.make(options()));
         space->insert(sources);
         return space;
     }
-    std::unique_ptr<EditableSpace> graded(const Structure& structure,
+    std::unique_ptr<EditableSpace> graded(const CatalogueEntry& structure,
                                           const GradationOptions& gradation = {}) const {
         auto space = inserted(structure);
         space->grade(gradation);

@@ -11,8 +11,7 @@
 #include "editable_space.h"
 #include "scratch_directory.h"
 
-using namespace controlspace;
-
+namespace controlspace::threads_test {
 namespace {
 
 struct Answers {
@@ -23,13 +22,13 @@ struct Answers {
     std::string saved;
 };
 
-Answers answers(const Structure& structure, const Work& work, const GradationOptions& options,
+Answers answers(const CatalogueEntry& structure, const Work& work, const GradationOptions& options,
                 int threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(threads));
     Answers a;
     tbb::task_arena(threads).execute([&] {
-        const auto space = editable(structure.entry->make(work.options(structure.split)));
+        const auto space = editable(structure.make(work.options()));
         a.insertion = space->insert(work.sources);
         a.gradation = space->grade(options);
         a.nodes = space->control_nodes(Neighbourhood::faces).metrics;
@@ -47,7 +46,7 @@ Answers answers(const Structure& structure, const Work& work, const GradationOpt
 
 }  // namespace
 
-STRUCTURE_CASE(splits_in_the_middle,
+STRUCTURE_CASE(does_not_round,
                "any number of threads makes the same field, to the bit, in memory and in a file",
                "[threads]") {
     const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
@@ -69,3 +68,5 @@ STRUCTURE_CASE(splits_in_the_middle,
         CHECK((many.saved == one.saved));
     }
 }
+
+}  // namespace controlspace::threads_test

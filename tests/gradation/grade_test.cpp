@@ -9,8 +9,7 @@
 #include "gradation/schedules.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::grade_test {
 namespace {
 
 Lattice cube(std::uint32_t n) {
@@ -270,3 +269,5 @@ TEST_CASE("a ratio below 1, too large or not finite is refused") {
         CHECK_THROWS_AS(grade(lattice, metrics, {.ratio = ratio}), InputError);
     }
 }
+
+}  // namespace controlspace::grade_test

@@ -7,8 +7,7 @@
 #include "controlspace/metric/intersection.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::law_test {
 namespace {
 
 constexpr double g = 1.25;
@@ -134,3 +133,5 @@ TEST_CASE("growth within the allowed ratio shows a gradation within g, however s
     }
     CHECK(Growth{.ratio = 3, .length = 2}.gradation() == Approx(2));
 }
+
+}  // namespace controlspace::law_test

@@ -8,8 +8,7 @@
 #include "controlspace/gradation/grade.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::laws_test {
 namespace {
 
 struct Nodes {
@@ -105,3 +104,5 @@ TEST_CASE("with axes renamed, nodes are graded alike") {
         }
     }
 }
+
+}  // namespace controlspace::laws_test

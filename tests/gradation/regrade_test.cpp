@@ -5,8 +5,7 @@
 
 #include "controlspace/gradation/grade.h"
 
-using namespace controlspace;
-
+namespace controlspace::regrade_test {
 namespace {
 
 constexpr double g = 1.25;
@@ -145,3 +144,5 @@ TEST_CASE("only the cone law by the queue, with the same ratio, is graded in par
         CHECK_FALSE(may_regrade(PastGradation{options}, options));
     }
 }
+
+}  // namespace controlspace::regrade_test

@@ -6,8 +6,7 @@
 
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::blend_test {
 namespace {
 
 std::vector<double> random_weights(Draw& draw, std::size_t n) {
@@ -88,3 +87,5 @@ TEST_CASE("a blend that negative weights spoil is not positive definite") {
     CHECK_FALSE(
         is_positive_definite(blended({-0.5, 1.5}, {{0.1, 10, 1, 0, 0, 0}, Metric::isotropic(1)})));
 }
+
+}  // namespace controlspace::blend_test

@@ -4,8 +4,7 @@
 
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::decompose_test {
 namespace {
 
 Eigen::Matrix3d product(const Svd& d) {
@@ -78,3 +77,5 @@ TEST_CASE("Cholesky solves") {
     CHECK(condition(Metric::isotropic(0.3), Cholesky(Metric::isotropic(0.3))) ==
           Approx(1).epsilon(1e-15));
 }
+
+}  // namespace controlspace::decompose_test

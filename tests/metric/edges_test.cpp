@@ -15,8 +15,7 @@
 #include "controlspace/space/control_space_builder.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::edges_test {
 namespace {
 
 using Long = long double;
@@ -188,3 +187,5 @@ TEST_CASE("edges: Riemannian metrics are read as long as they say, or not at all
         }
     }
 }
+
+}  // namespace controlspace::edges_test

@@ -12,8 +12,7 @@
 #include "data_folder.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::golden_test {
 namespace {
 
 struct Golden {
@@ -78,3 +77,5 @@ TEST_CASE("golden numbers of the metric algebra") {
         CHECK(metric_length(g.a, g.v) == Approx(g.metric_length).epsilon(1e-15 * condition_a));
     }
 }
+
+}  // namespace controlspace::golden_test

@@ -6,8 +6,7 @@
 #include "metric/decompose.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::intersection_test {
 namespace {
 
 struct Pair {
@@ -205,3 +204,5 @@ TEST_CASE("growth of closed forms") {
     CHECK(growth({2, 2, 1, 1, 0, 0}, Metric::isotropic(2)) == Approx(1.5).epsilon(1e-15));
     CHECK(growth(Metric::isotropic(2), {2, 2, 2, 1, 0, 0}) == Approx(2).epsilon(1e-15));
 }
+
+}  // namespace controlspace::intersection_test

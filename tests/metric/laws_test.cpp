@@ -7,8 +7,7 @@
 #include "controlspace/metric/nonconformity.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::laws_test {
 namespace {
 
 struct Pair {
@@ -81,3 +80,5 @@ TEST_CASE("Renaming the axes renames those of all results") {
         }
     }
 }
+
+}  // namespace controlspace::laws_test

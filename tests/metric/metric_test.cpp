@@ -5,7 +5,7 @@
 
 #include "metric/draw.h"
 
-using namespace controlspace;
+namespace controlspace::metric_test {
 
 TEST_CASE("a metric's frame gives it back") {
     Draw draw(1);
@@ -122,3 +122,5 @@ TEST_CASE("positive definite or not") {
     CHECK_FALSE(is_positive_definite({1, 1, infinity, 0, 0, 0}));
     CHECK_FALSE(is_positive_definite({infinity, infinity, infinity, 0, 0, 0}));
 }
+
+}  // namespace controlspace::metric_test

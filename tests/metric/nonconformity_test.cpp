@@ -6,7 +6,7 @@
 #include "controlspace/metric/intersection.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
+namespace controlspace::nonconformity_test {
 
 TEST_CASE("check values of nonconformity") {
     const auto iso = [](double h) { return Metric::isotropic(h); };
@@ -136,3 +136,5 @@ TEST_CASE("the largest factor within a nonconformity has just that") {
         CHECK(nonconformity_along(largest_factor_along(delta)) == Approx(delta).epsilon(1e-6));
     }
 }
+
+}  // namespace controlspace::nonconformity_test

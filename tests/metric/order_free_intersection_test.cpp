@@ -12,8 +12,7 @@
 #include "metric/draw.h"
 #include "metric/largest_within.h"
 
-using namespace controlspace;
-
+namespace controlspace::order_free_intersection_test {
 namespace {
 
 using Metrics = std::vector<Metric>;
@@ -342,3 +341,5 @@ TEST_CASE("order-free intersection: bad input is refused, and its place named") 
         check(Metric::isotropic(1e-90), "unit of length");
     }
 }
+
+}  // namespace controlspace::order_free_intersection_test

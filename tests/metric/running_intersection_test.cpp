@@ -5,8 +5,7 @@
 #include "controlspace/metric/intersection.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::running_intersection_test {
 namespace {
 
 // `count` metrics, the ones that come later within each other by less and less.
@@ -92,3 +91,5 @@ TEST_CASE("A running intersection is cut along one, two and three directions") {
         CHECK(reached({1e-6, 1e-6, 1e-6}));
     }
 }
+
+}  // namespace controlspace::running_intersection_test

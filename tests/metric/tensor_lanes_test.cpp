@@ -5,8 +5,7 @@
 #include "controlspace/metric/intersection.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::tensor_lanes_test {
 namespace {
 
 TensorLanes metrics(Draw& draw, double anisotropy) {
@@ -58,3 +57,5 @@ TEST_CASE("There is room below where a tensor lies within others, and never else
     CHECK_FALSE(room_below(Metric{}, Lanes::Ones(), one).are_positive(0));
     CHECK_FALSE(room_below(Metric{}, Lanes::Constant(std::nan("")), one).are_positive(0));
 }
+
+}  // namespace controlspace::tensor_lanes_test

@@ -92,6 +92,10 @@ bool Scene::is_isotropic() const {
         sources, [](const PointSource& s) { return controlspace::is_isotropic(s.metric); });
 }
 
+bool Scene::has_own_ratios() const {
+    return std::ranges::any_of(sources, [](const PointSource& s) { return s.growth != 0; });
+}
+
 Scene random_scene(std::uint64_t seed) {
     Draw draw(seed);
     Scene scene;
@@ -134,6 +138,13 @@ Scene random_scene(std::uint64_t seed) {
     scene.options.voxel = box.edges().maxCoeff() / draw.whole(3, 20);
     if (draw.once_in(5)) scene.options.h_max = coarse;
     if (draw.once_in(4)) scene.options.intersection = IntersectionRule::in_turn;
+    const SplitRule rules[] = {SplitRule::middle, SplitRule::golden, SplitRule::metric};
+    scene.options.split = draw.one_of(rules);
+    const GradationLaw laws[] = {GradationLaw::cone, GradationLaw::mean_length};
+    scene.from_node_to_node = {.law = draw.one_of(laws),
+                               .schedule = GradationSchedule::queue,
+                               .ratio = scene.options.ratio};
+    if (draw.once_in(2)) scene.from_node_to_node.neighbourhood = Neighbourhood::all;
     return scene;
 }
 

@@ -10,14 +10,16 @@
 namespace controlspace {
 
 /// A small scene drawn at random: 1 to 60 sources in an unfriendly arrangement, in a domain that
-/// may be oblong, flat or far from the origin, and the settings of a structure. The same for the
-/// same seed on every machine.
+/// may be oblong, flat or far from the origin, and the settings of a structure, the rule by which
+/// kd-trees cut among them. The same for the same seed on every machine.
 struct Scene {
     std::string name;  ///< how its parts were drawn
     std::vector<PointSource> sources;
     SpaceOptions options;
+    GradationOptions from_node_to_node;  ///< by the queue, with a law and neighbours that are drawn
 
     bool is_isotropic() const;
+    bool has_own_ratios() const;
     GradationOptions gradation() const { return {.ratio = options.ratio}; }
 };
 

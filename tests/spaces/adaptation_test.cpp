@@ -18,8 +18,7 @@
 #include "controlspace/sources/sampled_surfaces.h"
 #include "editable_space.h"
 
-using namespace controlspace;
-
+namespace controlspace::adaptation_test {
 namespace {
 
 const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
@@ -455,3 +454,5 @@ TEST_CASE("bad goals are refused") {
     const PointSource outside{Point(2, 0, 0), Metric::isotropic(0.1)};
     CHECK_THROWS_AS(space->adapt({{&outside, 1}, nullptr, g, 0.1}), InputError);
 }
+
+}  // namespace controlspace::adaptation_test

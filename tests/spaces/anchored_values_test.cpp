@@ -9,8 +9,7 @@
 #include "controlspace/space/catalogue.h"
 #include "editable_space.h"
 
-using namespace controlspace;
-
+namespace controlspace::anchored_values_test {
 namespace {
 
 const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
@@ -97,3 +96,5 @@ TEST_CASE("sources of one metric share it, and idle ones go") {
     CHECK(table.factor(1, g, Point(42, 3, 4)) == Approx(1 + 0.25 * 50));
     CHECK(table.smallest_length(1) == Approx(0.1));
 }
+
+}  // namespace controlspace::anchored_values_test

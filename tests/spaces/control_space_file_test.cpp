@@ -21,7 +21,8 @@
 #include "editable_space.h"
 #include "sources/files.h"
 
-using namespace controlspace;
+namespace controlspace::control_space_file_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -242,3 +243,5 @@ TEST_CASE("a program's own continuous field cannot be saved") {
                    Contains("continuous field"));
     }
 }
+
+}  // namespace controlspace::control_space_file_test

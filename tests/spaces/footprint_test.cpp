@@ -9,7 +9,7 @@
 #include "counting_allocator.h"
 #include "editable_space.h"
 
-using namespace controlspace;
+namespace controlspace::footprint_test {
 
 CASE_OF_EACH(entry, all_trees(), "the footprint of a tree is what it has allocated") {
     const std::vector<PointSource> sources = sample_sphere({.h = 0.05, .rho = 2});
@@ -114,3 +114,5 @@ CASE_OF_EACH(entry, tree_catalogue(), "the memory cap holds for gradation too") 
     CHECK(peak_bytes() - before < cap);
     CHECK(peak_bytes() - before > cap / 4);
 }
+
+}  // namespace controlspace::footprint_test

@@ -19,7 +19,8 @@
 #include "editable_space.h"
 #include "geometry/random_fractions.h"
 
-using namespace controlspace;
+namespace controlspace::frozen_tree_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -279,3 +280,5 @@ TEST_CASE("what cannot be frozen is refused, with what would help") {
     const auto anchored = editable(tree_named("K_LA").make({.domain = domain}));
     CHECK_THROWS_WITH(anchored->compact(Precision::doubles), Contains("choose a tree"));
 }
+
+}  // namespace controlspace::frozen_tree_test

@@ -9,8 +9,7 @@
 #include "controlspace/space/catalogue.h"
 #include "editable_space.h"
 
-using namespace controlspace;
-
+namespace controlspace::grading_test {
 namespace {
 
 const Box domain{Point::Constant(-1), Point::Constant(1)};
@@ -103,3 +102,5 @@ CASE_OF_EACH(entry, anchored_catalogue(),
     }
     CHECK(met > 0);
 }
+
+}  // namespace controlspace::grading_test

@@ -7,8 +7,7 @@
 #include "controlspace/trees/detail/touching_pairs.h"
 #include "spaces/face_pairs.h"
 
-using namespace controlspace;
-
+namespace controlspace::leaves_where_test {
 namespace {
 
 const Box domain{Point(-1, -2, 0), Point(1, 1, 1.5)};
@@ -92,3 +91,5 @@ TEMPLATE_TEST_CASE("leaves at a place: all that touch it", "", KdNode, OctreeNod
     }
     CHECK(most == 8);
 }
+
+}  // namespace controlspace::leaves_where_test

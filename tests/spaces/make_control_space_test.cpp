@@ -9,7 +9,8 @@
 #include "controlspace/measure/access_time.h"
 #include "editable_space.h"
 
-using namespace controlspace;
+namespace controlspace::make_control_space_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -104,3 +105,5 @@ TEST_CASE("an error has the index of the source, or the bytes that are wanted") 
     CHECK(error.bytes() > small.max_bytes);
     CHECK(error.bytes() < 100 * small.max_bytes);
 }
+
+}  // namespace controlspace::make_control_space_test

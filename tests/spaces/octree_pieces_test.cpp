@@ -11,7 +11,8 @@
 #include "geometry/random_fractions.h"
 #include "sources/files.h"
 
-using namespace controlspace;
+namespace controlspace::octree_pieces_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -176,3 +177,5 @@ TEST_CASE("an index of pieces that does not fit is refused") {
                Contains("none.ctrl"));
     CHECK(file_text(made.index).find("field_0.ctrl") != std::string::npos);
 }
+
+}  // namespace controlspace::octree_pieces_test

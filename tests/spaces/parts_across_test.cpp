@@ -9,8 +9,7 @@
 #include "controlspace/trees/detail/adjacency.h"
 #include "geometry/random_fractions.h"
 
-using namespace controlspace;
-
+namespace controlspace::parts_across_test {
 namespace {
 
 const Box domain{Point(-1, -1, -1), Point(1, 1.5, 1)};
@@ -113,3 +112,5 @@ TEST_CASE("a tree of one leaf has itself across all faces") {
     CHECK(leaves[0].box == domain);
     for (const Ref part : leaves[0].across) CHECK(part.index() == 0);
 }
+
+}  // namespace controlspace::parts_across_test

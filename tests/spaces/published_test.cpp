@@ -10,8 +10,7 @@
 #include "controlspace/space/catalogue.h"
 #include "editable_space.h"
 
-using namespace controlspace;
-
+namespace controlspace::published_test {
 namespace {
 
 const Box domain{Point(-1, -1, -1), Point(1, 1, 1)};
@@ -140,3 +139,5 @@ TEST_CASE("shared vertices: as many control nodes as the rerun counted distinct 
           Approx(119397).epsilon(0.01));
     CHECK(build("K_oV", SplitRule::middle, 1, 1).footprint.control_nodes == 147359);
 }
+
+}  // namespace controlspace::published_test

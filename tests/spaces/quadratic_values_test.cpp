@@ -11,8 +11,7 @@
 #include "editable_space.h"
 #include "trees/values/triquadratic.h"
 
-using namespace controlspace;
-
+namespace controlspace::quadratic_values_test {
 namespace {
 
 const Box domain{Point::Constant(-1), Point::Constant(1)};
@@ -149,3 +148,5 @@ TEST_CASE("the published interpolation adds the corners' trilinear part at a wro
     }
     CHECK(value(Vector(1, 1, 1)) == Approx(right(Vector(1, 1, 1))));
 }
+
+}  // namespace controlspace::quadratic_values_test

@@ -10,8 +10,7 @@
 #include "counting_allocator.h"
 #include "geometry/random_fractions.h"
 
-using namespace controlspace;
-
+namespace controlspace::rounds_test {
 namespace {
 
 std::vector<CatalogueEntry> of_control_nodes() {
@@ -61,3 +60,5 @@ CASE_OF_EACH(entry, of_control_nodes(), "many rounds of insertion and gradation"
     CHECK(live_bytes() <= before);
     CHECK(sum > 0);
 }
+
+}  // namespace controlspace::rounds_test

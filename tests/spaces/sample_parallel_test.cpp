@@ -11,7 +11,7 @@
 #include "controlspace/sources/sampled_surfaces.h"
 #include "editable_space.h"
 
-using namespace controlspace;
+namespace controlspace::sample_parallel_test {
 
 CASE_OF_EACH(entry, structures(),
              "a batch on many threads gets the bits of one thread, whatever its size and its place",
@@ -43,3 +43,5 @@ CASE_OF_EACH(entry, structures(),
         }
     }
 }
+
+}  // namespace controlspace::sample_parallel_test

@@ -11,8 +11,7 @@
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/cone.h"
 
-using namespace controlspace;
-
+namespace controlspace::single_cones_test {
 namespace {
 
 constexpr double target = 0.1;
@@ -203,3 +202,5 @@ TEST_CASE("metrics beyond a cone are in contact with it, if only a little") {
         CHECK(contacts.size() == (factor > 1 ? 1 : 0));
     }
 }
+
+}  // namespace controlspace::single_cones_test

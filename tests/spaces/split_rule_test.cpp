@@ -2,8 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace controlspace;
-
+namespace controlspace::split_rule_test {
 namespace {
 
 const Box box{Point(0, 0, 0), Point(4, 2, 1)};
@@ -75,3 +74,5 @@ TEST_CASE("children of a subdivision fill the box, and their faces are copies") 
     CHECK_FALSE(halves(odd, 0, 0.1).is_proper());
     CHECK_FALSE(halves(odd, 1, 1.9).is_proper());
 }
+
+}  // namespace controlspace::split_rule_test

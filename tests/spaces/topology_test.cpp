@@ -12,8 +12,7 @@
 #include "controlspace/trees/detail/adjacency.h"
 #include "spaces/face_pairs.h"
 
-using namespace controlspace;
-
+namespace controlspace::topology_test {
 namespace {
 
 const Box domain{Point(-1, 0, 0.3), Point(1, 1.7, 1)};
@@ -230,3 +229,5 @@ TEST_CASE("a graph from pairs lists every link at both ends, and rows can be mad
     CHECK(graph.first == std::vector<std::size_t>{0, 2, 3, 5, 6, 6});
     CHECK(graph.neighbours == std::vector<NodeIndex>{2, 3, 2, 0, 1, 0});
 }
+
+}  // namespace controlspace::topology_test

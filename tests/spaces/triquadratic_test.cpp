@@ -6,8 +6,7 @@
 #include "controlspace/metric/intersection.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::triquadratic_test {
 namespace {
 
 using Across = std::array<Metric, 6>;
@@ -168,3 +167,5 @@ TEST_CASE("lengths are interpolated as the isotropic metrics are, to the bit") {
     CHECK(limited > 100);
     CHECK(free > 100);
 }
+
+}  // namespace controlspace::triquadratic_test

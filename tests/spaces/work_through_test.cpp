@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
-using namespace controlspace;
+namespace controlspace::work_through_test {
 
 TEST_CASE("all items of a walk are worked upon once, none before what handed it on", "[threads]") {
     // Item i is handed on by item (i - 1) / children: a tree, and a chain.
@@ -23,3 +23,5 @@ TEST_CASE("all items of a walk are worked upon once, none before what handed it 
     CHECK(too_early == 0);
     CHECK(std::all_of(visits.begin(), visits.end(), [](const auto& n) { return n == 1; }));
 }
+
+}  // namespace controlspace::work_through_test
