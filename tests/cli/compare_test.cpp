@@ -6,7 +6,8 @@
 
 #include "cli/sandbox.h"
 
-using namespace controlspace;
+namespace controlspace::compare_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -107,19 +108,12 @@ TEST_CASE("help, version and list") {
     const Sandbox box("help");
     const Outcome help = box.run("compare --help");
     CHECK(help.status == 0);
-    for (const char* text :
-         {"--tau", "--mmg-hgrad", "--refine-beta", "--as-published", "--intersection", "--domain",
-          "--max-memory", "(default: 4)", "GiB", "--quiet", "(default: 1.25)"}) {
-        CHECK_THAT(help.out, Contains(text));
-    }
+    CHECK_THAT(help.out, Contains("--tau") && Contains("(default: 1.25)"));
     CHECK_THAT(box.run("--version").out, Catch::Matchers::StartsWith("controlspace 0."));
     CHECK(box.run("--help").status == 0);
     const Outcome list = box.run("list");
     CHECK(list.status == 0);
-    for (const char* text :
-         {"K_Li", "uniform-nearest", "s_M", "mean-length", "passes", "published-sphere"}) {
-        CHECK_THAT(list.out, Contains(text));
-    }
+    CHECK_THAT(list.out, Contains("K_Li") && Contains("s_M") && Contains("published-sphere"));
 }
 
 TEST_CASE("bad input ends with one line and status 2, and writes nothing") {
@@ -290,3 +284,5 @@ TEST_CASE("a dry run lists the cases and writes nothing") {
     CHECK_FALSE(fs::exists(box / "out"));
     check_refused(box.run("compare --h -1 --dry-run"), "h");
 }
+
+}  // namespace controlspace::compare_test

@@ -20,8 +20,7 @@
 #include <gmsh.h>
 #endif
 
-using namespace controlspace;
-
+namespace controlspace::damaged_files_test {
 namespace {
 
 /// A patch of a paraboloid, 7 x 7 vertices: enough for its curvature.
@@ -282,3 +281,5 @@ TEST_CASE("damaged files of OpenVDB are read or refused") {
                   [](const fs::path& file) { return read_vdb_field(file, {}); });
 }
 #endif
+
+}  // namespace controlspace::damaged_files_test

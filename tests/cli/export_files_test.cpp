@@ -12,7 +12,8 @@
 
 #include "cli/sandbox.h"
 
-using namespace controlspace;
+namespace controlspace::export_files_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -290,3 +291,5 @@ TEST_CASE("files of fields that cannot be written end with one line") {
         CHECK_FALSE(fs::exists(box / name));
     }
 }
+
+}  // namespace controlspace::export_files_test

@@ -5,7 +5,8 @@
 
 #include "cli/sandbox.h"
 
-using namespace controlspace;
+namespace controlspace::export_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -144,3 +145,5 @@ TEST_CASE(".vdb files that cannot be used end with one line") {
     INFO(arguments);
     check_refused(box.run("compare --structures uniform-nearest " + arguments), expected);
 }
+
+}  // namespace controlspace::export_test

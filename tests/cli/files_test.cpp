@@ -5,7 +5,8 @@
 
 #include "cli/sandbox.h"
 
-using namespace controlspace;
+namespace controlspace::files_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -190,3 +191,5 @@ TEST_CASE("settings for surfaces are used, and vertices that are left out counte
     CHECK_THAT(finest("--isotropic"), Contains("0.05 to 0.05"));
 }
 #endif
+
+}  // namespace controlspace::files_test

@@ -4,7 +4,8 @@
 
 #include "cli/sandbox.h"
 
-using namespace controlspace;
+namespace controlspace::modules_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -58,3 +59,5 @@ TEST_CASE("a module that is missing, or is no module, is an error of one line") 
     check_refused(box.run("", copy), "vtk.so: ");
 }
 #endif
+
+}  // namespace controlspace::modules_test

@@ -4,7 +4,8 @@
 
 #include "cli/terminal.h"
 
-using namespace controlspace;
+namespace controlspace::progress_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -87,3 +88,5 @@ TEST_CASE("a terminal shows how far a file has come, and Ctrl-C leaves nothing o
     CHECK(std::distance(fs::directory_iterator(box / ""), fs::directory_iterator()) == 2);
 }
 #endif
+
+}  // namespace controlspace::progress_test

@@ -7,7 +7,8 @@
 
 #include "cli/sandbox.h"
 
-using namespace controlspace;
+namespace controlspace::sources_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -72,19 +73,19 @@ TEST_CASE("primitives make the field of their closed form, alone and beside a fi
     };
     const Outcome built = box.run("build --sources " + ball + domain + " -o f.ctrl");
     CHECK_THAT(built.err, Contains("lengths within 1.1x") || Contains("lengths within 1.0"));
-    CHECK(worst(box.run("query f.ctrl places.csv"), of_ball) < 1.11);
+    CHECK(worst(box.run("query f.ctrl places.csv"), of_ball) <= 1.1);
 
     // A file, given first or among the others; in words and in a study file.
     REQUIRE(box.run("build s.csv --sources " + ball + "," + slab + domain + " -o g.ctrl").status ==
             0);
     const Outcome all = box.run("query g.ctrl places.csv");
-    CHECK(worst(all, of_all) < 1.11);
+    CHECK(worst(all, of_all) <= 1.1);
     box.write("study.toml", "sources = ['s.csv', '" + ball + "', '" + slab +
                                 "']\ndomain = [0, 1, 0, 1, 0, 1]\nstructures = 'K_oV'\n");
     CHECK(box.run("query study.toml places.csv").out == all.out);
     CHECK(box.run("build --sources " + slab + ",s.csv," + ball + domain + " -o h.ctrl").status ==
           0);
-    CHECK(worst(box.run("query h.ctrl places.csv"), of_all) < 1.11);
+    CHECK(worst(box.run("query h.ctrl places.csv"), of_all) <= 1.1);
 
     const Outcome compare = box.run("compare --sources s.csv," + ball +
                                     " --structures K_oV,uniform-trilinear,direct --quiet "
@@ -101,7 +102,7 @@ TEST_CASE("limits hold at all places, in all kinds of structures") {
         return std::min(0.12, 0.05 + 0.25 * std::hypot(x - 0.5, y - 0.5, z - 0.5));
     };
     const std::string limits = domain + " --h-min 0.05 --h-max 0.12";
-    CHECK(worst(box.run("query s.csv places.csv" + limits), expected) < 1.101);
+    CHECK(worst(box.run("query s.csv places.csv" + limits), expected) <= 1.1);
     CHECK(worst(box.run("query s.csv places.csv --structures direct" + limits), expected) <
           1 + 1e-9);
     CHECK_THAT(box.run("build s.csv -o f.ctrl" + limits).err, Contains("everywhere"));
@@ -173,7 +174,8 @@ TEST_CASE("lengths grow with the distance from a surface, on both sides") {
     fs::create_directory(box / "parts");
     fs::rename(box / "plane.off", box / "parts" / "plane.off");
     box.write("parts/study.toml", study + "structures = 'K_V'\n");
-    CHECK(worst(box.run("query parts/study.toml places.csv"), expected) < 1.11);
+    // Linear on both sides of a plane where leaves are split.
+    CHECK(worst(box.run("query parts/study.toml places.csv"), expected) < 1 + 1e-9);
     fs::copy_file(box / "parts/plane.off", box / "parts/plane.csv");
     check_refused(box.run("build --sources surface:parts/plane.csv,h=1 -o f.ctrl"), "is no part");
     check_refused(box.run("build --sources surface:none.stl,h=1 -o f.ctrl"), "none.stl");
@@ -197,16 +199,14 @@ TEST_CASE("exports are sources again: the field that is graded from them is clos
         CAPTURE(file);
         const Outcome direct =
             box.run("query " + std::string(file) + domain + " --structures direct places.csv");
-        CHECK(worst(direct, expected) < 1.12);
+        // The requests are within 1.05, and cones of the same slope from them stay there.
+        CHECK(worst(direct, expected) <= 1.05);
     }
-    // As a finished field: in each leaf the length at its centre, which no place of it is far from.
+    // As a finished field: which it is, tests/export says.
     box.write("again.toml",
               "sources = 'none'\nfield = 'file'\nfield_file = 'leaves.vtu'\n"
               "structures = 'direct'\n");
-    const Outcome again = box.run("query again.toml places.csv");
-    const auto of_leaf = rows_of(box.run("query f.ctrl places.csv").out);
-    std::size_t next = 0;
-    CHECK(worst(again, [&](double, double, double) { return of_leaf[next++][3]; }) < 1.6);
+    CHECK(rows_of(box.run("query again.toml places.csv").out).size() == 1000);
     CHECK_THAT(box.run("info slice.vti").out, Contains("sources      1681, all positive definite"));
     CHECK(box.run("convert leaves.vtu leaves.csv").status == 0);
 }
@@ -225,3 +225,5 @@ TEST_CASE("a mesh without a solution is said to give the lengths of its required
     box.write("b.sol", "MeshVersionFormatted 2 Dimension 3 SolAtVertices 3 1 1 1 1 1 End");
     CHECK(box.run("convert b.mesh b.csv").err.empty());
 }
+
+}  // namespace controlspace::sources_test

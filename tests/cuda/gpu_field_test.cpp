@@ -11,7 +11,8 @@
 #include "controlspace/space/make_control_space.h"
 #include "geometry/random_fractions.h"
 
-using namespace controlspace;
+namespace controlspace::gpu_field_test {
+
 using Catch::Matchers::Contains;
 
 TEST_CASE("a GPU answers as octrees do, to the bit, and says where there is none") {
@@ -51,3 +52,5 @@ TEST_CASE("a GPU answers as octrees do, to the bit, and says where there is none
         CHECK((lengths == expected_lengths));
     }
 }
+
+}  // namespace controlspace::gpu_field_test

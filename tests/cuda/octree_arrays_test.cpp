@@ -12,7 +12,8 @@
 #include "editable_space.h"
 #include "geometry/random_fractions.h"
 
-using namespace controlspace;
+namespace controlspace::octree_arrays_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -112,3 +113,5 @@ TEST_CASE("other structures are no octrees") {
         CHECK_THROWS_WITH(OctreeArrays<double>(space->built()), Contains(id) && Contains("K_oV"));
     }
 }
+
+}  // namespace controlspace::octree_arrays_test

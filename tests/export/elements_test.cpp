@@ -4,8 +4,7 @@
 #include "contract/structure_case.h"
 #include "io/text/cells.h"
 
-using namespace controlspace;
-
+namespace controlspace::elements_test {
 namespace {
 
 double volume_of(const Box& box) { return box.edges().prod(); }
@@ -31,3 +30,5 @@ STRUCTURE_CASE(does_not_round, "the elements of a structure fill its domain, eac
     CHECK(volume >= Approx(volume_of(work.domain)));
     if (is_tree) CHECK(volume == Approx(volume_of(work.domain)));
 }
+
+}  // namespace controlspace::elements_test

@@ -5,8 +5,7 @@
 #include <catch2/catch.hpp>
 #include <string_view>
 
-using namespace controlspace;
-
+namespace controlspace::metric_grids_test {
 namespace {
 
 std::array<double, 3> value(std::string_view name, const Metric& m) {
@@ -65,3 +64,5 @@ TEST_CASE("density is 1 where finest, 0 where coarsest, and leads back to the le
     CHECK(length_of_density(-3, 0.01, 1) == 1);
     CHECK(length_of_density(7, 0.01, 1) == Approx(0.01));
 }
+
+}  // namespace controlspace::metric_grids_test

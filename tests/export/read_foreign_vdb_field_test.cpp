@@ -6,7 +6,8 @@
 #include "export/made_grids.h"
 #include "fields/values.h"
 
-using namespace controlspace;
+namespace controlspace::read_foreign_vdb_field_test {
+
 using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
 
@@ -130,3 +131,5 @@ TEST_CASE("files that cannot be used are refused in one line") {
     CHECK_THAT(foreign({tensors("metric_diag", one), shifted}, {}),
                Contains("different transforms"));
 }
+
+}  // namespace controlspace::read_foreign_vdb_field_test

@@ -9,7 +9,8 @@
 #include "export/fixtures.h"
 #include "fields/values.h"
 
-using namespace controlspace;
+namespace controlspace::read_vdb_field_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -110,3 +111,5 @@ TEST_CASE("our own density leads back to the smallest length") {
                 Approx(eigen_frame(wavy(x)).lengths[0]).epsilon(1e-5));
     }
 }
+
+}  // namespace controlspace::read_vdb_field_test

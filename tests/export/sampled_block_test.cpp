@@ -9,7 +9,8 @@
 
 #include "export/fixtures.h"
 
-using namespace controlspace;
+namespace controlspace::sampled_block_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -110,3 +111,5 @@ TEST_CASE("what is no metric is refused, with its place") {
     });
     CHECK_THAT(error, Contains("(-0.875, -0.875, -0.875)") && Contains("not positive definite"));
 }
+
+}  // namespace controlspace::sampled_block_test

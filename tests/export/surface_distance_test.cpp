@@ -6,8 +6,7 @@
 
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::surface_distance_test {
 namespace {
 
 /// By the smallest distance from the plane, where the foot is inside, from the edges otherwise.
@@ -50,3 +49,5 @@ TEST_CASE("the distance from a surface is the smallest from its triangles") {
         CHECK(field.distance(x) == Approx(nearest).epsilon(1e-12).margin(1e-12));
     }
 }
+
+}  // namespace controlspace::surface_distance_test

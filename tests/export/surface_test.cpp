@@ -7,7 +7,8 @@
 #include "io/surface/surface_mesh.h"
 #include "sources/files.h"
 
-using namespace controlspace;
+namespace controlspace::surface_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -153,3 +154,5 @@ TEST_CASE("surfaces without triangles are refused") {
     CHECK_THAT(error("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"), Contains("t.obj: "));
     CHECK_THAT(error("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), Contains("t.obj: no "));
 }
+
+}  // namespace controlspace::surface_test

@@ -6,8 +6,7 @@
 #include "export/surfaces.h"
 #include "sources/files.h"
 
-using namespace controlspace;
-
+namespace controlspace::surface_walls_test {
 namespace {
 
 std::vector<PointSource> sources_of(const Surface& surface, const CurvatureSizes& sizes) {
@@ -112,3 +111,5 @@ TEST_CASE("walls that touch, and surfaces at an angle to each other, are no gaps
         CHECK(eigen_frame(s.metric).lengths[0] == Approx(0.2));
     }
 }
+
+}  // namespace controlspace::surface_walls_test

@@ -35,7 +35,8 @@
 #include "io/text/vtk_xml.h"
 #include "sources/files.h"
 
-using namespace controlspace;
+namespace controlspace::vtk_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -500,3 +501,5 @@ TEST_CASE("between points with metrics a field is linear") {
     CHECK_THAT(error_of([&] { read_vtk_field(folder / "nodes.vtu"); }),
                Contains("cell 1 has no volume"));
 }
+
+}  // namespace controlspace::vtk_test

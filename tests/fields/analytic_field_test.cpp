@@ -6,7 +6,8 @@
 #include "controlspace/error.h"
 #include "fields/values.h"
 
-using namespace controlspace;
+namespace controlspace::analytic_field_test {
+
 using Catch::Matchers::Contains;
 
 TEST_CASE("a function field answers its function, in the order of the places") {
@@ -45,3 +46,5 @@ TEST_CASE("a domain must lie in the field's definition") {
     CHECK_THROWS_WITH(require_defined(bounded, beyond, "f"),
                       Contains("field f") && Contains("[0, 1] x [0, 1] x [0, 1]"));
 }
+
+}  // namespace controlspace::analytic_field_test

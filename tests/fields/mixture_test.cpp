@@ -12,7 +12,7 @@
 #include "fields/values.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
+namespace controlspace::mixture_test {
 
 TEST_CASE("a mixture is the intersection of its fields, in their order") {
     const auto polar = ugawg_polar_2().field;
@@ -64,3 +64,5 @@ TEST_CASE("a mixture is defined where all its fields are") {
     CHECK(mixed->domain().low == Point(1, -1, 5));
     CHECK(mixed->domain().high == Point(4, 2, 8));
 }
+
+}  // namespace controlspace::mixture_test

@@ -8,7 +8,8 @@
 #include "fields/values.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
+namespace controlspace::primitives_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -170,3 +171,5 @@ TEST_CASE("what is no primitive is refused with the text and the remedy") {
     CAPTURE(text);
     CHECK_THAT(error_of(text), Contains(text + ": " + expected));
 }
+
+}  // namespace controlspace::primitives_test

@@ -10,7 +10,8 @@
 #include "fields/values.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
+namespace controlspace::surface_fields_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -105,3 +106,5 @@ TEST_CASE("surface fields refuse what they cannot do") {
                       Contains("centre of a field = (nan, 0, 0)"));
     CHECK_THROWS_WITH(planes_field({.slope = nan}), Contains("slope nan"));
 }
+
+}  // namespace controlspace::surface_fields_test

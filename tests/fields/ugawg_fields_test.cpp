@@ -8,8 +8,7 @@
 #include "fields/values.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::ugawg_fields_test {
 namespace {
 
 // The benchmark's own form: the Riemannian metric R diag(h_r^-2, h_t^-2, h_z^-2) R^T with R by
@@ -97,3 +96,5 @@ TEST_CASE("UGAWG fields are 0.001 long at least, and positive definite up to the
         CHECK(least < 0.0015);
     }
 }
+
+}  // namespace controlspace::ugawg_fields_test

@@ -8,7 +8,8 @@
 #include "controlspace/geometry/extent.h"
 #include "controlspace/geometry/subdivision.h"
 
-using namespace controlspace;
+namespace controlspace::box_test {
+
 using Catch::Matchers::Contains;
 
 TEST_CASE("a box is fit for a domain from 1e-50 to 1e50, and near enough to the origin") {
@@ -89,3 +90,5 @@ TEST_CASE("no point of a box is nearer than the nearest") {
         }
     }
 }
+
+}  // namespace controlspace::box_test

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-using namespace controlspace;
+namespace controlspace::large_pages_test {
 
 TEST_CASE("a large array is the same with another capacity") {
     std::vector<int> array(40'000'000);  // three pieces
@@ -32,3 +32,5 @@ TEST_CASE("memory is given back but for the pages at its ends") {
     CHECK(std::none_of(array.begin(), array.begin() + first, is_lost));
     CHECK(std::none_of(array.begin() + first + 30 * page, array.end(), is_lost));
 }
+
+}  // namespace controlspace::large_pages_test

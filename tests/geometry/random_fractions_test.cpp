@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace controlspace;
+namespace controlspace::random_fractions_test {
 
 TEST_CASE("fractions are the upper 53 bits of the standard's engine") {
     // Its 10000th number from seed 5489 is given by the C++ standard, [rand.predef].
@@ -22,3 +22,5 @@ TEST_CASE("fractions fill [0, 1) evenly") {
     }
     for (const int count : tenths) CHECK(std::abs(count - n / 10) < 5 * 95);  // 95: deviation
 }
+
+}  // namespace controlspace::random_fractions_test

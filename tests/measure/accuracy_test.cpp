@@ -12,8 +12,7 @@
 #include "measure/fake_spaces.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::accuracy_test {
 namespace {
 
 const Box cube{Point(-1, -1, -1), Point(1, 1, 1)};
@@ -226,3 +225,5 @@ TEST_CASE("Source accuracy is the largest error at the sources' places") {
     CHECK(source_accuracy(ramp, sources) == Approx(isotropic_delta(4)));
     CHECK(source_accuracy(ramp, {}) == 0);
 }
+
+}  // namespace controlspace::accuracy_test

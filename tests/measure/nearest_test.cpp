@@ -6,7 +6,7 @@
 
 #include "geometry/random_fractions.h"
 
-using namespace controlspace;
+namespace controlspace::nearest_test {
 
 TEST_CASE("the nearest points are those that a search through all finds") {
     RandomFractions fraction(7);
@@ -37,3 +37,5 @@ TEST_CASE("fewer points than asked for, or all in one place") {
     CHECK(nearest_neighbours(std::vector<Point>(4, Point::Zero()), 6).neighbours.empty());
     CHECK(nearest_neighbours({}, 6).size() == 0);
 }
+
+}  // namespace controlspace::nearest_test

@@ -11,8 +11,7 @@
 #include "controlspace/metric/nonconformity.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::reference_test {
 namespace {
 
 const Metric wide = Metric::isotropic(2);
@@ -297,3 +296,5 @@ TEST_CASE("What no reference can be made of is named") {
                           Catch::Contains("source 2") && Catch::Contains("positive definite"));
     }
 }
+
+}  // namespace controlspace::reference_test

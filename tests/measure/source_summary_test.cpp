@@ -5,7 +5,7 @@
 #include "controlspace/error.h"
 #include "controlspace/sources/sampled_surfaces.h"
 
-using namespace controlspace;
+namespace controlspace::source_summary_test {
 
 TEST_CASE("a few sources are summed up as by hand") {
     const std::vector<PointSource> sources{{{0, 0, 0}, Metric::isotropic(0.1)},
@@ -58,3 +58,5 @@ TEST_CASE("a sphere of equal sources asks for no gradation") {
 }
 
 TEST_CASE("no sources cannot be summed up") { CHECK_THROWS_AS(summarise({}), InputError); }
+
+}  // namespace controlspace::source_summary_test

@@ -10,8 +10,7 @@
 #include "measure/fake_spaces.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::steepness_test {
 namespace {
 
 const Box cube{Point(-1, -1, -1), Point(1, 1, 1)};
@@ -89,8 +88,11 @@ TEST_CASE("The exact field is as steep as the gradation ratio, its elements no s
     const Steepness s = steepness(*field, cube, sources, 7, 4000);
     // Lengths are known to 1e-6 at distances of 0.01.
     CHECK(s.det < g + 1e-4);
-    CHECK(s.det > 1 + 0.6 * (g - 1));
-    if (anisotropy == 1) CHECK(s.dir < g + 1e-4);
+    if (anisotropy == 1) {
+        CHECK(s.dir < g + 1e-4);
+        // Away from sources isotropic lengths grow by g - 1 everywhere: any pair along it shows it.
+        CHECK(s.det > 1 + 0.995 * (g - 1));
+    }
 }
 
 TEST_CASE("What is no metric is infinitely steep") {
@@ -111,3 +113,5 @@ TEST_CASE("Steepness depends on its seed, and not on threads", "[threads]") {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     CHECK(with(7) == found);
 }
+
+}  // namespace controlspace::steepness_test

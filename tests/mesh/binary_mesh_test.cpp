@@ -5,7 +5,8 @@
 #include "sources/files.h"
 #include "sources/medit_bytes.h"
 
-using namespace controlspace;
+namespace controlspace::binary_mesh_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -48,3 +49,5 @@ TEST_CASE("corners of binary meshes that are none are refused") {
                    Contains("Triangles 1: " + std::to_string(corner) + " is not one of 1 to 4"));
     }
 }
+
+}  // namespace controlspace::binary_mesh_test

@@ -17,7 +17,8 @@
 #include "io/surface/surface_sources.h"
 #include "sources/files.h"
 
-using namespace controlspace;
+namespace controlspace::cad_surface_test {
+
 namespace occ = gmsh::model::occ;
 
 namespace {
@@ -235,3 +236,5 @@ TEST_CASE("curvatures that a CAD part does not give are fitted, and counted") {
     CHECK(found.sources[somewhere].metric.xx == Approx(2).epsilon(0.02));
     CHECK(found.sources[somewhere].metric.xx != Approx(2).epsilon(1e-9));
 }
+
+}  // namespace controlspace::cad_surface_test

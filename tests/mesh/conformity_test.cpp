@@ -9,8 +9,7 @@
 #include "controlspace/fields/formula_field.h"
 #include "mesh/fixtures.h"
 
-using namespace controlspace;
-
+namespace controlspace::conformity_test {
 namespace {
 
 /// Regular, of edge √8.
@@ -109,3 +108,5 @@ TEST_CASE("a mesh without tetrahedra is refused") {
     const FormulaField field([](const Point&) { return Metric::isotropic(1); });
     CHECK_THROWS_AS(conformity(TetMesh{}, field), InputError);
 }
+
+}  // namespace controlspace::conformity_test

@@ -17,7 +17,8 @@
 #include "io/text/pos.h"
 #include "sources/files.h"
 
-using namespace controlspace;
+namespace controlspace::gmsh_files_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -300,3 +301,5 @@ TEST_CASE("Gmsh finds the tensors of a view of cells as the structure has them")
     CHECK(cells.off <= 0.01);
     CHECK(found_by_gmsh(file, *space, box) >= 0.99);
 }
+
+}  // namespace controlspace::gmsh_files_test

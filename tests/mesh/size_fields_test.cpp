@@ -12,8 +12,7 @@
 #include "io/text/size_files.h"
 #include "sources/files.h"
 
-using namespace controlspace;
-
+namespace controlspace::size_fields_test {
 namespace {
 
 const Box domain{Point(-1, -1, -1), Point(1, 2, 0.5)};
@@ -115,3 +114,5 @@ TEST_CASE("Gmsh's field ExternalProcess gets the lengths of the structure, to th
         CONTROLSPACE_APP " query '" + (folder.path() / "f.ctrl").string() + "' --pipe";
     CHECK(by_gmsh("ExternalProcess", "CommandLine", command) == by_structure(*space));
 }
+
+}  // namespace controlspace::size_fields_test

@@ -9,7 +9,8 @@
 #include "mesh/fixtures.h"
 #include "sources/files.h"
 
-using namespace controlspace;
+namespace controlspace::size_query_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -75,3 +76,5 @@ TEST_CASE("tetrahedra are estimated from the volumes that metrics ask for") {
     const FormulaField wrong([](const Point&) { return Metric{-1, 1, 0, 0, 0, 0}; });
     CHECK_FALSE(error_of([&] { require_few_tets(box, wrong, 8000); }).empty());
 }
+
+}  // namespace controlspace::size_query_test

@@ -5,7 +5,7 @@
 
 #include "mesh/fixtures.h"
 
-using namespace controlspace;
+namespace controlspace::tet_mesh_test {
 
 TEST_CASE("each edge of a mesh comes once, in order") {
     const VertexIndex n = 3;
@@ -28,3 +28,5 @@ TEST_CASE("volumes are signed, and turning upright makes them positive") {
     CHECK(volume(mesh) == Approx(1));
     for (const Tetrahedron& tet : mesh.tets) CHECK(signed_volume(mesh, tet) == Approx(1.0 / 48));
 }
+
+}  // namespace controlspace::tet_mesh_test

@@ -11,8 +11,7 @@
 #include "mesh/fixtures.h"
 #include "sources/files.h"
 
-using namespace controlspace;
-
+namespace controlspace::writers_test {
 namespace {
 
 const FormulaField skew(skew_metric);
@@ -95,3 +94,5 @@ TEST_CASE("a file that cannot be written is named") {
     CHECK(error_of([&] { write_medit_mesh("/dev/full", mesh); }).find("/dev/full") == 13);
     CHECK(error_of([&] { write_vtu("/none/box.vtu", mesh, skew); }).find("/none/box.vtu") == 13);
 }
+
+}  // namespace controlspace::writers_test

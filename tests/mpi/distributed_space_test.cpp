@@ -22,8 +22,7 @@
 #include "controlspace/space/make_control_space.h"
 #include "geometry/random_fractions.h"
 
-using namespace controlspace;
-
+namespace controlspace::distributed_space_test {
 namespace {
 
 constexpr std::size_t places = 5000;
@@ -435,3 +434,5 @@ TEST_CASE("what fails on one rank is thrown on all") {
     // The ranks go on together.
     check_equal(scene, options_for(scene));
 }
+
+}  // namespace controlspace::distributed_space_test

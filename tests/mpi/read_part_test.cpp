@@ -11,8 +11,7 @@
 #include "controlspace/error.h"
 #include "controlspace/io/read_sources.h"
 
-using namespace controlspace;
-
+namespace controlspace::read_part_test {
 namespace {
 
 struct TextFile {
@@ -55,3 +54,5 @@ TEST_CASE("a bad line of a part is named by its number in the file") {
     const TextFile empty("x,y,z,h\n");
     CHECK_THROWS_AS(read_csv_part(empty.path, 0, 2), InputError);
 }
+
+}  // namespace controlspace::read_part_test

@@ -1,4 +1,5 @@
 // Laws that every foreign system keeps, whatever its own law of growth.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <stdexcept>
 
@@ -8,8 +9,7 @@
 #include "controlspace/space/sample_parallel.h"
 #include "peers/peers.h"
 
-namespace controlspace {
-
+namespace controlspace::every_peer_test {
 namespace {
 
 const std::vector<CatalogueEntry>& peers() {
@@ -66,7 +66,7 @@ CASE_OF_EACH(entry, peers(), "without sources every place gets M_max") {
     Work work = oblong_box();
     const std::vector<Point> places = places_in(work, 50);
     // Grids need a length for their voxels.
-    SpaceOptions options = work.options(SplitRule::middle);
+    SpaceOptions options = work.options();
     const auto space = entry.make(options)->build();
     for (const double h : lengths_at(*space, places)) {
         REQUIRE(h == Approx(work.domain.half_diagonal()).epsilon(1e-6));
@@ -86,13 +86,10 @@ TEST_CASE("rows that come after the first use of the list are refused") {
     CHECK_THROWS_AS(add_structures(peers()), std::logic_error);
 }
 
-TEST_CASE("every peer is of the family peers, with an id of its own") {
-    for (const CatalogueEntry& entry : peers()) {
-        CAPTURE(entry.id);
-        CHECK(entry.family == "peers");
-        CHECK(find_entry(peers(), entry.id) == &entry);
-        CHECK(find_entry(structures(), entry.id) == nullptr);
-    }
+CASE_OF_EACH(entry, peers(), "a peer is of the family peers, with an id of its own") {
+    CHECK(entry.family == "peers");
+    CHECK(std::ranges::count(peers(), entry.id, &CatalogueEntry::id) == 1);
+    CHECK(find_entry(structures(), entry.id) == nullptr);
 }
 
-}  // namespace controlspace
+}  // namespace controlspace::every_peer_test

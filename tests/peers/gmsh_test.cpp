@@ -15,13 +15,12 @@
 #include "controlspace/sources/riemannian.h"
 #include "peers/places.h"
 
-using namespace controlspace;
-
 namespace controlspace {
 std::vector<CatalogueEntry> gmsh_rows();
 std::vector<CatalogueEntry> tets_rows();
 }  // namespace controlspace
 
+namespace controlspace::gmsh_test {
 namespace {
 
 CatalogueEntry row(const std::vector<CatalogueEntry>& rows, std::string_view id) {
@@ -151,13 +150,6 @@ CASE_OF_EACH(entry, gmsh_rows(), "sizes are the isotropic metrics' lengths") {
     for (std::size_t i = 0; i < x.size(); ++i) CHECK(h[i] == sample_at(*space, x[i]).xx);
 }
 
-CASE_OF_EACH(entry, gmsh_rows(), "memory of a field of Gmsh grows with what it holds") {
-    const auto fine = filled(entry, oblong, false, 0.02)->footprint();
-    CHECK(fine.bytes_payload > 0);
-    CHECK(fine.bytes_total() >= fine.control_nodes * sizeof(double));
-    CHECK(fine.bytes_total() < 3000 * fine.control_nodes);
-}
-
 CASE_OF_EACH(entry, gmsh_rows(), "a field of a Gmsh that was closed throws") {
     const auto closed = filled(entry, oblong);
     gmsh::finalize();
@@ -184,3 +176,5 @@ TEST_CASE("the file that Structured reads is gone once it was read") {
 }
 
 }  // namespace
+
+}  // namespace controlspace::gmsh_test

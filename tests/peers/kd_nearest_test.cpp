@@ -4,7 +4,7 @@
 #include "controlspace/input_errors.h"
 #include "peers/peers.h"
 
-namespace controlspace {
+namespace controlspace::kd_nearest_test {
 
 TEST_CASE("kd-nearest of all sources is the exact field") {
     const Work work = GENERATE(oblong_box(), flat_box(), with_own_growths(oblong_box()));
@@ -66,14 +66,14 @@ TEST_CASE("fewer sources than kd-nearest takes are all taken") {
 TEST_CASE("systems of lengths name the tensor that they refuse") {
     Work work = oblong_box();
     work.sources[3].metric.xy = 0.001;
-    const auto builder = row_named("kd-nearest").make(work.options(SplitRule::middle));
+    const auto builder = row_named("kd-nearest").make(work.options());
     CHECK_THROWS_WITH(builder->insert(work.sources),
                       Catch::Contains("source 3: ") && Catch::Contains("isotropic sources"));
 }
 
 TEST_CASE("systems of sources refuse a continuous field, and adapt to sources") {
     const Work work = oblong_box();
-    const auto builder = row_named("kd-nearest-all").make(work.options(SplitRule::middle));
+    const auto builder = row_named("kd-nearest-all").make(work.options());
     AdaptationGoal goal;
     goal.sources = work.sources;
     goal.ratio = 1.5;
@@ -84,4 +84,4 @@ TEST_CASE("systems of sources refuse a continuous field, and adapt to sources") 
     CHECK_THROWS_AS(builder->adapt(goal), InputError);
 }
 
-}  // namespace controlspace
+}  // namespace controlspace::kd_nearest_test

@@ -6,7 +6,7 @@
 #include "controlspace/space/control_nodes.h"
 #include "peers/peers.h"
 
-namespace controlspace {
+namespace controlspace::nanovdb_test {
 
 TEST_CASE("NanoVDB answers as the structure that it is a copy of") {
     const Work work = GENERATE(oblong_box(), anisotropic_oblong_box(), flat_box());
@@ -66,4 +66,4 @@ TEST_CASE("NanoVDB answers on a GPU as here, to the bit") {
     }
 }
 
-}  // namespace controlspace
+}  // namespace controlspace::nanovdb_test

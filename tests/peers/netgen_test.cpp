@@ -5,7 +5,7 @@
 #include "controlspace/input_errors.h"
 #include "peers/peers.h"
 
-namespace controlspace {
+namespace controlspace::netgen_test {
 
 TEST_CASE("Netgen's sizes at a source keep to its dead band of 20 %") {
     const Work work = GENERATE(oblong_box(), isotropic_sphere());
@@ -61,8 +61,7 @@ TEST_CASE("Netgen's own law departs from the exact field more than its octree do
     const double own = mean_departure("netgen-localh");
     const double stored = mean_departure("netgen-localh-exact");
     CAPTURE(own, stored);
-    CHECK(stored < 0.15);
-    CHECK(own > 1.5 * stored);
+    CHECK(own > 2 * stored);
 }
 
 TEST_CASE("Netgen's boxes of a plane across z are those of a quadtree") {
@@ -81,8 +80,8 @@ TEST_CASE("Netgen's boxes of a plane across z are those of a quadtree") {
 TEST_CASE("Netgen's sizes refuse tensors") {
     Work work = oblong_box();
     work.sources[2].metric.xx *= 2;
-    const auto builder = row_named("netgen-localh").make(work.options(SplitRule::middle));
+    const auto builder = row_named("netgen-localh").make(work.options());
     CHECK_THROWS_WITH(builder->insert(work.sources), Catch::Contains("source 2: "));
 }
 
-}  // namespace controlspace
+}  // namespace controlspace::netgen_test

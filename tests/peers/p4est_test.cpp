@@ -2,7 +2,7 @@
 
 #include "peers/peers.h"
 
-namespace controlspace {
+namespace controlspace::p4est_test {
 
 TEST_CASE("a forest of p4est answers as K_oL, to the bit") {
     const Work work =
@@ -31,7 +31,7 @@ TEST_CASE("faces of leaves belong to the same side in a forest of p4est and in K
 TEST_CASE("a forest of p4est is adapted as K_oL is") {
     const Work work = oblong_box();
     const auto adapted = [&](const char* id) {
-        const auto builder = row_named(id).make(work.options(SplitRule::middle));
+        const auto builder = row_named(id).make(work.options());
         AdaptationGoal goal;
         goal.sources = work.sources;
         CHECK(builder->adapt(goal).met);
@@ -40,4 +40,4 @@ TEST_CASE("a forest of p4est is adapted as K_oL is") {
     CHECK(differing(adapted("p4est-octree"), adapted("K_oL")) == 0);
 }
 
-}  // namespace controlspace
+}  // namespace controlspace::p4est_test

@@ -22,7 +22,7 @@ inline const CatalogueEntry& row_named(const std::string& id) {
 /// The finished structure `id` of the work's sources.
 inline std::unique_ptr<ControlSpace> finished(const std::string& id, const Work& work,
                                               double ratio = 1.25) {
-    SpaceOptions options = work.options(SplitRule::middle);
+    SpaceOptions options = work.options();
     options.l_min = 0.5;
     const auto builder = row_named(id).make(options);
     builder->insert(work.sources);

@@ -4,13 +4,13 @@
 #include "cli/sandbox.h"
 #include "peers/peers.h"
 
-namespace controlspace {
-
+namespace controlspace::program_test {
 namespace {
 
 bool has_nanoflann() {
     if (find_entry(peer_rows(), "kd-nearest") != nullptr) return true;
     WARN("skipped: this build has no nanoflann");
+    SUCCEED("no nanoflann");
     return false;
 }
 
@@ -65,4 +65,4 @@ TEST_CASE("controlspace itself neither knows nor links foreign systems") {
     for (const CatalogueEntry& row : peer_rows()) CHECK(listed.find(row.id) == std::string::npos);
 }
 
-}  // namespace controlspace
+}  // namespace controlspace::program_test

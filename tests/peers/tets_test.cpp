@@ -13,12 +13,11 @@
 #include "controlspace/space/detail/saved.h"
 #include "peers/places.h"
 
-using namespace controlspace;
-
 namespace controlspace {
 std::vector<CatalogueEntry> tets_rows();
-}
+}  // namespace controlspace
 
+namespace controlspace::tets_test {
 namespace {
 
 std::vector<PointSource> some_sources(std::size_t count, const Box& box = oblong) {
@@ -193,7 +192,7 @@ CASE_OF_EACH(row, tets_rows(), "a flat domain has triangles") {
     for (const Point& x : places_in(flat, 2000)) {
         largest = std::max(largest, nonconformity(sample_at(*space, x), sample_at(*exact, x)));
     }
-    CHECK(largest < 0.12);
+    CHECK(largest <= 0.1);
     CHECK(space->footprint().cells > 10);
 }
 
@@ -284,8 +283,8 @@ CASE_OF_EACH(row, tets_rows(), "adaptation ends where the next tetrahedra would 
     CHECK_FALSE(report.met);
     CHECK(report.shortfall.find("cap on memory") != std::string::npos);
     const std::size_t bytes = builder->build()->footprint().bytes_total();
-    CHECK(bytes > cap / 10);
-    CHECK(bytes < cap * 3 / 2);  // the number of tetrahedra is estimated
+    CHECK(bytes <= cap);
+    CHECK(bytes > cap / 5);  // the number of the next tetrahedra is estimated: 0.24 and 0.67 of it
 }
 
 CASE_OF_EACH(row, tets_rows(), "what was saved answers alike") {
@@ -321,3 +320,5 @@ CASE_OF_EACH(row, tets_rows(), "adaptation leaves no triangles without height al
 }
 
 }  // namespace
+
+}  // namespace controlspace::tets_test

@@ -44,7 +44,8 @@ class Fields(unittest.TestCase):
         np.testing.assert_array_equal(field.box, box)
         x = random.uniform(-1, 1, (500, 3)) * (1, 0, 1) + (0, 0.5, 0)
         exact = np.minimum(exact_sizes(points, h, 1.25, x), np.sqrt(2))
-        np.testing.assert_allclose(field.size(x), exact, rtol=0.28)  # delta 0.1
+        k = field.size(x) / exact
+        self.assertLessEqual(np.max(np.sqrt(3) * (k + 1 / k - 2)), 0.1)
         with self.assertRaisesRegex(ValueError, r"points\[7\]"):
             controlspace.build(points + (np.arange(50) == 7)[:, None] * 1e-6, h, box=box)
         with self.assertRaisesRegex(ValueError, "two axes"):
@@ -67,7 +68,8 @@ class Fields(unittest.TestCase):
                 field = controlspace.build(points, h, name, BOX)
                 self.assertIsNone(field.delta)
                 k = field.size(x) / exact_sizes(points, h, 1.25, x)
-                self.assertLess(np.median(np.maximum(k, 1 / k)), 1.5)
+                # Inserted and graded: K_L 1.11, the others less.
+                self.assertLess(np.median(np.maximum(k, 1 / k)), 1.125)
 
     def test_sizes_are_the_smallest_lengths(self):
         points, m = tensors()
@@ -117,11 +119,12 @@ class Fields(unittest.TestCase):
 
     def test_limits_of_lengths(self):
         points, m = tensors()
-        x = np.asarray(points)
+        x = np.vstack([points, random.uniform(-1, 1, (1000, 3))])
         for h in (m, np.linalg.eigvalsh(m)[:, 0]):
             field = controlspace.build(points, h, "K_oV", BOX, delta=0.05, h_min=0.1, h_max=0.15)
-            self.assertGreater(field.size(x).min(), 0.1 / 1.2)
-            self.assertLess(field.size(x).max(), 0.15 * 1.2)
+            # The limits hold at vertices, and what lies between is a mean of these.
+            self.assertGreater(field.size(x).min(), 0.1 * (1 - 1e-9))
+            self.assertLess(field.size(x).max(), 0.15 * (1 + 1e-9))
 
     def test_kinds_of_arrays(self):
         points, h = sources()

@@ -7,7 +7,8 @@
 
 #include "sources/files.h"
 
-using namespace controlspace;
+namespace controlspace::csv_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -168,3 +169,5 @@ TEST_CASE("writing replaces the file behind a symbolic link") {
     CHECK(std::filesystem::is_symlink(link));
     CHECK(read_csv_sources(target) == sources);
 }
+
+}  // namespace controlspace::csv_test

@@ -7,8 +7,7 @@
 #include "io/text/csv.h"
 #include "scratch_directory.h"
 
-using namespace controlspace;
-
+namespace controlspace::damaged_files_test {
 namespace {
 
 std::vector<PointSource> sources(bool isotropic) {
@@ -43,3 +42,5 @@ TEST_CASE("damaged tables of frames and of places do too") {
     check_damaged_files(scratch.path(), "p.csv", "name,z,y,x\na,0,0,0\nb,0,0,0.2\n\nc,1,1,1\n", 200,
                         [](const std::filesystem::path& file) { read_csv_points(file); });
 }
+
+}  // namespace controlspace::damaged_files_test

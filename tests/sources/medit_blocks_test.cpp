@@ -8,7 +8,8 @@
 #include "sources/files.h"
 #include "sources/medit_bytes.h"
 
-using namespace controlspace;
+namespace controlspace::medit_blocks_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -165,3 +166,5 @@ TEST_CASE("what is wrong in a binary solution is named with its place") {
                    Contains("tensor 2 (10000 90 -800 1 10 100) is not positive definite, 1 of 2 "
                             "are not: is the order of their components xx xy yy xz yz zz?"));
 }
+
+}  // namespace controlspace::medit_blocks_test

@@ -7,7 +7,8 @@
 #include "controlspace/io/read_sources.h"
 #include "sources/files.h"
 
-using namespace controlspace;
+namespace controlspace::medit_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -145,3 +146,5 @@ TEST_CASE("a mesh and a solution of other sizes do not belong together") {
     CHECK_THAT(error_of([&] { read_medit_sources(mesh, solution); }),
                Contains("has 2 vertices") && Contains("has sizes for 1"));
 }
+
+}  // namespace controlspace::medit_test

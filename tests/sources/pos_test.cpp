@@ -4,7 +4,8 @@
 
 #include "sources/files.h"
 
-using namespace controlspace;
+namespace controlspace::pos_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -97,3 +98,5 @@ TEST_CASE("what is wrong in a view is named with its line") {
     CHECK_THAT(element("TP(0,0,0){1,2,0,2,1,0,0,0,1};"),
                Contains("v.pos:2: tensor 1 (1 2 0 2 1 0 0 0 1) is not positive definite, 1 of 1"));
 }
+
+}  // namespace controlspace::pos_test

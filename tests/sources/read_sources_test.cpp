@@ -7,7 +7,8 @@
 #include "io/text/medit.h"
 #include "sources/files.h"
 
-using namespace controlspace;
+namespace controlspace::read_sources_test {
+
 using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
 
@@ -92,3 +93,5 @@ TEST_CASE("files that are not sources are named with the remedy") {
     std::filesystem::create_directory(folder);
     CHECK_THAT(error(folder), Contains("is a directory"));
 }
+
+}  // namespace controlspace::read_sources_test

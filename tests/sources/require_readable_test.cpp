@@ -18,8 +18,7 @@
 #include "controlspace/error.h"
 #include "sources/files.h"
 
-using namespace controlspace;
-
+namespace controlspace::require_readable_test {
 namespace {
 
 /// A file of four bytes.
@@ -127,3 +126,5 @@ TEST_CASE("A reader may not write, remove, connect or start anything") {
     CHECK(::truncate(path.c_str(), 2) == 0);
 }
 #endif
+
+}  // namespace controlspace::require_readable_test

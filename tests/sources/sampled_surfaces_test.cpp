@@ -9,8 +9,7 @@
 
 #include "sources/files.h"
 
-using namespace controlspace;
-
+namespace controlspace::sampled_surfaces_test {
 namespace {
 
 // Whether `m` has length `across` along the unit vector `n`, and `along` at right angles to it.
@@ -152,3 +151,5 @@ TEST_CASE("sampling refuses what it cannot do") {
     CHECK_THROWS_AS(sample_planes({.slope = nan}), InputError);
     CHECK_THROWS_AS(finest_length({}), InputError);
 }
+
+}  // namespace controlspace::sampled_surfaces_test

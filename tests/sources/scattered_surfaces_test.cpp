@@ -8,8 +8,7 @@
 
 #include "sources/files.h"
 
-using namespace controlspace;
-
+namespace controlspace::scattered_surfaces_test {
 namespace {
 
 constexpr Sampling irregular[] = {Sampling::random, Sampling::clustered, Sampling::poisson};
@@ -183,3 +182,5 @@ TEST_CASE("scattering refuses what sampling refuses") {
               }).find("centre = (0, nan, 0)") != std::string::npos);
     }
 }
+
+}  // namespace controlspace::scattered_surfaces_test

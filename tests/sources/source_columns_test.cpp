@@ -6,8 +6,7 @@
 #include "controlspace/sources/cone.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
-
+namespace controlspace::source_columns_test {
 namespace {
 
 std::vector<PointSource> drawn(std::size_t count, bool tensors, bool own_growths) {
@@ -74,3 +73,5 @@ TEST_CASE("copies of columns share their memory until one of them is added to") 
 TEST_CASE("columns without sources have no finest length") {
     CHECK_THROWS_WITH(finest_length(SourceColumns()), Catch::Contains("give at least one"));
 }
+
+}  // namespace controlspace::source_columns_test

@@ -10,7 +10,8 @@
 #include "controlspace/io/read_sources.h"
 #include "sources/files.h"
 
-using namespace controlspace;
+namespace controlspace::text_file_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -75,3 +76,5 @@ TEST_CASE("a zero byte is in no text, wherever it stands") {
     CHECK_THAT(error_of([&] { read_text_file(scratch.file("late", text)); }),
                Contains("late holds a zero byte: give a text file"));
 }
+
+}  // namespace controlspace::text_file_test

@@ -5,8 +5,7 @@
 
 #include "controlspace/error.h"
 
-using namespace controlspace;
-
+namespace controlspace::equal_setting_test {
 namespace {
 
 const CatalogueEntry grid{.id = "grid", .description = "", .capabilities = {VoxelSize()}};
@@ -88,3 +87,5 @@ TEST_CASE("voxels are pruned where that saves memory") {
     told.prune_delta = 0.02;
     CHECK(find_equal_setting(told, sparse, 2, attempt).setting.prune_delta == 0.02);
 }
+
+}  // namespace controlspace::equal_setting_test

@@ -4,7 +4,8 @@
 
 #include "controlspace/baselines/catalogue.h"
 
-using namespace controlspace;
+namespace controlspace::forecast_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -22,7 +23,7 @@ Study small_sphere() {
 
 }  // namespace
 
-TEST_CASE("memory is foretold within a factor of 1.5, for every structure") {
+TEST_CASE("memory is foretold, of grids by their voxels, of others by patches of sources") {
     const Study study = small_sphere();
     PreparedStudy prepared(study, {structures()});
     const auto forecasts = forecast(prepared);
@@ -34,8 +35,12 @@ TEST_CASE("memory is foretold within a factor of 1.5, for every structure") {
         REQUIRE(rows[i].is_measured());
         REQUIRE(forecasts[i]);
         const double bytes = rows[i].number("bytes_total");
-        CHECK(forecasts[i]->bytes > bytes / 1.5);
-        CHECK(forecasts[i]->bytes < bytes * 1.5);
+        // Grids take as many bytes for each voxel at any size, but for the voxels at the border.
+        // The leaves around the rim of a patch are too many: K_oLA 1.30, K_oL 1.23, others less.
+        const bool is_grid = find_entry(structures(), rows[i].setting.structure)->has<VoxelSize>();
+        const double factor = is_grid ? 1.02 : 1.33;
+        CHECK(forecasts[i]->bytes > bytes / factor);
+        CHECK(forecasts[i]->bytes < bytes * factor);
         CHECK(forecasts[i]->seconds > 0);
     }
 }
@@ -74,3 +79,5 @@ TEST_CASE("a grid that outgrows the cap on memory is foretold at the cap") {
     REQUIRE(forecasts[0]);
     CHECK(forecasts[0]->bytes == Approx(0.01 * 1024 * 1024 * 1024));
 }
+
+}  // namespace controlspace::forecast_test

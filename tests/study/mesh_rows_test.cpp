@@ -3,7 +3,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-using namespace controlspace;
+namespace controlspace::mesh_rows_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -77,3 +78,5 @@ TEST_CASE("meshes.json keeps rows and settings") {
     CHECK(json["rows"][3]["L_R"] == 0.7957);
     CHECK(json["rows"][3]["histogram"].size() == json["length_bounds"].size() + 1);
 }
+
+}  // namespace controlspace::mesh_rows_test

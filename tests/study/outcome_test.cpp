@@ -5,7 +5,8 @@
 #include "controlspace/metric/nonconformity.h"
 #include "study/sample_rows.h"
 
-using namespace controlspace;
+namespace controlspace::outcome_test {
+
 using Catch::Matchers::Contains;
 using Indices = std::vector<std::size_t>;
 
@@ -51,14 +52,12 @@ TEST_CASE("the smallest, the fastest and the most accurate are those within the 
     CHECK(outcome.smallest == Indices{2});
     CHECK(outcome.fastest == Indices{1});
     CHECK(outcome.most_accurate == Indices{3});
-    CHECK(outcome.sentences ==
-          std::vector<std::string>{
-              "Lengths within 1.25x of the reference's at all probes (by default): 3 of 4 rows.",
-              "Smallest: small (0.41 MB, 19.0 ns per query, lengths within 1.240x).",
-              "Fastest: fast (0.9 MB, 10.0 ns per query, lengths within 1.200x).",
-              "Most accurate: exact (5 MB, 1000.0 ns per query, lengths within 1.000x).",
-              "No tree was adapted: --within 1.25 makes trees for this error, often smaller "
-              "ones."});
+    REQUIRE(outcome.sentences.size() == 5);
+    CHECK_THAT(outcome.sentences[0], Contains("1.25x") && Contains("3 of 4 rows"));
+    CHECK_THAT(outcome.sentences[1], Contains("small (0.41 MB, 19.0 ns") && Contains("1.240x"));
+    CHECK_THAT(outcome.sentences[2], Contains("fast (0.9 MB, 10.0 ns") && Contains("1.200x"));
+    CHECK_THAT(outcome.sentences[3], Contains("exact (5 MB, 1000.0 ns") && Contains("1.000x"));
+    CHECK_THAT(outcome.sentences[4], Contains("--within 1.25"));
     std::vector<Row> grids = sample();
     for (Row& row : grids) row.values["tree_nodes"] = std::int64_t{0};
     CHECK(only(grids).sentences.size() == 4);
@@ -124,12 +123,10 @@ TEST_CASE("of tensors, delta allows more along one direction, and is a condition
 TEST_CASE("it is said when nothing is within the error, and what is closest") {
     std::vector<Row> rows{sample()[0]};
     CHECK(only(rows).within.empty());
-    CHECK(only(rows).sentences ==
-          std::vector<std::string>{
-              "No structure has lengths within 1.25x of the reference's at all probes (by "
-              "default).",
-              "Closest: coarse (0.1 MB, 5.0 ns per query, lengths within 1.600x); --within 1.25 "
-              "adapts trees to it."});
+    REQUIRE(only(rows).sentences.size() == 2);
+    CHECK_THAT(only(rows).sentences[0], Contains("No structure") && Contains("1.25x"));
+    CHECK_THAT(only(rows).sentences[1], Contains("coarse (0.1 MB, 5.0 ns") && Contains("1.600x") &&
+                                            Contains("--within 1.25 adapts trees"));
     rows[0].setting.reference = &published_sphere();
     CHECK_THAT(only(rows).sentences[1], !Contains("adapts trees"));
     rows[0].setting.target_delta = 0.1;
@@ -156,3 +153,5 @@ TEST_CASE("each work has an outcome of its own, under its name") {
     CHECK(json["smallest"] == Json{2});
     CHECK(json["measured"] == 3);
 }
+
+}  // namespace controlspace::outcome_test

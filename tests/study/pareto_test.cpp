@@ -6,8 +6,7 @@
 
 #include "study/sample_rows.h"
 
-using namespace controlspace;
-
+namespace controlspace::pareto_test {
 namespace {
 
 Row row_at(const char* structure, std::size_t bytes, double ns, double worst, double mean) {
@@ -83,3 +82,5 @@ TEST_CASE("a row leaves the front of access only for one that is faster beyond t
     rows[1].values["t_access_ns_random_q3"] = 9.5;
     CHECK(front(pareto_plots(rows)[2]) == std::vector{true, true});
 }
+
+}  // namespace controlspace::pareto_test

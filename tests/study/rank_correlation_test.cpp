@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-using namespace controlspace;
+namespace controlspace::rank_correlation_test {
 
 using List = std::vector<double>;
 
@@ -42,3 +42,5 @@ TEST_CASE("no rank correlation where there is nothing to order") {
     CHECK_FALSE(spearman(List{1, 2}, List{1, 2}));
     CHECK_FALSE(spearman(List{1, 2, 3}, List{4, 4, 4}));
 }
+
+}  // namespace controlspace::rank_correlation_test

@@ -9,7 +9,8 @@
 #include "study/results_json.h"
 #include "study/sample_rows.h"
 
-using namespace controlspace;
+namespace controlspace::read_results_test {
+
 using Catch::Matchers::Contains;
 using Json = nlohmann::ordered_json;
 
@@ -176,3 +177,5 @@ TEST_CASE("a row that is no row is refused by its number") {
     CHECK_THROWS_WITH(read_results(folder.path(), rows_of_trees),
                       Contains("row 2: ") && Contains("delta_R_max"));
 }
+
+}  // namespace controlspace::read_results_test

@@ -9,100 +9,12 @@
 #include "study/results_json.h"
 #include "study/sample_rows.h"
 
-using namespace controlspace;
+namespace controlspace::results_test {
+
 using Catch::Matchers::Contains;
 using Json = nlohmann::ordered_json;
 
 namespace {
-
-const std::vector<std::string> row_fields{"structure",
-                                          "field",
-                                          "sampling",
-                                          "rho",
-                                          "s_a",
-                                          "s_n",
-                                          "g_r",
-                                          "reference",
-                                          "intersection",
-                                          "law",
-                                          "schedule",
-                                          "epsilon",
-                                          "tau",
-                                          "split",
-                                          "max_depth",
-                                          "interpolation",
-                                          "target_delta",
-                                          "within",
-                                          "max_leaves",
-                                          "equal_delta",
-                                          "equal_memory",
-                                          "voxel",
-                                          "neighbourhood",
-                                          "frozen",
-                                          "prune_delta",
-                                          "sources",
-                                          "sources_inserted",
-                                          "tree_nodes",
-                                          "cells",
-                                          "control_nodes",
-                                          "depth",
-                                          "bytes_total",
-                                          "bytes_payload",
-                                          "bytes_topology",
-                                          "bytes_auxiliary",
-                                          "t_insert_s",
-                                          "t_insert_s_q1",
-                                          "t_insert_s_q3",
-                                          "t_insert_s_samples",
-                                          "t_gradation_s",
-                                          "t_gradation_s_q1",
-                                          "t_gradation_s_q3",
-                                          "t_gradation_s_samples",
-                                          "t_creation_s",
-                                          "t_creation_s_q1",
-                                          "t_creation_s_q3",
-                                          "t_creation_s_samples",
-                                          "t_access_ns_random",
-                                          "t_access_ns_random_q1",
-                                          "t_access_ns_random_q3",
-                                          "t_access_ns_random_samples",
-                                          "t_access_ns_grid",
-                                          "t_access_ns_grid_q1",
-                                          "t_access_ns_grid_q3",
-                                          "t_access_ns_grid_samples",
-                                          "t_access_ns_single",
-                                          "t_access_ns_single_q1",
-                                          "t_access_ns_single_q3",
-                                          "t_access_ns_single_samples",
-                                          "access_batch",
-                                          "delta_S_max",
-                                          "delta_R_max",
-                                          "delta_R_mean",
-                                          "delta_R_p95",
-                                          "delta_R_p99",
-                                          "delta_R_fine_max",
-                                          "delta_R_fine_mean",
-                                          "delta_R_fine_p95",
-                                          "delta_R_fine_p99",
-                                          "delta_metric_R_max",
-                                          "coarser_max",
-                                          "coarser_share",
-                                          "coarser_fine_max",
-                                          "coarser_fine_share",
-                                          "finer_max",
-                                          "finer_share",
-                                          "finer_fine_max",
-                                          "finer_fine_share",
-                                          "within_max",
-                                          "within_fine_max",
-                                          "G_det",
-                                          "G_dir",
-                                          "gradation_max_left",
-                                          "gradation_operations",
-                                          "checksum",
-                                          "remark",
-                                          "shortfall",
-                                          "error"};
 
 const StudyRows rows_of_trees = tree_rows();
 
@@ -137,10 +49,9 @@ std::vector<std::string> take_record(std::string_view& csv) {
 
 }  // namespace
 
-TEST_CASE("a row has exactly the documented fields, measured or not") {
-    std::vector<std::string> expected = row_fields;
-    expected.insert(expected.end(), {"fields", "labels"});
-    CHECK(keys(to_json(sample_row(published_case()), rows_of_trees)) == expected);
+TEST_CASE("a row has the same fields, measured or not") {
+    const std::vector<std::string> expected =
+        keys(to_json(sample_row(published_case()), rows_of_trees));
     CHECK(keys(to_json(failed_row(), rows_of_trees)) == expected);
     CHECK(keys(to_json(Row{}, rows_of_trees)) == expected);
 }
@@ -201,13 +112,17 @@ TEST_CASE("CSV and JSON say the same") {
     for (const Row& row : rows) folder.add(row);
     const std::string text = file_text(root / "a" / "results.csv");
     std::string_view csv = text;
-    CHECK(take_record(csv) == row_fields);
+    const std::vector<std::string> fields = take_record(csv);
+    // JSON alone has the files of sampled fields, and labels for the pages.
+    std::vector<std::string> expected = fields;
+    expected.insert(expected.end(), {"fields", "labels"});
+    CHECK(keys(to_json(rows[0], rows_of_trees)) == expected);
     for (const Row& row : rows) {
         const Json json = to_json(row, rows_of_trees);
         const auto record = take_record(csv);
-        REQUIRE(record.size() == row_fields.size());
+        REQUIRE(record.size() == fields.size());
         for (std::size_t i = 0; i < record.size(); ++i) {
-            const Json& value = json[row_fields[i]];
+            const Json& value = json[fields[i]];
             if (value.is_array()) {
                 std::istringstream samples(record[i]);
                 std::vector<double> read;
@@ -231,22 +146,13 @@ TEST_CASE("results.json says who made it and what was requested") {
     folder.add(sample_row(published_case()));
     folder.finish(true);
     const Json json = Json::parse(file_text(root / "a" / "results.json"));
-    for (const char* field :
-         {"schema_version", "program", "version", "commit", "dirty", "compiler", "flags", "cpu",
-          "cores", "threads", "seed", "date", "command_line", "settings", "defaults",
-          "descriptions", "complete", "rows", "outcomes"}) {
-        CHECK(json.contains(field));
-    }
     CHECK(json["schema_version"] == 2);
     CHECK(json["complete"] == true);
     CHECK(json["rows"].size() == 1);
     CHECK(json["outcomes"].size() == 1);
-    CHECK(json["outcomes"][0]["sentences"][0] ==
-          "No structure has lengths within 1.25x of the reference's at all probes (by "
-          "default).");
-    CHECK(json["descriptions"]["structures"]["K_L"] == "kd-tree, a constant metric in each leaf");
-    CHECK(json["descriptions"]["settings"]["tau"] ==
-          "l_min: longest edge of the leaf of a source [metric length at the source]");
+    CHECK_THAT(json["outcomes"][0]["sentences"][0].get<std::string>(), Contains("1.25x"));
+    CHECK_THAT(json["descriptions"]["structures"]["K_L"].get<std::string>(), Contains("kd-tree"));
+    CHECK_THAT(json["descriptions"]["settings"]["tau"].get<std::string>(), Contains("l_min"));
     CHECK(json["settings"]["sources"] == "sphere");
     CHECK(json["settings"]["domain"] == Json::array());
     CHECK(json["settings"]["runs"][0]["structures"] == Json{"all"});
@@ -305,3 +211,5 @@ TEST_CASE("results go to the requested folder, or to one named after study and t
     study.output += "here";
     CHECK(results_path(study, provenance) == "here");
 }
+
+}  // namespace controlspace::results_test

@@ -4,7 +4,8 @@
 #include "controlspace/study/results.h"
 #include "study/sample_rows.h"
 
-using namespace controlspace;
+namespace controlspace::resume_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -86,3 +87,5 @@ TEST_CASE("what must not be mixed does not go on") {
     run.cases[0] = Case{};
     CHECK_THROWS_WITH(run.go_on(), Contains("row 2"));
 }
+
+}  // namespace controlspace::resume_test

@@ -9,7 +9,8 @@
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
 
-using namespace controlspace;
+namespace controlspace::run_test {
+
 using Catch::Matchers::Contains;
 using Catch::Matchers::EndsWith;
 
@@ -344,8 +345,9 @@ TEST_CASE("a row shows where the probes found more than adaptation states") {
 
 TEST_CASE("structures that answer otherwise when made again have no times") {
     CatalogueEntry moody{.id = "moody", .description = "", .capabilities = {MetricNodes()}};
+    static int made;  // `construct` is a plain function
+    made = 0;
     moody.construct = [](const SpaceOptions& options) {
-        static int made = 0;
         auto builder = find_entry(tree_catalogue(), "K_oL")->make(options);
         if (made++ == 1) builder->insert(PointSource{Point::Zero(), Metric::isotropic(0.01)});
         return builder;
@@ -397,3 +399,5 @@ TEST_CASE("a study takes rows of measures and parameters from outside") {
     CHECK(rows[1].number("cells") < rows[0].number("cells"));
     CHECK(rows[0].number("nodes_per_cell") == 1);
 }
+
+}  // namespace controlspace::run_test

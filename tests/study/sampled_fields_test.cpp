@@ -11,7 +11,8 @@
 #include "controlspace/study/run.h"
 #include "scratch_directory.h"
 
-using namespace controlspace;
+namespace controlspace::sampled_fields_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -102,3 +103,5 @@ TEST_CASE("the cells on a slice tile it") {
         CHECK((u < v && u + v + a == 3));
     }
 }
+
+}  // namespace controlspace::sampled_fields_test

@@ -13,7 +13,8 @@
 #include "metric/draw.h"
 #include "scratch_directory.h"
 
-using namespace controlspace;
+namespace controlspace::sources_test {
+
 using Catch::Matchers::Contains;
 using Catch::Matchers::EndsWith;
 
@@ -161,7 +162,9 @@ TEST_CASE("points and primitives together are the smallest of their closed forms
             const double factor = value_at(*space, x).xx / expected(x);
             worst = std::max({worst, factor, 1 / factor});
         }
-        CHECK(worst < (c.structure == "direct" ? 1 + 1e-12 : 1.12));
+        // Trees are adapted to 1.1 by default; a grid's voxels are not chosen for an error: 1.12 at
+        // the ball, where the growth begins.
+        CHECK(worst <= (c.structure == "direct" ? 1 + 1e-12 : c.target_delta ? 1.1 : 1.12));
     }
 }
 
@@ -237,3 +240,5 @@ TEST_CASE("a source outside the domain is named with its index, file and line") 
     study.domain = Box{Point::Constant(2), Point::Constant(3)};
     CHECK_THROWS_WITH(workload_of(study), Contains("source 0 at ("));
 }
+
+}  // namespace controlspace::sources_test

@@ -10,7 +10,8 @@
 #include "controlspace/study/workload.h"
 #include "data_folder.h"
 
-using namespace controlspace;
+namespace controlspace::study_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -250,3 +251,5 @@ TEST_CASE("the studies of irregular sources and of fields make sense") {
     CHECK(expand(read_study(folder / "fields.toml")).size() == 4 * 8);
     CHECK(expand(read_study(folder / "mixtures.toml")).size() == 2 * 8);
 }
+
+}  // namespace controlspace::study_test

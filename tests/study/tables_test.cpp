@@ -4,7 +4,8 @@
 
 #include "study/sample_rows.h"
 
-using namespace controlspace;
+namespace controlspace::tables_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -84,3 +85,5 @@ TEST_CASE("the fastest is named only where quartiles do not overlap, in one batc
     CHECK_THAT(note_of({slow, timed_row("later", {1, 1, 1}, 1)}), Contains(place + "no statement"));
     CHECK_THAT(note_of({fast}), !Contains("Fastest"));
 }
+
+}  // namespace controlspace::tables_test

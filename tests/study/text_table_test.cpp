@@ -2,8 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace controlspace;
-
+namespace controlspace::text_table_test {
 namespace {
 
 const TextTable table{
@@ -33,3 +32,5 @@ TEST_CASE("line breaks do not break a table") {
     const TextTable broken{"T", "", {{"c", Align::left}}, {{"a\nb"}}};
     CHECK(render(broken, TableStyle::terminal) == "T\nc\n---\na b\n");
 }
+
+}  // namespace controlspace::text_table_test

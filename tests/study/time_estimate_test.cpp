@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-using namespace controlspace;
+namespace controlspace::time_estimate_test {
 
 TEST_CASE("time left follows sources / tau, at each structure's own pace once it is known") {
     const std::vector<Case> cases{{.structure = "a", .tau = 1},
@@ -35,3 +35,5 @@ TEST_CASE("a case without sources counts as one of one") {
     estimate.case_finished(3);
     CHECK(*estimate.seconds_left() == Approx(6));
 }
+
+}  // namespace controlspace::time_estimate_test

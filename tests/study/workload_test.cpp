@@ -10,7 +10,8 @@
 #include "fields/values.h"
 #include "metric/draw.h"
 
-using namespace controlspace;
+namespace controlspace::workload_test {
+
 using Catch::Matchers::Contains;
 
 namespace {
@@ -174,3 +175,5 @@ TEST_CASE("the reference of anisotropic sources is exact unless the study has a 
     CHECK(is_that_of(0.05, 0.05));
     CHECK_FALSE(is_that_of(0, 0.05));
 }
+
+}  // namespace controlspace::workload_test
