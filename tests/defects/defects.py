@@ -1,30 +1,42 @@
 #!/usr/bin/env python3
-"""Shows that the scenes are sharp: each defect of tests/scenes/defects, put into a copy of the
-tree, must break the law that its patch names, which holds without it. A defect that no scene can
-show, since it is not one of structures, must break a test of another program, which its patch names.
+"""Measures how sharp the tests are: puts each defect of tests/defects into a copy of the tree, builds, and runs the tests
+up to the first failure. A defect that no test finds is a gap of the suite.
 
-The copy and its build folder are kept, so that a second run builds little.
+    tests/defects/defects.py                         all defects, those measured before left out
+    tests/defects/defects.py --only NAME             one of them; may be repeated
+    tests/defects/defects.py --before COMMIT         what is not found, by the tests of COMMIT too, in a second copy
+    tests/defects/defects.py --fresh                 measures all again
+
+Results are build/defects/results.csv; `--summary FOLDER` writes them there, with a table in Markdown, and measures
+nothing. A run stops after --minutes and goes on in the next one. Of a patch the head names what is wrong (What), in
+which part (Area), and the test program that is run before all others (First). The copies are kept, so that a defect
+costs the files that it changes.
 """
 
 import argparse
+import csv
+import hashlib
 import os
 import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-FIRST_SCENE = 1
+FOLDER = ROOT / "build/defects"
+COLUMNS = ["defect", "area", "what", "found", "by", "seconds", "before", "patch"]
 
 
 def copy_tree(to):
-    """Writes what differs alone: the rest need not be built again."""
+    """Copies what differs alone: the rest need not be built again."""
     names = subprocess.run(
         ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
         cwd=ROOT, capture_output=True, text=True, check=True).stdout.split("\0")
     for name in filter(None, names):
         source, copy = ROOT / name, to / name
         if not source.is_file():
+            copy.unlink(missing_ok=True)
             continue
         if not copy.exists() or copy.read_bytes() != source.read_bytes():
             copy.parent.mkdir(parents=True, exist_ok=True)
@@ -32,75 +44,155 @@ def copy_tree(to):
             copy.chmod(source.stat().st_mode)
 
 
-def quiet(command, folder):
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-    if done.returncode != 0:
-        sys.exit(" ".join(map(str, command)) + "\n" + done.stdout + done.stderr)
+def checkout(commit, to):
+    if not (to / ".git").exists():
+        quiet(["git", "clone", "--quiet", "--shared", ROOT, to], ROOT)
+    quiet(["git", "checkout", "--quiet", "--force", commit], to)
 
 
-def build(tree, programs, jobs):
+def quiet(command, folder, fatal=True):
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace")
+    if done.returncode != 0 and fatal:
+        sys.exit(" ".join(map(str, command)) + "\n" + (done.stdout + done.stderr)[-6000:])
+    return done.returncode == 0
+
+
+def build(tree, *targets):
     if not (tree / "build/ci/build.ninja").exists():
-        quiet(["cmake", "--preset", "ci"], tree)
-    quiet(["ninja", "-C", "build/ci", f"-j{jobs}", *programs], tree)
+        # File by file: a defect costs the files that it changes, and not those compiled with them.
+        quiet(["cmake", "--preset", "ci", "-DCONTROLSPACE_UNITY=OFF"], tree)
+    return quiet(["ninja", "-C", "build/ci", *targets], tree)
 
 
-def defect(patch):
-    """The program of tests and the law, or test, that a patch names."""
-    head = dict(line.split(": ", 1) for line in patch.read_text().partition("---")[0].splitlines())
-    return head.get("Program", "tests_scenes"), head["Law"]
+def tests(tree, *options):
+    """The first test that fails, and None if none does."""
+    done = subprocess.run(
+        ["ctest", "--test-dir", "build/ci", "--parallel", str(os.cpu_count()), "--stop-on-failure",
+         "--no-tests=error", "--timeout", "900", *options],
+        cwd=tree, capture_output=True, text=True, errors="replace")
+    if done.returncode == 0:
+        return None
+    failed = re.search(r"^\s*\d+ - (.+) \((Failed|Timeout|[A-Z]+|.*[Ee]xception.*)\)\s*$", done.stdout, re.M)
+    return failed[1] if failed else sys.exit(done.stdout[-4000:] + done.stderr[-4000:])
 
 
-def run(tree, program, law, scenes):
-    """Status and output of a law over all structures that it is for, up to the first failure."""
-    cases = law.replace(",", "\\,") + (": *" if program == "tests_scenes" else "")
-    return subprocess.run(
-        [f"build/ci/bin/{program}", cases, "--abort"], cwd=tree,
-        capture_output=True, text=True, errors="replace",
-        env=os.environ | {"CONTROLSPACE_FIRST_SCENE": str(FIRST_SCENE),
-                          "CONTROLSPACE_SCENES": str(scenes)})
+def head_of(patch):
+    return dict(line.split(": ", 1) for line in patch.read_text().partition("---")[0].splitlines())
+
+
+def suite_of(program):
+    return "^" + program.removeprefix("tests_") + ": "
+
+
+def measure(tree, patch, first, others):
+    """Which test finds the defect in a tree, and None if none does: of the program `first`, and of all others."""
+    quiet(["patch", "-p1", "--forward", "--input", patch], tree)
+    try:
+        build(tree, first)
+        by = tests(tree, "--tests-regex", suite_of(first))
+        if by is None and others:
+            build(tree)
+            by = tests(tree, "--exclude-regex", suite_of(first))
+        return by
+    finally:
+        quiet(["patch", "-p1", "--reverse", "--input", patch], tree)
+
+
+def read_results(file):
+    if not file.exists():
+        return {}
+    with open(file, newline="") as text:
+        return {row["defect"]: row for row in csv.DictReader(text)}
+
+
+def write_results(file, results):
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with open(file, "w", newline="") as text:
+        table = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+        table.writeheader()
+        table.writerows(row for _, row in sorted(results.items(), key=lambda item: (item[1]["area"], item[0])))
+
+
+def summary(results, folder):
+    write_results(folder / "defects.csv", results)
+    rows = list(read_results(folder / "defects.csv").values())
+    found = sum(row["found"] == "yes" for row in rows)
+    lines = ["# Defects that the tests find", "",
+             f"Each defect is a patch of `tests/defects`, put into a copy of the tree by itself; {found} of {len(rows)} "
+             "are found. Made by `tests/defects/defects.py`, then `--summary bench/results/defects`.", "",
+             "\"Found by\" is the first test that failed: of the program that the patch names first, then of all others. "
+             "Where none did, the last column says what the tests of an earlier commit (`--before`) made of it.", "",
+             "| area | defect | what is wrong | found by | before |", "|---|---|---|---|---|"]
+    for row in rows:
+        by = row["by"] if row["found"] == "yes" else "**not found**"
+        lines.append(f"| {row['area']} | {row['defect']} | {row['what']} | {by} | {row['before']} |")
+    (folder / "README.md").write_text("\n".join(lines) + "\n")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--copy", type=Path, default=ROOT / "build/defects",
-                        help="folder of the copy (build/defects)")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", action="append", help="a patch without .patch; may be repeated")
-    parser.add_argument("--scenes", type=int, default=60, help="for each structure (60)")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--before", help="a commit whose tests run over what is not found")
+    parser.add_argument("--fresh", action="store_true")
+    parser.add_argument("--minutes", type=float, default=55, help="no defect is begun after them (55)")
+    parser.add_argument("--summary", type=Path, metavar="FOLDER")
     options = parser.parse_args()
 
-    patches = sorted((ROOT / "tests/scenes/defects").glob("*.patch"))
+    file = FOLDER / "results.csv"
+    results = read_results(file)
+    if options.summary:
+        summary(results, options.summary)
+        return 0
+    patches = sorted((ROOT / "tests/defects").glob("*.patch"))
     if options.only:
         patches = [patch for patch in patches if patch.stem in options.only]
     if not patches:
         sys.exit("no defect is called so")
-    defects = {patch: defect(patch) for patch in patches}
-    missed = False
-    copy_tree(options.copy)
-    build(options.copy, {program for program, _ in defects.values()}, options.jobs)
-    for program, law in dict.fromkeys(defects.values()):
-        done = run(options.copy, program, law, options.scenes)
-        if done.returncode != 0 or "No test cases matched" in done.stdout:
-            sys.exit(f"without a defect: {law}\n{done.stdout[-4000:]}")
-        print(f"without a defect: holds: {law}", flush=True)
-    for patch, (program, law) in defects.items():
-        quiet(["patch", "-p1", "--forward", "--input", patch], options.copy)
-        try:
-            build(options.copy, [program], options.jobs)
-            done = run(options.copy, program, law, options.scenes)
-        finally:
-            quiet(["patch", "-p1", "--reverse", "--input", patch], options.copy)
-        if done.returncode == 0:
-            print(f"{patch.stem}: NOT FOUND by {options.scenes} scenes: {law}", flush=True)
-            missed = True
-            continue
-        seed = re.search(r"seed := (\d+)", done.stdout)
-        name = re.search(re.escape(law) + r": (?!\*)(.+)", done.stdout)
-        if seed is None or name is None:
-            print(f"{patch.stem}: found, status {done.returncode}: {law}", flush=True)
-            continue
-        count = int(seed[1]) - FIRST_SCENE + 1
-        print(f"{patch.stem}: found by scene {count} of {name[1].strip()}: {law}", flush=True)
+    digest = {patch: hashlib.sha256(patch.read_bytes()).hexdigest()[:12] for patch in patches}
+
+    if options.fresh or options.only:
+        for patch in patches:
+            results.pop(patch.stem, None)
+
+    def is_open(patch, others):
+        row = results.get(patch.stem)
+        if row is None or row["patch"] != digest[patch]:
+            return True
+        return others and (row["found"] == "open" or
+                           row["found"] == "no" and bool(options.before) and row["before"] == "")
+
+    end = time.monotonic() + 60 * options.minutes
+    tree, old = FOLDER / "tree", FOLDER / "before"
+    copy_tree(tree)
+    sound = set()  # programs whose tests pass without a defect
+    # What the programs named first find costs little: they go over all defects before any other program does.
+    for others in (False, True):
+        left = [patch for patch in patches if is_open(patch, others)]
+        for number, patch in enumerate(left):
+            if time.monotonic() > end:
+                print(f"{len(left) - number} defects left: call again", flush=True)
+                return 4
+            head = head_of(patch)
+            if head["First"] not in sound:
+                build(tree, head["First"])
+                if failed := tests(tree, "--tests-regex", suite_of(head["First"])):
+                    sys.exit(f"without a defect: {failed} fails")
+                sound.add(head["First"])
+            start = time.monotonic()
+            by = measure(tree, patch, head["First"], others)
+            row = {"defect": patch.stem, "area": head["Area"], "what": head["What"],
+                   "found": "yes" if by else "no" if others else "open", "by": by or "",
+                   "seconds": round(time.monotonic() - start), "before": "", "patch": digest[patch]}
+            if row["found"] == "no" and options.before:
+                checkout(options.before, old)
+                by = measure(old, patch, head["First"], True)
+                row["before"] = f"found by {by}" if by else "not found"
+            results[patch.stem] = row
+            write_results(file, results)
+            print(f"{patch.stem}: {'found by ' + row['by'] if row['by'] else row['found'] + ' ' + row['before']} "
+                  f"({row['seconds']} s)", flush=True)
+    missed = [name for name, row in results.items() if row["found"] != "yes"]
+    print(f"{len(results) - len(missed)} of {len(results)} defects found" + "".join(f"\nNOT FOUND: {name}" for name in missed))
     return 1 if missed else 0
 
 
