@@ -43,9 +43,7 @@ STRUCTURE_CASE(adapts,
     const AdaptationReport report = space->adapt(
         {.sources = work.sources, .continuous = nullptr, .ratio = g, .target = target});
     CHECK(report.met);
-    // Quadratic leaves are sampled, the others proved.
-    const double slack = structure.has<QuadraticLeaves>() ? 1.3 : 1;
-    CHECK(largest_nonconformity(*space, work) <= slack * target);
+    CHECK(largest_nonconformity(*space, work) <= target);
     // Another ratio would be seen.
     Work alike = work;
     for (PointSource& source : alike.sources) source.growth = 0;

@@ -317,7 +317,7 @@ CASE_OF_EACH(entry, of_tensors(), "a promise is kept of scenes of tensors") {
 CASE_OF_EACH(entry, nearly_of_tensors(), "a promise is nearly kept of scenes of tensors") {
     const Outcomes outcome = search(entry, tensor_scene, first_scenes(4), 1000);
     CHECK(outcome.met >= 2);
-    CHECK(outcome.worst <= 0.2);
+    CHECK(outcome.worst <= 0.1);
 }
 
 CASE_OF_EACH(entry, of_isotropic(), "many scenes, isotropic", "[.][promise][lengths]") {
