@@ -1,5 +1,5 @@
 # The paper's Tables 1-5 beside rows that were run in the same way: which cells are equal, which
-# differ for a reason that an experiment shows, and which conclusions hold.
+# differ, and whether a run shows why or it is inferred; and which conclusions hold.
 import math
 import tomllib
 from collections import namedtuple
@@ -167,8 +167,8 @@ class Evidence:
 
 # ---- Verdicts on cells
 
-EQUAL, EXPLAINED, NOT_COMPARABLE, UNEXPLAINED, FAILED = VERDICTS = (
-    "equal", "explained", "not comparable", "differs, unexplained", "failed")
+EQUAL, SHOWN, INFERRED, NOT_COMPARABLE, UNEXPLAINED, FAILED = VERDICTS = (
+    "equal", "shown", "inferred", "not comparable", "differs, unexplained", "failed")
 Judged = namedtuple("Judged", "cell verdict reason")
 
 
@@ -177,8 +177,14 @@ def value_range(measure, rows):
     return min(values), max(values)
 
 
-# Each rule: whether it explains the difference of a cell, and the numbers that decide it; None where
-# it does not apply. They are tried in this order.
+# Each rule: its verdict on the difference of a cell (shown: runs of ours give the printed digits, or
+# their range holds them; inferred: the numbers point to a fault of the program behind the paper, which
+# no run of ours repeats; None: neither) and the numbers that decide it; None where it does not apply.
+# They are tried in this order, for what is shown first.
+
+def shown_or_inferred(shown, inferred):
+    return SHOWN if shown else INFERRED if inferred else None
+
 
 def balance(evidence, table, cell):
     row, paper = cell
@@ -190,7 +196,7 @@ def balance(evidence, table, cell):
     paper_growth = paper.size_MB / plain_paper.size_MB
     delta, plain_delta = row["delta_R_max"], plain_row["delta_R_max"]
     accurate = table is not DELTA_R or delta <= plain_delta
-    return (growth < 2 and paper_growth > 3 and accurate,
+    return (shown_or_inferred(False, growth < 2 and paper_growth > 3 and accurate),
             f"balance: balanced 2:1, ours has {growth:.2f} times K_oL's size and delta_R "
             f"{delta:.2f} against its {plain_delta:.2f}; the paper's has {paper_growth:.1f} times")
 
@@ -200,10 +206,10 @@ def ties(evidence, table, cell):
         return None
     variants = evidence.near_ties(cell.row)
     if not variants:
-        return False, "ties: not tried here"
+        return None, "ties: not tried here"
     low, high = value_range(table.measure, [cell.row, *variants])
-    return (abs(cell.ours(table) - cell.theirs(table)) <= high - low
-            or within(cell.theirs(table), low, high),
+    return (shown_or_inferred(within(cell.theirs(table), low, high),
+                              abs(cell.ours(table) - cell.theirs(table)) <= high - low),
             f"ties: {len(variants)} runs that choose otherwise among edges of almost equal length "
             f"give {low:.2f} to {high:.2f}")
 
@@ -213,7 +219,7 @@ def shared_vertices(evidence, table, cell):
         return None
     nodes, places = cell.published_nodes(), cell.row["control_nodes"]
     better = table is not DELTA_R or cell.ours(table) < cell.theirs(table)
-    return (nodes > 1.05 * places and better,
+    return (shown_or_inferred(False, nodes > 1.05 * places and better),
             f"shared vertices: the paper's size holds {nodes:.0f} control nodes, ours one for each "
             f"of {places} places")
 
@@ -223,9 +229,9 @@ def links(evidence, table, cell):
         return None
     queue = evidence.find(cell.row, schedule="queue")
     if not queue:
-        return False, "links: not tried here"
+        return None, "links: not tried here"
     ours, with_queue = cell.ours(table), queue["delta_R_max"]
-    return (abs(ours - cell.theirs(table)) <= abs(with_queue - ours),
+    return (shown_or_inferred(False, abs(ours - cell.theirs(table)) <= abs(with_queue - ours)),
             f"links: which leaves are compared decides; with one leaf a face and passes {ours:.2f}, "
             f"with all leaves and the queue {with_queue:.2f}")
 
@@ -237,7 +243,8 @@ def interpolation(evidence, table, cell):
     variants = evidence.near_ties(cell.row, interpolation="published")
     low, high = value_range(table.measure, [published, *variants])
     value = published[table.measure]
-    return (abs(value - cell.theirs(table)) <= high - low or within(cell.theirs(table), low, high),
+    return (shown_or_inferred(within(cell.theirs(table), low, high),
+                              abs(value - cell.theirs(table)) <= high - low),
             f"interpolation: with the published one, its two slips included, {value:.2f}" +
             (f" ({low:.2f} to {high:.2f} over {len(variants)} runs that choose otherwise among "
              f"edges of almost equal length)" if variants else ""))
@@ -248,7 +255,7 @@ def scatter(evidence, table, cell):
     if not variants:
         return None
     low, high = value_range(table.measure, [cell.row, *variants])
-    return (within(cell.theirs(table), low, high),
+    return (shown_or_inferred(within(cell.theirs(table), low, high), False),
             f"scatter: the largest of 27000 errors is {low:.2f} to {high:.2f} with sources 1 % "
             f"closer or farther apart")
 
@@ -269,9 +276,10 @@ def verdict(evidence, table, cell):
     if rounded(cell.ours(table)) == rounded(cell.theirs(table)):
         return EQUAL, ""
     tried = [found for found in (rule(evidence, table, cell) for rule in RULES) if found]
-    for explains, text in tried:
-        if explains:
-            return EXPLAINED, text
+    for wanted in (SHOWN, INFERRED):
+        for found, text in tried:
+            if found == wanted:
+                return wanted, text
     return (UNEXPLAINED,
             "; ".join(f"not {text}" for _, text in tried) or "no experiment bears on it")
 

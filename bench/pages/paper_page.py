@@ -117,7 +117,9 @@ def rank_table(evidence):
 
 def counts_table(evidence):
     table = Table("Verdicts on the paper's cells",
-                  "Equal: to the printed digit. Explained: differs, and an experiment shows why.",
+                  "Equal: to the printed digit. Shown: runs of ours give the printed digits, or their "
+                  "range holds them. Inferred: our numbers point to the reason (a fault of the program "
+                  "behind the paper, a choice between almost equal edges), but no run repeats it.",
                   ["<table", *p.VERDICTS, "not measured"])
     for t in p.TABLES:
         verdicts = [judged.verdict for judged in p.judge(evidence, t)]
@@ -140,7 +142,7 @@ def open_table(evidence):
     """The cells that nobody may overlook."""
     rows = [[t.title.split(":")[0], *cell_line(t, judged)] for t in p.TABLES
             for judged in p.judge(evidence, t) if judged.verdict in (p.UNEXPLAINED, p.FAILED)]
-    return Table("Cells that differ and are not explained",
+    return Table("Cells that differ, of which nothing is shown or inferred",
                  "With what was tried, and what it gave." if rows else "None.",
                  ["<table", *CELL_COLUMNS], rows)
 
@@ -150,9 +152,9 @@ def headline(evidence):
     cells = [judged.verdict for t in (p.SIZE, p.DELTA_R) for judged in p.judge(evidence, t)]
     return (f"Of the conclusions that the paper's tables suggest {claims.count(p.STANDS)} stand and "
             f"{claims.count(p.DOES_NOT_STAND)} do not. Of the {len(cells)} cells of Tables 1 and 4 "
-            f"{cells.count(p.EQUAL)} are equal to the printed digit, {cells.count(p.EXPLAINED)} "
-            f"differ for a reason that an experiment shows, {cells.count(p.UNEXPLAINED)} differ and "
-            f"are not explained.")
+            f"{cells.count(p.EQUAL)} are equal to the printed digit, {cells.count(p.SHOWN)} "
+            f"differ for a reason that runs show, {cells.count(p.INFERRED)} for one that is inferred, "
+            f"{cells.count(p.UNEXPLAINED)} for none that is known.")
 
 
 def summary_tables(evidence):

@@ -9,7 +9,7 @@ from samples import (KEPT, ROOT, InFolder, evidence_of, failed_row, json_row,
                      paper_json_rows, results_of, run, sized, times, write_results)
 
 from pages import paper, paper_page
-from pages.paper import DELTA_R, EQUAL, EXPLAINED, SIZE, UNEXPLAINED, Evidence
+from pages.paper import DELTA_R, EQUAL, INFERRED, SHOWN, SIZE, UNEXPLAINED, Evidence
 from pages.paper_command import EXPERIMENTS
 
 
@@ -75,40 +75,40 @@ class Cells(unittest.TestCase):
                     (17.0749, EQUAL), (17.0651, EQUAL), (17.0755, UNEXPLAINED), (17.0645, UNEXPLAINED))),
                 (SIZE, [failed_row("out of memory", structure="K_oL")], paper.FAILED),
                 # Balance: while it is cheap and harmless.
-                (SIZE, [octree, measured("K_oLB", None, 19.43, 0.52)], EXPLAINED),
+                (SIZE, [octree, measured("K_oLB", None, 19.43, 0.52)], INFERRED),
                 (SIZE, [octree, measured("K_oLB", None, 40, 0.52)], UNEXPLAINED),
                 (DELTA_R, [octree, measured("K_oLB", None, 19.43, 1.7)], UNEXPLAINED),
                 (SIZE, [measured("K_oLB", None, 19.43, 0.52)], UNEXPLAINED),
                 # Ties: as far as cases equal but for rounding differ.
                 (SIZE, [s_m], UNEXPLAINED),
                 *((SIZE, [s_m, measured("K_L", "s_M", x, 6.48, tau=1 - by)], v) for x, by, v in (
-                    (5.30, 1e-9, EXPLAINED), (5.01, 1e-9, EXPLAINED), (5.25, 1e-9, UNEXPLAINED),
+                    (5.30, 1e-9, SHOWN), (5.01, 1e-9, INFERRED), (5.25, 1e-9, UNEXPLAINED),
                     (9, 1e-4, UNEXPLAINED))),
                 *((DELTA_R, [s_g, measured("K_L", "s_G", 8.19, 1.6, s_n=1 + by)], v)
-                  for by, v in ((2.3e-16, EXPLAINED), (1e-3, UNEXPLAINED))),
-                (DELTA_R, [s_g, measured("K_L", "s_Gx", 8.4, 1.6)], EXPLAINED),
+                  for by, v in ((2.3e-16, SHOWN), (1e-3, UNEXPLAINED))),
+                (DELTA_R, [s_g, measured("K_L", "s_Gx", 8.4, 1.6)], SHOWN),
                 # Shared vertices: a tree with more nodes than places, and a worse error.
                 *((t, [measured("K_oV", None, x, delta, 147359)], v) for t, x, delta, v in (
-                    (SIZE, 31.65, 0.18, EXPLAINED), (DELTA_R, 31.65, 0.18, EXPLAINED),
+                    (SIZE, 31.65, 0.18, INFERRED), (DELTA_R, 31.65, 0.18, INFERRED),
                     (DELTA_R, 31.65, 1.9, UNEXPLAINED), (DELTA_R, 42.8, 0.18, UNEXPLAINED))),
                 # Links: as far as another choice of them moves it.
                 *((DELTA_R, [octree, measured("K_oL", None, 16.36, x, schedule="queue")], v)
-                  for x, v in ((1.33, EXPLAINED), (1.60, UNEXPLAINED))),
+                  for x, v in ((1.33, INFERRED), (1.60, UNEXPLAINED))),
                 # Scatter: what near densities reach, and no size.
                 *((DELTA_R, [k_l, measured("K_L", "s_L", 17, x, rho=0.99)], v)
-                  for x, v in ((1.784, EXPLAINED), (1.79, UNEXPLAINED))),
+                  for x, v in ((1.784, SHOWN), (1.79, UNEXPLAINED))),
                 (DELTA_R, [k_l, measured("K_L", "s_L", 17, 1.62, rho=0.8)], UNEXPLAINED),
                 (SIZE, [measured("K_L", "s_L", 17.2, 1.8), measured("K_L", "s_L", 17, 1.6, rho=0.99)],
                  UNEXPLAINED),
                 # The published interpolation: what it reaches.
                 *((DELTA_R, [k_li, measured("K_Li", "s_G", 8.18, x, interpolation="published")], v)
-                  for x, v in ((1.1112, EXPLAINED), (1.2, UNEXPLAINED)))):
+                  for x, v in ((1.1112, SHOWN), (1.2, UNEXPLAINED)))):
             with self.subTest(table=table.title, rows=[(r["structure"], r["cells"], r["delta_R_max"])
                                                        for r in rows]):
                 self.assertEqual(verdict(table, *rows), expected)
 
     def test_a_box_longer_by_a_billionth_is_another_order_of_ties(self):
-        for by, split, expected in ((1e-9, "s_G", EXPLAINED), (0.1, "s_G", UNEXPLAINED),
+        for by, split, expected in ((1e-9, "s_G", SHOWN), (0.1, "s_G", UNEXPLAINED),
                                     (1e-9, "s_L", UNEXPLAINED)):  # s_L has no ties
             other = results_of([measured("K_L", split, 8.19, 1.6 if split == "s_G" else 1.9)],
                                domain=[-1 - by, 1 + by, -1, 1, -1, 1])
