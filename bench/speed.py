@@ -120,7 +120,7 @@ def access_targets(report):
             rows.append([name, "limit", number(ratio), *aimed(ratio, LIMITS[base])])
         if base == "K_Li":
             ratio = over(ns, report.ns(name.replace("K_Li", "K_L"), work, order))
-            rows.append([name, "K_L", number(ratio), *aimed(ratio, 10)])
+            rows.append([name, "K_L", number(ratio), *aimed(ratio, 4)])
         if base == "K_oL":
             for peer, peer_ns in fine.items():
                 ratio = over(ns, peer_ns)

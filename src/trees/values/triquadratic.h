@@ -14,7 +14,7 @@ namespace controlspace {
 /// high side of axis a (the leaf's own at the domain's border); `t` is the place in the leaf, each
 /// coordinate in [-1, 1]. The 27 nodes of a hexahedron are set to: centre: own; face: mean of own
 /// and the neighbour's; edge: mean of its two faces; corner: mean of its three faces; between them
-/// the triquadratic Lagrange functions (paper §3.1.2, its coordinates put right).
+/// the triquadratic Lagrange functions (paper §3.1, its coordinates put right).
 ///
 /// Answers `own` at the centre and reproduces a constant. No node is smaller than own / 2, but
 /// quadratic functions undershoot; where the result would fall below own / 2 along any direction,

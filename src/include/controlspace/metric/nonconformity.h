@@ -28,7 +28,7 @@ double largest_factor_within(double delta);
 double nonconformity_along(double k);
 double largest_factor_along(double delta);
 
-/// δ of the Riemannian metrics a^-2 and b^-2, as in the paper's footnote.
+/// δ of the Riemannian metrics a^-2 and b^-2, as in the paper (§3.1, footnote 2).
 double riemannian_nonconformity(const Metric& a, const Metric& b);
 
 }  // namespace controlspace

@@ -20,7 +20,7 @@ struct SphereSampling {
 
 /// Two planes in [-1,1]^3, (-0.5, u, v) and (u, -0.2 + slope u, v) with u, v in [-1,1]. Slope 0
 /// crosses the first plane at a right angle; 0.8, the largest that stays within the cube, at 51
-/// degrees. The paper shows a pair of either kind without giving its slope.
+/// degrees. The paper uses the slopes 0.0 and 0.2 (§4).
 struct PlanesSampling {
     double h = 0.015;
     double s_a = 2;

@@ -12,7 +12,7 @@ namespace controlspace {
 
 /// How trees with quadratic leaves (K_Li, K_oLi) interpolate.
 enum class QuadraticForm {
-    corrected,  ///< paper §3.1.2 with its coordinates put right, kept within the leaf's cone
+    corrected,  ///< paper §3.1 with its coordinates put right, kept within the leaf's cone
     /// As the published program did, for comparison: the trilinear part is evaluated at t in [0,1]
     /// in place of 2t - 1, one corner takes the wrong face, and nothing bounds the result.
     published,

@@ -6,7 +6,7 @@
 
 namespace controlspace {
 
-/// Where a kd-tree cuts a leaf (paper §3.1.1). Lengths are those in the metric of the source for
+/// Where a kd-tree cuts a leaf (paper §3.1). Lengths are those in the metric of the source for
 /// which the leaf is cut; of axes that are equally long z is cut before y before x.
 ///
 /// Lengths are compared as computed, without a tolerance. Under s_M many edges differ from each

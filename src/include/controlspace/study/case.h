@@ -100,7 +100,7 @@ struct Words<IntersectionRule> {
 template <>
 struct Words<QuadraticForm> {
     static constexpr Word<QuadraticForm> table[] = {
-        {QuadraticForm::corrected, "corrected", "paper §3.1.2 with its coordinates put right"},
+        {QuadraticForm::corrected, "corrected", "paper §3.1 with its coordinates put right"},
         {QuadraticForm::published, "published", "with the two errors of the paper's program"}};
 };
 template <>
