@@ -466,6 +466,57 @@ TEST_CASE("C: lengths of edges") {
     cspace_free(space);
 }
 
+TEST_CASE("C: the length of an edge weighs its ends once and its middle four times") {
+    cspace* space = made("direct");
+    const double length = 0.1;
+    REQUIRE(cspace_insert_lengths(space, 1, place.data(), &length) == CSPACE_OK);
+    REQUIRE(cspace_grade(space, 2) == CSPACE_OK);
+    // Away from the source lengths are 0.1 + d; Simpson's rule of 1/h over an edge of length 0.4.
+    const std::array<double, 3> to{place[0] + 0.4, place[1], place[2]};
+    double found = 0;
+    REQUIRE(cspace_edge_lengths(space, 1, place.data(), to.data(), &found) == CSPACE_OK);
+    CHECK(found == Approx(0.4 / 6 * (1 / 0.1 + 4 / 0.3 + 1 / 0.5)));
+    cspace_free(space);
+}
+
+TEST_CASE("C: the depth of kd-trees and that of octrees are limited each by its own option") {
+    const auto longest_edge = [](const char* structure, const char* depth) {
+        cspace* space = nullptr;
+        REQUIRE(cspace_create(structure, corners.data(), depth, &space) == CSPACE_OK);
+        const double length = 0.01;
+        REQUIRE(cspace_insert_lengths(space, 1, place.data(), &length) == CSPACE_OK);
+        std::array<double, 6> near{};
+        const std::array<double, 3> beside{place[0] + 0.2, place[1], place[2]};
+        REQUIRE(cspace_sample(space, 1, beside.data(), near.data()) == CSPACE_OK);
+        cspace_free(space);
+        return near[0];
+    };
+    // A tree of one leaf holds the source's length everywhere; a deep one does not.
+    CHECK(longest_edge("K_oL", "octree_depth=0") == 0.01);
+    CHECK(longest_edge("K_oL", "kd_depth=0") > 0.1);
+    CHECK(longest_edge("K_L", "kd_depth=0") == 0.01);
+    CHECK(longest_edge("K_L", "octree_depth=0") > 0.1);
+}
+
+TEST_CASE("C: a loaded space grades by the ratio that it was created with") {
+    const ScratchDirectory folder;
+    const std::string file = (folder / "field.ctrl").string();
+    cspace *space = nullptr, *loaded = nullptr;
+    REQUIRE(cspace_create("K_oV", corners.data(), "g_r=1.7 takes_later_sources=1", &space) ==
+            CSPACE_OK);
+    const double length = 0.1;
+    REQUIRE(cspace_insert_lengths(space, 1, place.data(), &length) == CSPACE_OK);
+    REQUIRE(cspace_save(space, file.c_str()) == CSPACE_OK);
+    REQUIRE(cspace_load(file.c_str(), &loaded) == CSPACE_OK);
+    const std::vector<double> inserted = sampled(space);
+    REQUIRE(cspace_grade(space, 0) == CSPACE_OK);
+    REQUIRE(cspace_grade(loaded, 0) == CSPACE_OK);
+    CHECK(sampled(space) != inserted);
+    CHECK(sampled(loaded) == sampled(space));
+    cspace_free(loaded);
+    cspace_free(space);
+}
+
 TEST_CASE("C: large batches run on all cores, with the same bits", "[threads]") {
     cspace* space = made("K_oV");
     REQUIRE(cspace_insert(space, 1, place.data(), tensor.data()) == CSPACE_OK);
