@@ -154,7 +154,8 @@ ConeField field_of(const Work& work, double tolerance) {
 
 }  // namespace
 
-TEST_CASE("order-free cones: within all cones, with a certificate that log det is near the best") {
+TEST_CASE("order-free cones: within all cones, with a certificate that log det is near the best",
+          "[long]") {
     const double tolerance = GENERATE(1e-1, 1e-2, 1e-3, 1e-6);
     Draw draw(62);
     for (const Work& work : works()) {

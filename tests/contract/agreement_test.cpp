@@ -134,7 +134,8 @@ TEST_CASE("structures agree with each other, pair by pair") {
 }
 
 STRUCTURE_CASE(does_not_round,
-               "where elements are small against the size requested, agreement is close") {
+               "where elements are small against the size requested, agreement is close",
+               "[long]") {
     // With l_min a quarter, and sources as dense, only the propagation along the axes is left near
     // the sphere: sizes up to (0.1 + √3 0.25 d) / (0.1 + 0.25 d) too large, d = 0.02, and an
     // element's extent.

@@ -56,9 +56,9 @@ bool blends_values(const CatalogueEntry& structure) {
 
 }  // namespace
 
-STRUCTURE_CASE(
-    blends_values,
-    "tensors between nodes exceed the sources' cones by no more than those at the nodes") {
+STRUCTURE_CASE(blends_values,
+               "tensors between nodes exceed the sources' cones by no more than those at the nodes",
+               "[long]") {
     const Work work = GENERATE(anisotropic_sphere(), anisotropic_oblong_box());
     CAPTURE(work.name);
     const auto space = work.graded(structure, {.ratio = g});

@@ -40,7 +40,7 @@ TEST_CASE("every grid comes to an accuracy, and the row says by which voxels") {
     }
 }
 
-TEST_CASE("every grid keeps to a memory, and uses it") {
+TEST_CASE("every grid keeps to a memory, and uses it", "[long]") {
     for (const Row& row : rows_of({{"structures", {"baselines"}}, {"equal_memory", {8}}})) {
         if (row.setting.structure == "direct") continue;
         CAPTURE(structure_label(row.setting), row.error);

@@ -81,7 +81,8 @@ STRUCTURE_CASE(
 }
 
 STRUCTURE_CASE(holds_metrics_unrounded,
-               "graded by the sources, nothing is longer than the leaf explains, nor 4 times") {
+               "graded by the sources, nothing is longer than the leaf explains, nor 4 times",
+               "[long]") {
     const Work work = any_work();
     CAPTURE(work.name);
     const auto space = work.graded(structure);

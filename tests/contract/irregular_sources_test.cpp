@@ -29,7 +29,8 @@ double largest_growth(const ControlSpace& space, const std::vector<PointSource>&
 }  // namespace
 
 STRUCTURE_CASE(does_not_round,
-               "irregular sources of 50:1 give metrics everywhere, and are met at their places") {
+               "irregular sources of 50:1 give metrics everywhere, and are met at their places",
+               "[long]") {
     const Sampling sampling = GENERATE(Sampling::random, Sampling::clustered, Sampling::poisson);
     const Work work{"irregular",
                     scatter_sphere({.h = 0.06, .s_a = 10, .s_n = 0.02, .rho = 4}, sampling, 7)};

@@ -35,7 +35,8 @@ double largest_nonconformity(const ControlSpace& space, const Work& work) {
 }  // namespace
 
 STRUCTURE_CASE(adapts,
-               "adapted to sources with ratios of their own: within the target of brute force") {
+               "adapted to sources with ratios of their own: within the target of brute force",
+               "[long]") {
     constexpr double target = 0.2;
     const Work work = with_own_growths(GENERATE(isotropic_sphere(), oblong_box()));
     CAPTURE(work.name);

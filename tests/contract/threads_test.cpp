@@ -48,7 +48,7 @@ Answers answers(const CatalogueEntry& structure, const Work& work, const Gradati
 
 STRUCTURE_CASE(does_not_round,
                "any number of threads makes the same field, to the bit, in memory and in a file",
-               "[threads]") {
+               "[threads][long]") {
     const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
     const GradationOptions options =
         GENERATE(GradationOptions{}, GradationOptions{.law = GradationLaw::mean_length},

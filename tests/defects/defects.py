@@ -70,7 +70,7 @@ def tests(tree, *options):
     """The first test that fails, and None if none does."""
     done = subprocess.run(
         ["ctest", "--test-dir", "build/ci", "--parallel", str(os.cpu_count()), "--stop-on-failure",
-         "--no-tests=error", "--timeout", "900", *options],
+         "--no-tests=error", "--timeout", "300", *options],
         cwd=tree, capture_output=True, text=True, errors="replace")
     if done.returncode == 0:
         return None
@@ -150,7 +150,7 @@ def main():
         patches = [patch for patch in patches if patch.stem in options.only]
     if not patches:
         sys.exit("no defect is called so")
-    digest = {patch: hashlib.sha256(patch.read_bytes()).hexdigest()[:12] for patch in patches}
+    digest = {patch: hashlib.sha256(patch.read_text().partition("\n---")[2].encode()).hexdigest()[:12] for patch in patches}
 
     if options.fresh or options.only:
         for patch in patches:

@@ -174,7 +174,7 @@ TEST_CASE("Small sets of sources: the oracle's answer") {
     }
 }
 
-TEST_CASE("Anisotropic sources: the oracle's answer") {
+TEST_CASE("Anisotropic sources: the oracle's answer", "[long]") {
     const double g = GENERATE(1.0, 1.05, 1.25, 2.0);
     const double anisotropy = GENERATE(1.5, 10.0, 1000.0);
     const double size_range = GENERATE(1.0, 1e6);

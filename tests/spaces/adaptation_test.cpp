@@ -115,7 +115,7 @@ CASE_OF_EACH(
     }
 }
 
-CASE_OF_EACH(entry, all_trees(), "trees keep the target of an order-free field") {
+CASE_OF_EACH(entry, all_trees(), "trees keep the target of an order-free field", "[long]") {
     constexpr double target = 0.3;
     constexpr auto order_free = IntersectionRule::order_free;
     const std::vector<PointSource> sources = tensors(12);
@@ -125,7 +125,7 @@ CASE_OF_EACH(entry, all_trees(), "trees keep the target of an order-free field")
     CHECK(share_beyond(target, *space, *field) <= 5e-4);
 }
 
-CASE_OF_EACH(entry, vertex_trees(), "thin metrics: no length is off in any direction") {
+CASE_OF_EACH(entry, vertex_trees(), "thin metrics: no length is off in any direction", "[long]") {
     constexpr double target = 0.5;
     std::vector<PointSource> sources;
     const std::vector<Point> normals = random_points(domain, 6, 41);
@@ -154,7 +154,7 @@ CASE_OF_EACH(entry, vertex_trees(), "thin metrics: no length is off in any direc
     CHECK(most <= 3);  // between samples; the target allows 2
 }
 
-CASE_OF_EACH(entry, vertex_trees(), "layers: lengths keep the target in each direction") {
+CASE_OF_EACH(entry, vertex_trees(), "layers: lengths keep the target in each direction", "[long]") {
     constexpr double target = 0.1;
     const std::vector<PointSource> sources = sample_sphere({.h = 0.25, .s_a = 4, .s_n = 0.25});
     const auto field = exact_reference(sources, g, largest_metric(domain), 1e-3);
@@ -194,7 +194,8 @@ CASE_OF_EACH(entry, vertex_trees(), "layers: lengths keep the target in each dir
 
 CASE_OF_EACH(
     entry, anchored_catalogue(),
-    "trees that keep sources keep the target of thin layers, in a quarter of K_oV's leaves") {
+    "trees that keep sources keep the target of thin layers, in a quarter of K_oV's leaves",
+    "[long]") {
     constexpr double target = 0.2;
     const std::vector<PointSource> sources = sample_sphere({.h = 0.12, .s_a = 4, .s_n = 0.25});
     const auto field = exact_reference(sources, g, largest_metric(domain), 1e-3);
@@ -229,7 +230,7 @@ CASE_OF_EACH(entry, anchored_catalogue(),
     CHECK(share_beyond(target, *space, *field) <= 5e-4);
 }
 
-TEST_CASE("sphere at a tenth: the paper's trees and the anchored ones, on 101^3 places") {
+TEST_CASE("sphere at a tenth: the paper's trees and the anchored ones, on 101^3 places", "[long]") {
     const std::vector<PointSource> sources = sample_sphere({.rho = 1});
     const auto field = exact_reference(sources, g, largest_metric(domain));
     const Probes probes = make_probes(*field, cell_centres(domain, 101));
@@ -326,7 +327,8 @@ CASE_OF_EACH(entry, all_trees(), "the same tree, whatever the number of threads"
     }
 }
 
-CASE_OF_EACH(entry, trees_of_layers(), "the same tree of layers, whatever the number of threads") {
+CASE_OF_EACH(entry, trees_of_layers(), "the same tree of layers, whatever the number of threads",
+             "[long]") {
     const std::vector<PointSource> sources = sample_sphere({.h = 0.25, .s_a = 4, .s_n = 0.25});
     const std::vector<Point> x = random_points(domain, 2000, 24);
     std::vector<std::vector<Metric>> found;
@@ -425,7 +427,7 @@ TEST_CASE("a target out of reach is told, with what was reached") {
 }
 
 CASE_OF_EACH(entry, vertex_trees(),
-             "a tree of limited size comes nearer to the field with its size") {
+             "a tree of limited size comes nearer to the field with its size", "[long]") {
     const std::vector<PointSource> sources = tensors(40);
     double before = std::numeric_limits<double>::infinity();
     for (const std::size_t most : {40, 300}) {

@@ -43,7 +43,8 @@ CASE_OF_EACH(entry, anchored_catalogue(), "one tensor: its cone everywhere") {
 }
 
 CASE_OF_EACH(entry, anchored_catalogue(),
-             "sphere: nearer to the exact field than the other trees, with fewer bytes than K_L") {
+             "sphere: nearer to the exact field than the other trees, with fewer bytes than K_L",
+             "[long]") {
     const std::vector<PointSource> sources = sample_sphere({.rho = 1});
     const auto field = exact_reference(sources, g, largest_metric(domain));
     const Probes coarse = make_probes(*field, cell_centres(domain, 30));

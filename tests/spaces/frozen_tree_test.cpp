@@ -117,7 +117,8 @@ CASE_OF_EACH(tree, trees(),
     }
 }
 
-CASE_OF_EACH(entry, tree_catalogue(), "shorts round lengths by 1e-4 at a million places") {
+CASE_OF_EACH(entry, tree_catalogue(), "shorts round lengths by 1e-4 at a million places",
+             "[long]") {
     const auto space = TreeUnderTest{&entry, SplitRule::middle}.graded(sphere(1));
     const bool interpolates = entry.order < 2;  // with weights from 0 to 1
     if (interpolates) {

@@ -53,7 +53,8 @@ void check_grading(EditableSpace& space, const CatalogueEntry& entry, bool isotr
 
 CASE_OF_EACH(entry, all_trees(),
              "gradation from node to node makes no control node longer, nor what leaves and "
-             "isotropic vertices answer") {
+             "isotropic vertices answer",
+             "[long]") {
     const bool isotropic = GENERATE(true, false);
     const auto sources = isotropic ? sample_sphere({.h = 0.05, .s_a = 2, .s_n = 1, .rho = 2})
                                    : sample_sphere({.h = 0.1, .s_a = 4, .s_n = 0.25, .rho = 2});
@@ -66,7 +67,7 @@ CASE_OF_EACH(entry, all_trees(),
     }
 }
 
-CASE_OF_EACH(entry, all_trees(), "gradation makes what was adapted no longer") {
+CASE_OF_EACH(entry, all_trees(), "gradation makes what was adapted no longer", "[long]") {
     const bool isotropic = GENERATE(true, false);
     const auto sources = isotropic ? sample_sphere({.h = 0.1, .s_a = 2, .s_n = 1, .rho = 2})
                                    : sample_sphere({.h = 0.2, .s_a = 4, .s_n = 0.25, .rho = 2});

@@ -307,14 +307,15 @@ CASE_OF_EACH(entry, of_isotropic(), "a promise is kept of isotropic scenes") {
 // Scenes in which leaves passed although a search finds 0.104 to 0.134 in them: sources just beyond
 // a face, cones that meet on one, the tip of a cone near a corner, a crease across a long edge, a
 // peak that is lower than another where the leaf is sampled.
-CASE_OF_EACH(entry, of_tensors(), "a promise is kept of scenes of tensors") {
+CASE_OF_EACH(entry, of_tensors(), "a promise is kept of scenes of tensors", "[long]") {
     const Outcomes outcome =
         search(entry, tensor_scene, {24, 29, 50, 73, 85, 91, 10072, 60197, 70040}, 94000);
     CHECK(outcome.met == outcome.scenes);
     CHECK(outcome.broken == 0);
 }
 
-CASE_OF_EACH(entry, nearly_of_tensors(), "a promise is nearly kept of scenes of tensors") {
+CASE_OF_EACH(entry, nearly_of_tensors(), "a promise is nearly kept of scenes of tensors",
+             "[long]") {
     const Outcomes outcome = search(entry, tensor_scene, first_scenes(4), 1000);
     CHECK(outcome.met >= 2);
     CHECK(outcome.worst <= 0.1);

@@ -103,7 +103,7 @@ TEST_CASE("K_Li has the trees of K_L under s_L and s_G, as in Table 1") {
     }
 }
 
-TEST_CASE("Table 4, K_L s_L: to the printed digit") {
+TEST_CASE("Table 4, K_L s_L: to the printed digit", "[long]") {
     struct Row {
         double tau, published, rerun;
     };
@@ -115,7 +115,8 @@ TEST_CASE("Table 4, K_L s_L: to the printed digit") {
     CHECK(measured.worst == Point(-0.5, -0.5, -0.5));
 }
 
-TEST_CASE("Table 4, rows that the rerun gives with the published program's faults repaired") {
+TEST_CASE("Table 4, rows that the rerun gives with the published program's faults repaired",
+          "[long]") {
     struct Row {
         std::string id;
         SplitRule split;
