@@ -118,15 +118,17 @@ def write_results(file, results):
 def summary(results, folder):
     write_results(folder / "defects.csv", results)
     rows = list(read_results(folder / "defects.csv").values())
-    found = sum(row["found"] == "yes" for row in rows)
+    count = {word: sum(row["found"] == word for row in rows) for word in ("yes", "no", "open")}
+    patches = len(list((ROOT / "tests/defects").glob("*.patch")))
     lines = ["# Defects that the tests find", "",
-             f"Each defect is a patch of `tests/defects`, put into a copy of the tree by itself; {found} of {len(rows)} "
-             "are found. Made by `tests/defects/defects.py`, then `--summary bench/results/defects`.", "",
+             f"Each defect is a patch of `tests/defects`, put into a copy of the tree by itself. Of {patches}, {len(rows)} were "
+             f"measured: {count['yes']} are found, {count['no']} are not, and {count['open']} were run over by the program "
+             "that their patch names first alone, which does not find them. Made by `tests/defects/defects.py`, then `--summary bench/results/defects`.", "",
              "\"Found by\" is the first test that failed: of the program that the patch names first, then of the others. "
              "Tests of MPI, faults, packages, pages and examples are left out. Where none found it, the last column says what the tests of an earlier commit (`--before`) made of it.", "",
              "| area | defect | what is wrong | found by | before |", "|---|---|---|---|---|"]
     for row in rows:
-        by = row["by"] if row["found"] == "yes" else "**not found**"
+        by = {"yes": row["by"], "no": "**not found**", "open": "open"}[row["found"]]
         lines.append(f"| {row['area']} | {row['defect']} | {row['what']} | {by} | {row['before']} |")
     (folder / "README.md").write_text("\n".join(lines) + "\n")
 
