@@ -251,7 +251,8 @@ TEST_CASE("sources on the corners and faces of the domain are met") {
     }
 }
 
-TEST_CASE("inserting a batch is inserting its sources in order, by the rule of the paper") {
+TEST_CASE("inserting a batch is inserting its sources in order, by the rule of the paper",
+          "[long]") {
     Grid grid = any_grid();
     INFO(grid.entry->id);
     const std::vector<PointSource> sources = random_sources(1500, grid.options);

@@ -251,8 +251,8 @@ STRUCTURE_CASE(does_not_round, "outside the domain, the answer of the nearest pl
     }
 }
 
-STRUCTURE_CASE(does_not_round,
-               "the same run gives the same bits, one by one as well as in a batch") {
+STRUCTURE_CASE(does_not_round, "the same run gives the same bits, one by one as well as in a batch",
+               "[long]") {
     const Work work = any_work();
     CAPTURE(work.name);
     const std::vector<Point> x = random_points(work.domain, 2000, 8);

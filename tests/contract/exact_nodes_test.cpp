@@ -60,7 +60,8 @@ double explained_by_leaf(const ControlSpace& space, int order, const Point& x, c
 // Levels refine their voxels in gradation: other nodes than before.
 STRUCTURE_CASE(
     holds_metrics,
-    "graded by the sources, control nodes hold the exact field, or what is requested of them") {
+    "graded by the sources, control nodes hold the exact field, or what is requested of them",
+    "[long]") {
     const Work work = any_work();
     CAPTURE(work.name);
     const auto space = work.inserted(structure);
@@ -105,7 +106,8 @@ STRUCTURE_CASE(holds_metrics_unrounded,
 }
 
 STRUCTURE_CASE(holds_metrics,
-               "graded by the sources again: nothing to do, then for another ratio, and more") {
+               "graded by the sources again: nothing to do, then for another ratio, and more",
+               "[long]") {
     const Work work = anisotropic_oblong_box();
     const std::span<const PointSource> all = work.sources;
     const std::vector<Point> x = random_points(work.domain, 500, 32);

@@ -95,7 +95,8 @@ std::vector<CatalogueEntry> trees_of_layers() {
 
 CASE_OF_EACH(
     entry, all_trees(),
-    "trees keep the target at places they have not seen, and a closer one takes more leaves") {
+    "trees keep the target at places they have not seen, and a closer one takes more leaves",
+    "[long]") {
     const std::vector<PointSource> isotropic = sample_sphere({.h = 0.08});
     const std::vector<PointSource> discs = tensors(3);
     for (const std::vector<PointSource>& sources : {isotropic, discs}) {
