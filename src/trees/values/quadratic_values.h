@@ -17,7 +17,7 @@
 
 namespace controlspace {
 
-/// One metric a leaf, interpolated with those of its face neighbours (K_Li, K_oLi; paper §3.1).
+/// One metric a leaf, interpolated with those of its face neighbours (K_Li, K_oLi; paper §3.1.2).
 /// Nowhere coarser than the cone of the leaf's own metric at its centre, with the ratio of the last
 /// gradation, or of the one to come: on the paper's sphere that leaves its Tables 1 and 4 as they
 /// are, and divides δ_S by up to 20.
