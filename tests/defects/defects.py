@@ -123,9 +123,11 @@ def summary(results, folder):
     lines = ["# Defects that the tests find", "",
              f"Each defect is a patch of `tests/defects`, put into a copy of the tree by itself. Of {patches}, {len(rows)} were "
              f"measured: {count['yes']} are found, {count['no']} are not, and {count['open']} were run over by the program "
-             "that their patch names first alone, which does not find them. Made by `tests/defects/defects.py`, then `--summary bench/results/defects`.", "",
+             "that their patch names first alone, which does not find them. Made by `tests/defects/defects.py`, then "
+             "`--summary bench/results/defects`.", "",
              "\"Found by\" is the first test that failed: of the program that the patch names first, then of the others. "
-             "Tests of MPI, faults, packages, pages and examples are left out. Where none found it, the last column says what the tests of an earlier commit (`--before`) made of it.", "",
+             "Tests of MPI, faults, packages, pages and examples are left out. Where none found it, the last column says what "
+             "the tests of an earlier commit (`--before`) made of it.", "",
              "| area | defect | what is wrong | found by | before |", "|---|---|---|---|---|"]
     for row in rows:
         by = {"yes": row["by"], "no": "**not found**", "open": "open"}[row["found"]]
