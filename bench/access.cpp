@@ -3,9 +3,9 @@
 // batch: a gather of the same metrics with precomputed indices, or of eight that are blended.
 //
 // Names: access/STRUCTURE/WORK/ORDER, and so with length, cursor and limit. STRUCTURE is a row of
-// the catalogue, -s_G with that split, -frozen, -floats and -shorts in the forms that are only
-// read, -fine a grid whose voxels are as small as the octree's smallest leaf. Counters: bytes for a
-// leaf (for a cell of a grid). One WORK at a time (--benchmark_filter) keeps memory low.
+// the catalogue, -s_G with that split, -doubles, -floats, -log16 and -log8 in the forms that are
+// only read, -fine a grid whose voxels are as small as the octree's smallest leaf. Counters: bytes
+// for a leaf (for a cell of a grid). One WORK at a time (--benchmark_filter) keeps memory low.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -63,11 +63,12 @@ std::vector<Row> rows_of(const Work& work) {
         if (!first && !is_tree && !(is_plain_grid && is_soon_made)) continue;
         const bool has_limit = is_tree && entry.order < 2;
         rows.push_back({entry.id, [&](const Work& w) { return graded(entry, w); }, has_limit});
-        if (is_tree) {
-            rows.push_back({.name = entry.id + "-frozen", .frozen = Precision::doubles});
+        if (entry.has<CompactForm>()) {
+            rows.push_back({.name = entry.id + "-doubles", .frozen = Precision::doubles});
             rows.push_back({.name = entry.id + "-floats", .frozen = Precision::floats});
             if (work.sampling.s_n == 1) {  // isotropic
-                rows.push_back({.name = entry.id + "-shorts", .frozen = Precision::shorts});
+                rows.push_back({.name = entry.id + "-log16", .frozen = Precision::log16});
+                rows.push_back({.name = entry.id + "-log8", .frozen = Precision::log8});
             }
         }
         if (first && entry.id == "K_L") {

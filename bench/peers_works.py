@@ -181,7 +181,7 @@ def study_of(name, folder, quick, structures):
     # Trees that are only read, as most of the foreign systems are.
     # Adaptation samples fields of tensors, and the probes find a little more: it aims lower.
     targets = [round(0.9 * delta, 4) for delta in deltas] if is_tensor else deltas
-    runs = [{"structures": TREES, "target_delta": targets, "frozen": "doubles"}, {"structures": others, "equal_delta": deltas},
+    runs = [{"structures": TREES, "target_delta": targets, "precision": "double"}, {"structures": others, "equal_delta": deltas},
             {"structures": structures, "target_delta": targets, "equal_delta": deltas}]
     runs = [run for run in runs if run["structures"]]
 

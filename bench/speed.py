@@ -66,7 +66,9 @@ class Report:
 
 
 def base_of(structure):
-    return structure.removesuffix("-frozen").removesuffix("-floats").removesuffix("-shorts")
+    for form in ("-doubles", "-floats", "-log16", "-log8"):
+        structure = structure.removesuffix(form)
+    return structure
 
 
 def number(x, ending=""):
@@ -158,7 +160,7 @@ def memory(report):
                      for key in ("payload", "topology", "auxiliary")]
             if name == "direct":
                 continue  # has no elements
-            target = BYTES.get(base_of(name), (None, None))[name.endswith(("-floats", "-shorts"))]
+            target = BYTES.get(base_of(name), (None, None))[name.endswith(("-floats", "-log16", "-log8"))]
             read = parts[0] + parts[1]
             rows.append([name, *(f"{p:.1f}" for p in [*parts, read]), *aimed(read, target)])
         report.table(f"Bytes per leaf (grids: per cell), {work}",
@@ -269,7 +271,7 @@ def main():
         "ns a query of a batch, in processor time of one thread. In brackets: times the limit (a "
         "gather of the same metrics, or of eight that are blended, by numbers known beforehand), "
         "times the uniform grid and times OpenVDB's dense tree (nearest beside constants, "
-        "trilinear beside K_V and K_oV). *-frozen*, *-floats*, *-shorts*: forms that are only read."]
+        "trilinear beside K_V and K_oV). *-doubles*, *-floats*, *-log16*, *-log8*: forms that are only read."]
     access_targets(report)
     access_tables(report)
     one_by_one(report)

@@ -7,14 +7,14 @@
 
 namespace controlspace {
 
-/// The row of a grid that `make` makes with one way of interpolation.
+/// The row of a grid that `make` makes with one way of interpolation, in each precision.
 template <auto make, Interpolation interpolation>
 CatalogueEntry grid_row(std::string id, std::string description) {
     CatalogueEntry row;
     row.id = std::move(id);
     row.description = std::move(description);
     row.order = interpolation == Interpolation::nearest ? 0 : 1;
-    row.capabilities = {MetricNodes(), VoxelSize()};
+    row.capabilities = {MetricNodes(), CompactForm(), VoxelSize()};
     row.construct = [](const SpaceOptions& options) { return make(options, interpolation); };
     return row;
 }

@@ -1,39 +1,62 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "baselines/lattice/lattice_data.h"
 #include "baselines/lattice/stencil.h"
+#include "controlspace/metric/stored_metrics.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/detail/saved.h"
 #include "controlspace/space/detail/shared_builder.h"
+#include "refuse.h"
 
 namespace controlspace {
 
 /// A finished grid whose metrics a `Storage` holds:
 ///
+///   Stored          what it answers for a node: Metric, StoredMetric, or StoredLength
 ///   Storage(const std::shared_ptr<const LatticeData>&)   in parallel
 ///   shares_field    whether it keeps the array of the data, which are a copy otherwise
 ///   bytes_for, and, if it does not keep all bits, stored: see GridKind
-///   reader() -> r   for one thread: r(i, j, k) -> const Metric& or Metric, and what
-///   Stencil::sample
-///                   requests
+///   reader() -> r   for one thread: r(i, j, k) -> Stored, and what Stencil::sample requests
 ///   void add_to(Footprint&) const           its bytes
 template <class Storage, Interpolation interpolation>
 class GridSpace final : public ControlSpace, public HasControlNodes, public Saved {
+    static constexpr bool are_lengths = is_stored_length<typename Storage::Stored>;
+
 public:
-    explicit GridSpace(std::shared_ptr<const LatticeData> data)
+    /// With `takes_later` it keeps what the builder needs to go on from its file.
+    GridSpace(std::shared_ptr<const LatticeData> data, bool takes_later)
         : stencil_(data->domain(), data->cells()), storage_(data), remark_(data->remark()) {
-        if (data->options().takes_later_sources) later_ = std::move(data);
+        if (takes_later) later_ = std::move(data);
     }
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
-        stencil_.sample(x, storage_.reader(), out);
+        stencil_.template sample<Metric>(x, storage_.reader(), out);
+    }
+    void sample_lengths(std::span<const Point> x, std::span<double> out) const override {
+        if constexpr (are_lengths) {
+            stencil_.template sample<double>(x, storage_.reader(), out);
+        } else {
+            ControlSpace::sample_lengths(x, out);
+        }
+    }
+    Metric metric_at(const Point& x) const override {
+        return stencil_.template at<Metric>(x, storage_.reader());
+    }
+    double length_at(const Point& x) const override {
+        if constexpr (are_lengths) {
+            return stencil_.template at<double>(x, storage_.reader());
+        } else {
+            return ControlSpace::length_at(x);
+        }
     }
     std::unique_ptr<Cursor> cursor() const override { return std::make_unique<GridCursor>(*this); }
     Box domain() const override { return stencil_.domain(); }
@@ -71,9 +94,14 @@ private:
             : stencil_(grid.stencil_), reader_(grid.storage_.reader()) {}
 
         Metric metric_at(const Point& x) override {
-            Metric m;
-            stencil_.sample({&x, 1}, reader_, {&m, 1});
-            return m;
+            return stencil_.template at<Metric>(x, reader_);
+        }
+        double length_at(const Point& x) override {
+            if constexpr (are_lengths) {
+                return stencil_.template at<double>(x, reader_);
+            } else {
+                return Cursor::length_at(x);
+            }
         }
 
     private:
@@ -100,24 +128,65 @@ private:
     std::shared_ptr<const LatticeData> later_;  // where sources may come later
 };
 
+/// The grid as its builder holds it.
 template <class Storage, Interpolation interpolation>
+std::unique_ptr<ControlSpace> grid_of(const std::shared_ptr<const LatticeData>& data) {
+    return std::make_unique<GridSpace<Storage, interpolation>>(data,
+                                                               data->options().takes_later_sources);
+}
+
+/// A grid in each precision: `Storage<M>` for what metrics are stored as, `Storage<Metric>` as its
+/// builder holds it.
+template <template <class> class Storage>
+struct AnyPrecision {
+    static double bytes_for(const Vector& nodes) { return Storage<Metric>::bytes_for(nodes); }
+    static constexpr Metric (*stored)(const Metric&) = nullptr;
+
+    template <Interpolation interpolation>
+    static std::unique_ptr<ControlSpace> finish(const std::shared_ptr<const LatticeData>& data,
+                                                std::optional<Precision> precision) {
+        if (!precision) return grid_of<Storage<Metric>, interpolation>(data);
+        return with_stored<true>(
+            *precision, data->field(),
+            [&]<class M>(std::type_identity<M>) -> std::unique_ptr<ControlSpace> {
+                using Kept = std::conditional_t<std::is_same_v<M, StoredMetric<double>>, Metric, M>;
+                return std::make_unique<GridSpace<Storage<Kept>, interpolation>>(data, false);
+            });
+    }
+};
+
+/// A grid in one precision, that of its system; of lengths in `Lengths` where all are isotropic.
+template <class Storage, class Lengths = Storage>
+struct OwnPrecision {
+    static double bytes_for(const Vector& nodes) { return Storage::bytes_for(nodes); }
+    static constexpr Metric (*stored)(const Metric&) = Storage::stored;
+
+    template <Interpolation interpolation>
+    static std::unique_ptr<ControlSpace> finish(const std::shared_ptr<const LatticeData>& data,
+                                                std::optional<Precision> precision) {
+        if (precision) refuse("this grid has a precision of its own: choose none");
+        if (!std::is_same_v<Storage, Lengths> && std::ranges::all_of(data->field(), is_isotropic)) {
+            return grid_of<Lengths, interpolation>(data);
+        }
+        return grid_of<Storage, interpolation>(data);
+    }
+};
+
+/// `Forms`: AnyPrecision or OwnPrecision of a storage.
+template <class Forms, Interpolation interpolation>
 std::unique_ptr<ControlSpaceBuilder> make_grid(const SpaceOptions& options) {
-    GridKind kind{
-        .interpolation = interpolation,
-        .bytes_for = Storage::bytes_for,
-        .finish =
-            [](const std::shared_ptr<const LatticeData>& data) -> std::unique_ptr<ControlSpace> {
-            return std::make_unique<GridSpace<Storage, interpolation>>(data);
-        }};
-    if constexpr (requires { &Storage::stored; }) kind.stored = Storage::stored;
+    const GridKind kind{.interpolation = interpolation,
+                        .bytes_for = Forms::bytes_for,
+                        .finish = Forms::template finish<interpolation>,
+                        .stored = Forms::stored};
     return std::make_unique<SharedBuilder<LatticeData>>(options, kind);
 }
-template <class Storage>
+template <class Forms>
 std::unique_ptr<ControlSpaceBuilder> make_grid(const SpaceOptions& options,
                                                Interpolation interpolation) {
     return interpolation == Interpolation::nearest
-               ? make_grid<Storage, Interpolation::nearest>(options)
-               : make_grid<Storage, Interpolation::trilinear>(options);
+               ? make_grid<Forms, Interpolation::nearest>(options)
+               : make_grid<Forms, Interpolation::trilinear>(options);
 }
 
 }  // namespace controlspace

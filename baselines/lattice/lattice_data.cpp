@@ -138,10 +138,10 @@ void LatticeData::assign(std::span<const Metric> metrics) {
     later_.requests_isotropic = std::all_of(metrics.begin(), metrics.end(), is_isotropic);
 }
 
-std::unique_ptr<ControlSpace> LatticeData::finished(
-    const std::shared_ptr<const LatticeData>& data) {
+std::unique_ptr<ControlSpace> LatticeData::finished(const std::shared_ptr<const LatticeData>& data,
+                                                    std::optional<Precision> precision) {
     data->field();
-    return data->kind_.finish(data);
+    return data->kind_.finish(data, precision);
 }
 
 void save_lattice(const std::vector<Metric>& field, const LaterSources& later, StateWriter& state) {

@@ -9,6 +9,7 @@
 #include "baselines/lattice/voxels.h"
 #include "controlspace/gradation/detail/regrade.h"
 #include "controlspace/gradation/node_graph.h"
+#include "controlspace/metric/stored_metric.h"
 #include "controlspace/space/control_space_builder.h"
 #include "controlspace/space/detail/given_sources.h"
 #include "controlspace/space/detail/state.h"
@@ -31,7 +32,9 @@ struct GridKind {
     Interpolation interpolation;
     /// What the finished grid of so many nodes along x, y and z will allocate.
     double (*bytes_for)(const Vector& nodes);
-    std::unique_ptr<ControlSpace> (*finish)(const std::shared_ptr<const LatticeData>&);
+    /// The finished grid; without a precision as the builder holds it.
+    std::unique_ptr<ControlSpace> (*finish)(const std::shared_ptr<const LatticeData>&,
+                                            std::optional<Precision>);
     /// What the grid makes of a metric, if it does not keep all bits. Throws InputError for one
     /// that it cannot keep.
     Metric (*stored)(const Metric&) = nullptr;
@@ -54,7 +57,8 @@ public:
     GradationReport grade(const NodeGradation& gradation);
     ControlNodes control_nodes(Neighbourhood neighbourhood) const;
     void assign(std::span<const Metric> metrics);
-    static std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const LatticeData>& data);
+    static std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const LatticeData>& data,
+                                                  std::optional<Precision> precision = {});
 
     void save(StateWriter& state) const { save_lattice(field(), later_, state); }
     void load(const StateReader& state);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "baselines/lattice/voxels.h"
 #include "controlspace/geometry/extent.h"
@@ -35,7 +36,10 @@ public:
           cells_(cells),
           per_length_(cells.cwiseQuotient(divisible_edges(domain))),
           high_corner_{domain.low.x() < domain.high.x(), domain.low.y() < domain.high.y(),
-                       domain.low.z() < domain.high.z()} {}
+                       domain.low.z() < domain.high.z()} {
+        // Places beside a flat domain are at its one layer, wherever the high side is read from.
+        if (const auto flat = flat_axis(domain)) per_length_[*flat] = 0;
+    }
 
     const Box& domain() const { return domain_; }
     const Vector& cells() const { return cells_; }
@@ -56,9 +60,10 @@ public:
     void locate(std::span<const Point> x, CellBatch& batch) const {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto a = static_cast<Axis>(axis);
-            const double low = domain_.low[a], per_length = per_length_[a], n = cells_[a];
+            const double low = domain_.low[a], high = domain_.high[a];
+            const double per_length = per_length_[a], n = cells_[a];
             for (std::size_t i = 0; i < x.size(); ++i) {
-                const double t = clamped((x[i][a] - low) * per_length, n);
+                const double t = in_cells(x[i][a], low, high, per_length, n);
                 batch.t[axis][i] = t;
                 batch.cell[axis][i] = static_cast<std::int32_t>(t < n ? t : n - 1);
             }
@@ -73,7 +78,7 @@ protected:
     }
     /// `x` along axis `a` in units of cells, within [0, cells].
     double in_cells(const Point& x, Axis a) const {
-        return clamped((x[a] - domain_.low[a]) * per_length_[a], cells_[a]);
+        return in_cells(x[a], domain_.low[a], domain_.high[a], per_length_[a], cells_[a]);
     }
     /// The cell that holds `t`, which comes from `in_cells`; the last one for the high end.
     std::uint32_t cell_of(double t, Axis a) const {
@@ -93,9 +98,12 @@ protected:
     }
 
 private:
-    static double clamped(double t, double n) {
-        const double above = t > 0 ? t : 0;
-        return above < n ? above : n;
+    /// Clamped before it is scaled, so that a place outside is found where its nearest one is.
+    [[gnu::always_inline]] static double in_cells(double x, double low, double high,
+                                                  double per_length, double n) {
+        const double above = x > low ? x : low;
+        const double t = ((above < high ? above : high) - low) * per_length;
+        return t < n ? t : n;
     }
 
     Box domain_;
@@ -140,13 +148,14 @@ public:
         for (std::size_t corner = 0; corner < corners; ++corner) at_corner(batch, corner, visit);
     }
 
-    /// Metrics at `x`, for some points at a time, so that metrics are on their way while those
-    /// before them are blended. `read`, a storage's reader, provides
+    /// The metrics at `x`, or, with a `Value` of double, the lengths where all is isotropic; for
+    /// some points at a time, so that metrics are on their way while those before them are blended.
+    /// `read`, a storage's reader, provides
     ///   prepare(cell) -> hint            a first step to the nodes of a cell
     ///   find<corners>(cell, hint) -> at  where their metrics are, which it prefetches
-    ///   metric(at, corner)               one of them, const Metric& or Metric
-    template <class Reader>
-    void sample(std::span<const Point> x, const Reader& read, std::span<Metric> out) const {
+    ///   metric(at, corner)               one of them, a Metric or what is stored in its place
+    template <class Value, class Reader>
+    void sample(std::span<const Point> x, const Reader& read, std::span<Value> out) const {
         using Hint = decltype(read.prepare(Cell()));
         using At = decltype(read.template find<corners>(Cell(), Hint()));
         CellBatch batch;
@@ -160,19 +169,44 @@ public:
                 at[i] = read.template find<corners>(batch[i], hints[i]);
             }
             for (std::size_t i = 0; i < count; ++i) {
-                if constexpr (corners == 1) {
-                    out[first + i] = read.metric(at[i], 0);
-                } else {
-                    out[first + i] =
-                        blend_lengths(weights(batch, i), [&](std::size_t corner) -> decltype(auto) {
-                            return read.metric(at[i], corner);
-                        });
-                }
+                out[first + i] = between<Value>(read, at[i], [&] { return weights(batch, i); });
             }
         }
     }
 
+    /// The same at one place, without what only batches need.
+    template <class Value, class Reader>
+    Value at(const Point& x, const Reader& read) const {
+        Cell cell;
+        Vector t;
+        for (Axis a = 0; a < 3; ++a) {
+            const double in_cells = this->in_cells(x, a);
+            const std::uint32_t i = cell_of(in_cells, a);
+            cell[static_cast<std::size_t>(a)] = static_cast<std::int32_t>(i);
+            t[a] = in_cells - i;
+        }
+        return between<Value>(read, read.template find<corners>(cell, read.prepare(cell)),
+                              [&] { return corner_weights(t); });
+    }
+
 private:
+    template <class Value, class Reader, class At, class Weights>
+    [[gnu::always_inline]] static Value between(const Reader& read, const At& at,
+                                                const Weights& weights) {
+        if constexpr (corners == 1) {
+            const auto& m = read.metric(at, 0);
+            if constexpr (std::is_same_v<Value, double>) {
+                return length_of(m);
+            } else {
+                return m;
+            }
+        } else {
+            const std::array<double, 8> weight = weights();
+            return blend<Value>(
+                8, [&](std::size_t corner) { return weight[corner]; },
+                [&](std::size_t corner) -> decltype(auto) { return read.metric(at, corner); });
+        }
+    }
     static std::array<double, 8> weights(const CellBatch& batch, std::size_t i) {
         const auto high = [&](std::size_t a) { return batch.t[a][i] - batch.cell[a][i]; };
         return corner_weights({high(0), high(1), high(2)});

@@ -1,3 +1,6 @@
+#include <optional>
+#include <type_traits>
+
 #include "baselines/lattice/grid_space.h"
 #include "baselines/openvdb/catalogue.h"
 #include "baselines/openvdb/dense_tree.h"
@@ -8,45 +11,115 @@ namespace controlspace {
 
 namespace {
 
-class VdbTree {
-public:
-    static constexpr bool shares_field = false;
+/// What stands for a metric that is stored as `M` in a tree, and back.
+template <class M>
+struct VdbValue {  // a tensor
+    using Type = VdbTensor<M>;
 
-    explicit VdbTree(const std::shared_ptr<const LatticeData>& data)
-        : tree_(VdbMetric(largest_metric(data->options()))) {
-        fill_densely(tree_, data->lattice(), data->field(),
-                     [](const Metric& m) { return VdbMetric(m); });
-        const double delta = data->options().prune_delta;
-        // Voxels that fill up the outermost leaves are inactive, and nobody reads them.
-        if (delta > 0) prune_metrics(tree_, delta);
+    static Type of(const M& m) { return Type(m); }
+    const M& operator()(const Type& value) const { return value.metric; }
+
+    [[no_unique_address]] Packing<M> packing = {};
+};
+template <class Number>
+requires std::is_floating_point_v<Number>
+struct VdbValue<StoredLength<Number>> {
+    using Type = Number;
+
+    static Type of(const StoredLength<Number>& length) { return length.h; }
+    StoredLength<Number> operator()(Number h) const {
+        StoredLength<Number> length;
+        length.h = h;
+        return length;
     }
 
-    static double bytes_for(const Vector& nodes) { return dense_bytes<VdbMetricTree>(nodes); }
+    [[no_unique_address]] Packing<StoredLength<Number>> packing = {};
+};
+template <class Code>
+requires std::is_integral_v<Code>
+struct VdbValue<StoredLength<Code>> {
+    using Type = Code;
 
-    struct Reader : DenseReader<VdbMetricTree> {
-        using DenseReader::DenseReader;
-        const Metric& operator()(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
-            return DenseReader::operator()(i, j, k).metric;
+    static Type of(Code code) { return code; }
+    StoredLength<Code> operator()(Code code) const { return packing(code); }
+
+    Packing<StoredLength<Code>> packing;
+};
+
+template <class M>
+class VdbTree {
+    using Value = VdbValue<M>;
+    using Tree = VdbTree543<typename Value::Type>;
+
+public:
+    using Stored = M;
+    static constexpr bool shares_field = false;
+
+    explicit VdbTree(const std::shared_ptr<const LatticeData>& data) {
+        if constexpr (std::is_same_v<M, Metric>) {
+            fill(*data, data->field());
+        } else {
+            stored_.emplace(data->field());
+            fill(*data, stored_->items());
+            stored_->drop_items();
+        }
+    }
+
+    static double bytes_for(const Vector& nodes) { return dense_bytes<Tree>(nodes); }
+
+    class Reader : public DenseReader<Tree> {
+        using Base = DenseReader<Tree>;
+
+    public:
+        explicit Reader(const VdbTree& grid) : Base(grid.tree_), value_(grid.value()) {}
+
+        decltype(auto) operator()(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
+            return value_(Base::operator()(i, j, k));
         }
         template <std::size_t corners>
-        const Metric& metric(const std::array<const VdbMetric*, corners>& at,
-                             std::size_t corner) const {
-            return at[corner]->metric;
+        decltype(auto) metric(const std::array<const typename Value::Type*, corners>& at,
+                              std::size_t corner) const {
+            return value_(*at[corner]);
         }
-    };
-    Reader reader() const { return Reader(tree_); }
 
-    void add_to(Footprint& footprint) const { add_dense_bytes(tree_, footprint); }
+    private:
+        Value value_;
+    };
+    Reader reader() const { return Reader(*this); }
+
+    void add_to(Footprint& footprint) const {
+        add_dense_bytes(tree_, footprint);
+        if (stored_) footprint.bytes_payload += stored_->bytes();
+    }
 
 private:
-    VdbMetricTree tree_;
+    void fill(const LatticeData& data, const auto& items) {
+        fill_densely(tree_, data.lattice(), [&](NodeIndex node) { return Value::of(items[node]); });
+        const double delta = data.options().prune_delta;
+        // Voxels that fill up the outermost leaves are inactive, and nobody reads them.
+        if (delta > 0) {
+            prune_metrics(tree_, delta,
+                          [value = value()](const auto& v) { return Metric(value(v)); });
+        }
+    }
+    Value value() const {
+        if constexpr (std::is_same_v<M, Metric>) {
+            return {};
+        } else {
+            return {stored_->packing()};
+        }
+    }
+
+    using Items = std::conditional_t<std::is_same_v<M, Metric>, StoredLength<double>, M>;
+    std::optional<StoredMetrics<Items>> stored_;  // how codes are packed, without items
+    Tree tree_{typename Value::Type(0)};
 };
 
 }  // namespace
 
 std::unique_ptr<ControlSpaceBuilder> make_openvdb_grid(const SpaceOptions& options,
                                                        Interpolation interpolation) {
-    return make_grid<VdbTree>(options, interpolation);
+    return make_grid<AnyPrecision<VdbTree>>(options, interpolation);
 }
 
 }  // namespace controlspace

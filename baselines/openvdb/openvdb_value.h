@@ -10,48 +10,61 @@
 
 namespace controlspace {
 
-/// A metric as the value of an OpenVDB tree, with the arithmetic, entry by entry, that the library
-/// requests of a value. Its order is lexicographic and means nothing for metrics: tools that
-/// compare values (prune with a tolerance, minimum and maximum) are of no use on such a tree.
-struct VdbMetric {
-    Metric metric;
+/// A metric as the value of an OpenVDB tree, in doubles (`M` is Metric) or floats (StoredMetric),
+/// with the arithmetic, entry by entry, that the library requests of a value. Its order is
+/// lexicographic and means nothing for metrics: tools that compare values (prune with a tolerance,
+/// minimum and maximum) are of no use on such a tree.
+template <class M>
+struct VdbTensor {
+    M metric;
 
-    VdbMetric() = default;
-    explicit VdbMetric(const Metric& m) : metric(m) {}
-    /// All six entries alike; the library's zero is VdbMetric(0).
-    explicit VdbMetric(double entry) : metric{entry, entry, entry, entry, entry, entry} {}
+    VdbTensor() = default;
+    explicit VdbTensor(const M& m) : metric(m) {}
+    /// All six entries alike; the library's zero is VdbTensor(0).
+    explicit VdbTensor(double entry) : metric(Metric{entry, entry, entry, entry, entry, entry}) {}
 
-    bool operator==(const VdbMetric&) const = default;
+    auto entries() const {
+        return std::tie(metric.xx, metric.yy, metric.zz, metric.xy, metric.xz, metric.yz);
+    }
+    bool operator==(const VdbTensor& other) const { return entries() == other.entries(); }
+    bool operator<(const VdbTensor& other) const { return entries() < other.entries(); }
+    bool operator>(const VdbTensor& other) const { return other < *this; }
 };
+using VdbMetric = VdbTensor<Metric>;
 
-inline VdbMetric operator+(const VdbMetric& a, const VdbMetric& b) {
-    return VdbMetric(Metric{a.metric.xx + b.metric.xx, a.metric.yy + b.metric.yy,
-                            a.metric.zz + b.metric.zz, a.metric.xy + b.metric.xy,
-                            a.metric.xz + b.metric.xz, a.metric.yz + b.metric.yz});
+template <class M>
+VdbTensor<M> operator+(const VdbTensor<M>& a, const VdbTensor<M>& b) {
+    const M &m = a.metric, &n = b.metric;
+    return VdbTensor<M>(
+        M(Metric{m.xx + n.xx, m.yy + n.yy, m.zz + n.zz, m.xy + n.xy, m.xz + n.xz, m.yz + n.yz}));
 }
-inline VdbMetric operator*(const VdbMetric& a, double factor) {
-    return VdbMetric(factor * a.metric);
+template <class M>
+VdbTensor<M> operator*(const VdbTensor<M>& a, double factor) {
+    return VdbTensor<M>(M(factor * Metric(a.metric)));
 }
-inline VdbMetric operator-(const VdbMetric& a) { return a * -1.0; }
-inline VdbMetric operator-(const VdbMetric& a, const VdbMetric& b) { return a + -b; }
-inline bool operator<(const VdbMetric& a, const VdbMetric& b) {
-    const auto entries = [](const Metric& m) {
-        return std::tie(m.xx, m.yy, m.zz, m.xy, m.xz, m.yz);
-    };
-    return entries(a.metric) < entries(b.metric);
+template <class M>
+VdbTensor<M> operator-(const VdbTensor<M>& a) {
+    return a * -1.0;
 }
-inline bool operator>(const VdbMetric& a, const VdbMetric& b) { return b < a; }
+template <class M>
+VdbTensor<M> operator-(const VdbTensor<M>& a, const VdbTensor<M>& b) {
+    return a + -b;
+}
 /// Found by argument-dependent lookup.
-inline VdbMetric Abs(const VdbMetric& a) {  // NOLINT(readability-identifier-naming): OpenVDB's name
-    const Metric& m = a.metric;
-    return VdbMetric(Metric{std::abs(m.xx), std::abs(m.yy), std::abs(m.zz), std::abs(m.xy),
-                            std::abs(m.xz), std::abs(m.yz)});
+template <class M>
+VdbTensor<M> Abs(const VdbTensor<M>& a) {  // NOLINT(readability-identifier-naming): OpenVDB's name
+    const M& m = a.metric;
+    return VdbTensor<M>(M(Metric{std::abs(m.xx), std::abs(m.yy), std::abs(m.zz), std::abs(m.xy),
+                                 std::abs(m.xz), std::abs(m.yz)}));
 }
-inline std::ostream& operator<<(std::ostream& out, const VdbMetric& a) {
-    return out << to_string(a.metric);
+template <class M>
+std::ostream& operator<<(std::ostream& out, const VdbTensor<M>& a) {
+    return out << to_string(Metric(a.metric));
 }
 
 /// The library's standard tree: leaves of 8^3 voxels below inner nodes of 16^3 and 32^3.
-using VdbMetricTree = openvdb::tree::Tree4<VdbMetric, 5, 4, 3>::Type;
+template <class Value>
+using VdbTree543 = typename openvdb::tree::Tree4<Value, 5, 4, 3>::Type;
+using VdbMetricTree = VdbTree543<VdbMetric>;
 
 }  // namespace controlspace

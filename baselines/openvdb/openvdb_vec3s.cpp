@@ -16,12 +16,15 @@ using Vec3sTree = openvdb::tree::Tree4<Vec3s, 5, 4, 3>::Type;
 
 class Vec3sPair {
 public:
+    using Stored = Metric;
     static constexpr bool shares_field = false;
 
     explicit Vec3sPair(const std::shared_ptr<const LatticeData>& data)
         : diagonals_(diagonal(largest_metric(data->options()))), off_diagonals_(Vec3s(0)) {
-        fill_densely(diagonals_, data->lattice(), data->field(), diagonal);
-        fill_densely(off_diagonals_, data->lattice(), data->field(), off_diagonal);
+        const auto& field = data->field();
+        fill_densely(diagonals_, data->lattice(), [&](auto n) { return diagonal(field[n]); });
+        fill_densely(off_diagonals_, data->lattice(),
+                     [&](auto n) { return off_diagonal(field[n]); });
     }
 
     static double bytes_for(const Vector& nodes) { return 2 * dense_bytes<Vec3sTree>(nodes); }
@@ -70,7 +73,7 @@ private:
 }  // namespace
 
 std::unique_ptr<ControlSpaceBuilder> make_openvdb_vec3s(const SpaceOptions& options) {
-    return make_grid<Vec3sPair, Interpolation::trilinear>(options);
+    return make_grid<OwnPrecision<Vec3sPair>, Interpolation::trilinear>(options);
 }
 
 }  // namespace controlspace

@@ -2,11 +2,14 @@
 
 #include <openvdb/tree/NodeManager.h>
 
+#include <algorithm>
 #include <optional>
+#include <type_traits>
 
 #include "baselines/openvdb/openvdb_value.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
+#include "controlspace/metric/stored_metric.h"
 
 namespace controlspace {
 
@@ -16,21 +19,25 @@ namespace controlspace {
 /// tolerances do not add up. openvdb::tools::prune is no way to do it: it compares tensors by their
 /// first entry and takes the median.
 ///
+/// `read(value)` is the metric of a voxel: its tensor, or, of lengths and codes of them, which
+/// ascend with the lengths, what stands for its length.
+///
 /// Works on all of TBB's threads, with the same result whatever their number.
-template <class Tree>
-void prune_metrics(Tree& tree, double delta);
+template <class Tree, class Read>
+void prune_metrics(Tree& tree, double delta, const Read& read);
 
 namespace detail {
 
-struct Tile {
-    VdbMetric value;
-    bool active = false;
-};
-
-template <class Tree>
+template <class Tree, class Read>
 class Prune {
+    using Value = typename Tree::ValueType;
+    struct Tile {
+        Value value;
+        bool active;
+    };
+
 public:
-    explicit Prune(double delta) : delta_(delta) {}
+    Prune(double delta, const Read& read) : delta_(delta), read_(read) {}
 
     void operator()(typename Tree::RootNodeType& root) const {
         for (auto child = root.beginChildOn(); child; ++child) {
@@ -54,13 +61,24 @@ public:
 private:
     std::optional<Tile> tile_for(const typename Tree::LeafNodeType& leaf) const {
         if (leaf.isEmpty()) return std::nullopt;
-        auto voxel = leaf.cbeginValueOn();
-        Metric common = (*voxel).metric;
-        while (++voxel) common = intersection(common, (*voxel).metric);
-        for (voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
-            if (nonconformity(common, (*voxel).metric) > delta_) return std::nullopt;
+        const Value common = common_of(leaf);
+        const Metric m = read_(common);
+        for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
+            if (nonconformity(m, read_(*voxel)) > delta_) return std::nullopt;
         }
-        return Tile{VdbMetric(common), true};
+        return Tile{common, true};
+    }
+    Value common_of(const typename Tree::LeafNodeType& leaf) const {
+        auto voxel = leaf.cbeginValueOn();
+        if constexpr (std::is_arithmetic_v<Value>) {
+            Value shortest = *voxel;
+            while (++voxel) shortest = std::min(shortest, *voxel);
+            return shortest;
+        } else {
+            Metric common = read_(*voxel);
+            while (++voxel) common = intersection(common, read_(*voxel));
+            return Value(decltype(Value::metric)(common));
+        }
     }
 
     template <class Node>
@@ -75,15 +93,16 @@ private:
     }
 
     double delta_;
+    const Read& read_;
 };
 
 }  // namespace detail
 
-template <class Tree>
-void prune_metrics(Tree& tree, double delta) {
+template <class Tree, class Read>
+void prune_metrics(Tree& tree, double delta, const Read& read) {
     tree.clearAllAccessors();
     openvdb::tree::NodeManager<Tree, Tree::DEPTH - 2> nodes(tree);
-    nodes.foreachBottomUp(detail::Prune<Tree>(delta));
+    nodes.foreachBottomUp(detail::Prune<Tree, Read>(delta, read));
 }
 
 }  // namespace controlspace

@@ -35,7 +35,7 @@ void change(cspace* handle, Edit&& edit) {
     if (!handle->builder) {
         refuse(
             "it is only read: insert, grade and adapt one of cspace_create(), or build it with "
-            "takes_later_sources=1, or by controlspace build --frozen no");
+            "takes_later_sources=1, or by controlspace build --precision as-made");
     }
     handle->cursor.reset();
     handle->space.reset();  // so that nothing has to be copied

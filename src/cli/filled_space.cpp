@@ -79,12 +79,8 @@ FilledSpace made_or_loaded(const std::filesystem::path& input, const std::filesy
     Workload workload = make_workload(study, c.sources, file_readers());
     const bool is_by_default = DefaultTarget(input, given).set(c, workload);
     const bool is_exact_field = c.structure == "direct";
-    // It is only read from here on.
-    const CatalogueEntry* const entry = find_entry(structures(), c.structure);
-    const bool is_free = input.extension() != ".toml" && !are_given(given, {"frozen"});
-    if (is_free && entry != nullptr && entry->has<CompactForm>()) c.frozen = Frozen::doubles;
     Filled made = make_and_fill(study, c, program_rows(), workload, observer);
-    filled.space = made.build(c);
+    filled.space = std::move(made.space);
     filled.structure = c.structure;
     filled.remark = remark_on(made.creation, filled.space->footprint());
     filled.missed_target = !is_by_default && !made.creation.shortfall.empty();

@@ -120,9 +120,8 @@ std::string space_info(const std::filesystem::path& file) {
     const CatalogueEntry& entry = *find_entry(structures(), recipe.structure);
     std::string text = fmt::format("  structure    {}: {}\n", entry.id, entry.description);
     if (recipe.precision) {
-        constexpr const char* names[] = {"doubles", "floats", "shorts"};
-        text += fmt::format("  compact      {}: read-only\n",
-                            names[static_cast<std::size_t>(*recipe.precision)]);
+        text +=
+            fmt::format("  precision    {}: read-only\n", name_of(stored_in(*recipe.precision)));
     }
     text += fmt::format("  saved by     {}\n  domain       {}\n  options      {}\n", saved.saved_by,
                         to_string(saved.space->domain()), options_text(entry, recipe.options));

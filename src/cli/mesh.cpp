@@ -52,7 +52,7 @@ void mesh_case(const Study& study, const Case& c, bool is_by_default, const Refe
     const auto make = [&](MeshRow& made) -> const ControlSpace& {
         start_library_of(c.structure);
         Filled filled = make_and_fill(study, c, program_rows(), reference.workload);
-        space = filled.build(c);
+        space = std::move(filled.space);
         if (is_by_default && !filled.creation.shortfall.empty()) {
             const std::string remark = remark_on(filled.creation, space->footprint());
             print_error(fmt::format("{}: {}\n", mesh_label(row), remark));

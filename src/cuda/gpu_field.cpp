@@ -56,7 +56,9 @@ struct GpuField::Copy {
 };
 
 GpuField::GpuField(const ControlSpace& field, Precision precision) {
-    if (precision == Precision::shorts) refuse("a GPU holds no shorts: use floats or doubles");
+    if (precision == Precision::log16 || precision == Precision::log8) {
+        refuse("a GPU holds no codes of lengths: use floats or doubles");
+    }
     copy_ = precision == Precision::floats ? std::make_unique<Copy>(OctreeArrays<float>(field))
                                            : std::make_unique<Copy>(OctreeArrays<double>(field));
 }

@@ -57,7 +57,9 @@ void require_possible(const Case& c) {
         refuse("ranks grade by the sources: leave out --law and --schedule");
     }
     if (c.max_leaves) refuse("ranks have no limit of leaves: leave out --max-leaves");
-    if (c.frozen != Frozen::no) refuse("ranks build no compact form: leave out --frozen");
+    if (c.precision && *c.precision != StoredIn::doubles && *c.precision != StoredIn::as_made) {
+        refuse("ranks build trees in doubles: leave out --precision");
+    }
 }
 
 /// This rank's share of the sources. Of one .csv it reads no more than that.

@@ -143,7 +143,7 @@ void save(const std::filesystem::path& file, const Saved* saved) {
     state("written_by", "controlspace " + std::string(version()));
     state("structure", recipe.structure);
     exchange(recipe.options, state);
-    if (recipe.precision) state("compact.precision", *recipe.precision, Precision::shorts);
+    if (recipe.precision) state("compact.precision", *recipe.precision, Precision::log8);
     saved->save(state);
     if (saved->given()) controlspace::save(state, "given", *saved->given());
     if (saved->grows_apart()) state(grows_apart, std::uint64_t{1});
@@ -192,7 +192,7 @@ SavedControlSpace open_control_space(const std::filesystem::path& file,
     }
     saved.recipe.structure = entry->id;
     if (state.has("compact.precision")) {
-        state("compact.precision", saved.recipe.precision.emplace(), Precision::shorts);
+        state("compact.precision", saved.recipe.precision.emplace(), Precision::log8);
     }
     state("written_by", saved.saved_by);
     saved.saved_by += fmt::format(", format {}", control_space_file_version);

@@ -163,6 +163,34 @@ Topic topic_of(const CaseParameter& row) {
 
 }  // namespace
 
+StoredIn stored_in(Precision precision) {
+    switch (precision) {
+        case Precision::floats:
+            return StoredIn::floats;
+        case Precision::log16:
+            return StoredIn::log16;
+        case Precision::log8:
+            return StoredIn::log8;
+        default:
+            return StoredIn::doubles;
+    }
+}
+
+std::optional<Precision> precision_of(std::optional<StoredIn> form) {
+    switch (form.value_or(StoredIn::as_made)) {
+        case StoredIn::doubles:
+            return Precision::doubles;
+        case StoredIn::floats:
+            return Precision::floats;
+        case StoredIn::log16:
+            return Precision::log16;
+        case StoredIn::log8:
+            return Precision::log8;
+        default:
+            return {};
+    }
+}
+
 std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* const> references) {
     using S = SourcesChoice;
     using enum Role;
@@ -241,12 +269,12 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
             "of the same leaf or voxel). None in structures that keep sources and in adapted trees",
             word<Case>(&Case::neighbourhood), {"faces"}, unless_default("{} neighbours"),
             is_graded),
-        row(structure, "frozen", "",
-            "Conversion of trees to their compact, read-only form: no; doubles, the same bits "
-            "(default of build, query and export without a study file); floats, metrics rounded by "
-            "6e-8; shorts, isotropic lengths in 16 bits, rounded by 1e-4 (longest up to 4.9e5 "
-            "times the shortest)",
-            word<Case>(&Case::frozen), {"no"}, unless_default("frozen with {}"), has<CompactForm>),
+        row(structure, "precision", "",
+            "Numbers that the finished structure stores its values in, lengths where all is "
+            "isotropic: double, float, log16 or log8 (codes of lengths), which are only read; "
+            "as-made, metrics in doubles, which takes later sources. A target is kept by what is "
+            "read back. Foreign systems have a precision of their own",
+            word<Case>(&Case::precision), {"double"}, unless_default("{}"), has<CompactForm>),
         row(structure, "prune_delta", "",
             "Non-conformity up to which graded OpenVDB grids merge voxels; 0: not merged",
             number_or_none(&Case::prune_delta), {0}, {"pruned at {:.4g}"}, has<Pruning>),

@@ -50,6 +50,7 @@ void adapt(Filled& filled, const Case& c, const Workload& workload,
                         .places = workload.field.places};
     if (c.target_delta) goal.target = *c.target_delta;
     if (c.max_leaves) goal.max_leaves = *c.max_leaves;
+    if (const auto precision = precision_of(c.precision)) goal.precision = *precision;
     // Of tensors, δ allows more along one direction alone than along all at once.
     const bool is_along = has_tensors(workload);
     if (c.within && is_along) goal.target = nonconformity_along(*c.within);
@@ -77,7 +78,9 @@ void add_largest_ratio(GradationReport& gradation, const ControlSpace& space, Gr
 
 /// On what gradation left and on settings without effect.
 void remark_on_all(Creation& creation, const Study& study, const Case& c, const StudyRows& rows) {
-    constexpr double rounding = 1e-6;
+    const auto precision = precision_of(c.precision);
+    const bool is_code = precision == Precision::log16 || precision == Precision::log8;
+    const double rounding = is_code ? 1e-3 : 1e-6;
     const double left = creation.gradation.largest_ratio_left;
     if (left > c.g_r * (1 + rounding)) {
         add_remark(creation, fmt::format("G left {:.4g}: lengths grow faster between nodes than "
@@ -118,10 +121,11 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     filled.builder = entry.make(space_options(study, c, workload, rows.parameters));
     if (is_adapted) {
         adapt(filled, c, workload, goal_sources);
-        const auto space = filled.builder->build();  // where forms of other systems are made
+        filled.space = filled.builder->build({.precision = precision_of(c.precision)});
         creation.insert_s = {time.seconds()};
         creation.gradation_s = {0};
-        add_largest_ratio(creation.gradation, *space, GradationLaw::cone, Neighbourhood::faces);
+        add_largest_ratio(creation.gradation, *filled.space, GradationLaw::cone,
+                          Neighbourhood::faces);
         remark_on_all(creation, study, c, rows);
         return filled;
     }
@@ -139,30 +143,20 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     creation.gradation = filled.builder->grade(
         {.law = c.law, .schedule = c.schedule, .ratio = c.g_r, .neighbourhood = c.neighbourhood});
     // Where grids of other systems and the search of `direct` are made.
-    const auto space = filled.builder->build();
+    filled.space = filled.builder->build({.precision = precision_of(c.precision)});
     creation.gradation_s = {time.seconds()};
+    const ControlSpace& space = *filled.space;
     if (c.schedule == GradationSchedule::sources && entry.has<MetricNodes>()) {
-        add_largest_ratio(creation.gradation, *space, c.law, c.neighbourhood);
+        add_largest_ratio(creation.gradation, space, c.law, c.neighbourhood);
     }
-    if (c.max_depth && space->footprint().depth >= *c.max_depth &&
-        has_long_leaf(*space, sources, c.tau)) {
+    if (c.max_depth && space.footprint().depth >= *c.max_depth &&
+        has_long_leaf(space, sources, c.tau)) {
         add_remark(creation, fmt::format("leaves of sources are longer than tau where level {} is "
                                          "the deepest allowed",
                                          *c.max_depth));
     }
     remark_on_all(creation, study, c, rows);
     return filled;
-}
-
-std::unique_ptr<ControlSpace> Filled::build(const Case& c) {
-    if (c.frozen == Frozen::no) return builder->build();
-    const Precision precision = c.frozen == Frozen::shorts   ? Precision::shorts
-                                : c.frozen == Frozen::floats ? Precision::floats
-                                                             : Precision::doubles;
-    const Stopwatch time;
-    auto compact = builder->build({.precision = precision});
-    creation.gradation_s.back() += time.seconds();
-    return compact;
 }
 
 }  // namespace controlspace

@@ -31,7 +31,7 @@ struct Trial {
 
 Trial try_case(const PreparedStudy& prepared, const Case& c, const Workload& workload) {
     const Stopwatch time;
-    const auto space = make_and_fill(prepared.study(), c, prepared.rows(), workload).build(c);
+    const auto space = make_and_fill(prepared.study(), c, prepared.rows(), workload).space;
     const double seconds = time.seconds();
     const auto places = random_points(workload.domain, 1000, 1);
     return {{seconds, static_cast<double>(space->footprint().bytes_total())},

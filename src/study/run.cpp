@@ -120,7 +120,7 @@ private:
         if (!c.equal_delta && !c.equal_memory) return "";
         const EqualSetting found = find_equal_setting(
             c, prepared_.entry(c), workload.domain.edges().maxCoeff(), [&](const Case& trial) {
-                const auto space = make_and_fill(study_, trial, rows_, workload).build(trial);
+                const auto space = make_and_fill(study_, trial, rows_, workload).space;
                 return Trial{std::max(accuracy(*space, probes.coarse).max,
                                       accuracy(*space, probes.fine).max),
                              static_cast<double>(space->footprint().bytes_total())};
@@ -140,7 +140,7 @@ private:
         for (int repeat = 0; repeat < study_.creation_repeats; ++repeat) {
             member.space.reset();  // its memory first
             Filled filled = make_and_fill(study_, c, rows_, workload, observer_);
-            member.space = filled.build(c);
+            member.space = std::move(filled.space);
             const std::uint64_t sum = checksum(sample_parallel(*member.space, places));
             if (repeat == 0) {
                 creation = filled.creation;

@@ -22,7 +22,7 @@ TEST_CASE("leaves that are alike become tiles of the metric that all of them all
     tree.setValue({2, 2, 3}, VdbMetric(c));
     tree.setValue({5, 1, 1}, VdbMetric(0.5 * a));     // far off
     tree.setValueOff({9, 1, 1}, VdbMetric(0.5 * a));  // does not count
-    prune_metrics(tree, 0.1);
+    prune_metrics(tree, 0.1, [](const VdbMetric& v) { return v.metric; });
     CHECK(tree.leafCount() == 1);
     for (const Metric& m : {a, b, c}) {
         const Metric tile = tree.getValue({3, 3, 3}).metric;

@@ -12,12 +12,14 @@ namespace {
 const std::string sources_csv = "x,y,z,h\n0,0,0,0.1\n1,0,0,0.2\n0,1,0,0.2\n1,1,1,0.4\n";
 const std::vector<std::string> saved_structures{
     "K_V",
-    "K_V --frozen floats",
-    "K_V --frozen no",
+    "K_V --precision float",
+    "K_V --precision as-made",
+    "K_V --precision log8",
     "K_Li --interpolation published",
-    "K_Li --interpolation published --frozen doubles",
+    "K_Li --interpolation published --precision double",
     "K_oLA",
-    "uniform-trilinear",
+    "uniform-trilinear --precision as-made",
+    "uniform-trilinear --precision log16",
 #ifdef CONTROLSPACE_OPENVDB
     "openvdb-uniform-trilinear",
 #endif
@@ -58,8 +60,8 @@ TEST_CASE("the interpolation of quadratic leaves is chosen, kept and named") {
     const std::string published = built("--interpolation published");
     CHECK(published != corrected);
     CHECK_THAT(box.run("info f.ctrl").out, Contains("interpolation published"));
-    CHECK(built("--interpolation published --frozen doubles") == published);
-    CHECK(built("--interpolation published --frozen no") == published);
+    CHECK(built("--interpolation published --precision double") == published);
+    CHECK(built("--interpolation published --precision as-made") == published);
     check_refused(box.run("build s.csv -o g.ctrl --structures K_L --interpolation wrong"),
                   "give corrected, published");
 }
@@ -213,15 +215,15 @@ TEST_CASE("info says what a saved control space is and holds") {
         CHECK(outcome.err.empty());
         return outcome.out;
     };
-    CHECK_THAT(said("--structures K_V --splits s_G --tau 0.5 --frozen floats"),
-               Contains("K_V: kd-tree") && Contains("floats: read-only") &&
+    CHECK_THAT(said("--structures K_V --splits s_G --tau 0.5 --precision float"),
+               Contains("K_V: kd-tree") && Contains("float: read-only") &&
                    Contains("split s_G, tau 0.5") && Contains("lengths      0.10"));
-    CHECK_THAT(said("--structures K_oL"), Contains("doubles: read-only"));
-    CHECK_THAT(said("--structures K_oL --frozen no"), !Contains("compact"));
+    CHECK_THAT(said("--structures K_oL"), Contains("double: read-only"));
+    CHECK_THAT(said("--structures K_oL --precision as-made"), !Contains("read-only"));
     CHECK_THAT(said("--structures K_oLA --g-r 1.5"),
                Contains("g_r 1.5") && Contains("octree, the few sources"));
     CHECK_THAT(said("--structures uniform-nearest --voxel 0.25"),
-               Contains("voxel 0.25") && !Contains("leaves") && !Contains("compact"));
+               Contains("voxel 0.25") && !Contains("leaves") && Contains("double: read-only"));
     check_refused(box.run("info f.ctrl --source-array a"), "--source-array");
     box.write("cut.ctrl", file_text(box / "f.ctrl").substr(0, 200));
     check_refused(box.run("info cut.ctrl"), "is truncated");

@@ -239,18 +239,6 @@ STRUCTURE_CASE(does_not_round,
     for (const auto& out : concurrent) CHECK(out == batch);
 }
 
-STRUCTURE_CASE(does_not_round, "outside the domain, the answer of the nearest place inside") {
-    const Work work = any_isotropic_work();
-    CAPTURE(work.name);
-    const auto space = work.graded(structure);
-    const Vector edges = work.domain.edges();
-    const Box around{work.domain.low - edges, work.domain.high + edges};
-    for (const Point& x : random_points(around, 300, 7)) {
-        const Point inside = x.cwiseMax(work.domain.low).cwiseMin(work.domain.high);
-        CHECK(sample_at(*space, x) == sample_at(*space, inside));
-    }
-}
-
 STRUCTURE_CASE(does_not_round, "the same run gives the same bits, one by one as well as in a batch",
                "[long]") {
     const Work work = any_work();

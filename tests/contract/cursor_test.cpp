@@ -72,7 +72,9 @@ STRUCTURE_CASE(every_structure, "a cursor answers as the space, in its compact f
     if (!structure.has<CompactForm>()) return;
     require_same(*space->compact(Precision::doubles));
     require_same(*space->compact(Precision::floats));
-    if (work.isotropic()) require_same(*space->compact(Precision::shorts));
+    if (!work.isotropic()) return;
+    require_same(*space->compact(Precision::log16));
+    require_same(*space->compact(Precision::log8));
 }
 
 TEST_CASE("a space that comes to lie where another one lay is asked anew, in every thread",

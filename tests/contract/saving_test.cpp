@@ -65,7 +65,9 @@ STRUCTURE_CASE(has_compact_form,
     const ScratchDirectory scratch("saving");
     const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere(), flat_box());
     std::vector<Precision> precisions{Precision::doubles, Precision::floats};
-    if (work.isotropic()) precisions.push_back(Precision::shorts);
+    if (work.isotropic()) {
+        precisions.insert(precisions.end(), {Precision::log16, Precision::log8});
+    }
     const Precision precision = GENERATE_COPY(from_range(precisions));
     CAPTURE(work.name, static_cast<int>(precision));
     const auto frozen = work.graded(structure)->compact(precision);

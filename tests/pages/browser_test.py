@@ -50,7 +50,7 @@ class InABrowser(unittest.TestCase):
             rows = [json_row("K_V", "s_L"), json_row("K_oL"),
                     json_row(long, voxel=0.01234, remark="a remark of many words " * 9,
                              command="x", own_measure_with_a_long_name=1.5)]
-            rows[2]["labels"]["structure"] += ", frozen with doubles, pruned at 0.1, for delta 0.02"
+            rows[2]["labels"]["structure"] += ", as-made, pruned at 0.1, for delta 0.02"
             rows = with_fields(folder, rows) + paper_json_rows()
             write_results(folder, rows, outcomes=[outcome(rows, [1], [0, 2], [2])], name="a-study-of-a-name-without-blanks-" * 4)
             self.assertEqual(run("report", folder).returncode, 0)

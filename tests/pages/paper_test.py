@@ -55,7 +55,7 @@ class Cells(unittest.TestCase):
     def test_only_what_was_run_as_published_is_a_cell(self):
         self.assertEqual(len(evidence_of([json_row("K_oL", intersection="in-turn")]).cells), 1)
         for change in ({"law": "cone"}, {"schedule": "queue"}, {"reference": "exact"}, {"tau": 0.3},
-                       {"frozen": "floats"}, {"interpolation": "published"}, {"max_depth": 100}):
+                       {"precision": "float"}, {"interpolation": "published"}, {"max_depth": 100}):
             self.assertFalse(evidence_of([json_row("K_oL", **change)]).cells, change)
         for setting in ({"domain": [-2, 2, -2, 2, -2, 2]}, {"radius": 0.7}, {"sources": "planes"}):
             self.assertFalse(evidence_of([json_row("K_oL")], **setting).cells, setting)

@@ -77,7 +77,7 @@ CASE_OF_EACH(entry, peers(), "the footprint counts what it holds") {
     const Work work = oblong_box();
     const Footprint footprint = finished(entry.id, work)->footprint();
     CHECK(footprint.control_nodes > 0);
-    CHECK(footprint.bytes_payload >= footprint.control_nodes * sizeof(double));
+    CHECK(footprint.bytes_payload >= footprint.control_nodes * sizeof(float));
     CHECK(footprint.bytes_topology > 0);
 }
 

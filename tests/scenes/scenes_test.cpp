@@ -8,6 +8,7 @@
 
 #include "contract/structure_case.h"
 #include "controlspace/error.h"
+#include "controlspace/measure/access_time.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/control_space_file.h"
@@ -135,6 +136,27 @@ STRUCTURE_CASE(every_structure, "scenes graded by the sources are within all con
         const auto space = inserted(structure, scene);
         space->grade(scene.gradation());
         check_bounds(structure, *space, scene, x);
+    });
+}
+
+STRUCTURE_CASE(every_structure,
+               "outside its domain a scene answers as at the nearest place of it") {
+    for_each_scene([&](const Scene& scene, const auto& x, std::uint64_t seed) {
+        const auto space = inserted(structure, scene);
+        space->grade(scene.gradation());
+        // Off a flat domain too, by less and by more than the edges of its cells.
+        const Box& domain = scene.options.domain;
+        const double reach = domain.edges().maxCoeff() * (seed % 2 == 0 ? 1e-3 : 2);
+        const Vector beyond = Vector::Constant(reach);
+        auto outside = random_points({domain.low - beyond, domain.high + beyond}, 100, seed);
+        for (std::size_t i = 0; i < x.size(); i += 7) {
+            outside.push_back(x[i] + (i % 2 == 0 ? beyond : -beyond));
+        }
+        for (const Point& place : outside) {
+            const Point nearest = place.cwiseMax(domain.low).cwiseMin(domain.high);
+            CAPTURE(place.transpose(), nearest.transpose());
+            REQUIRE(sample_at(*space, place) == sample_at(*space, nearest));
+        }
     });
 }
 

@@ -137,7 +137,8 @@ CASE_OF_EACH(entry, structures(),
     check(*space);
     if (!entry.has<CompactForm>()) return;
     check(*space->compact(Precision::floats));
-    check(*small_tree(entry.id, true)->compact(Precision::shorts));
+    check(*small_tree(entry.id, true)->compact(Precision::log16));
+    check(*small_tree(entry.id, true)->compact(Precision::log8));
 }
 
 TEST_CASE("files are the same to the bit however many threads there are, and read by any number",

@@ -83,9 +83,10 @@ CASE_OF_EACH(tree, trees(),
         const std::vector<Metric> expected = answers(*space, x);
         CHECK(checksum(answers(*doubles, x)) == checksum(expected));
         if (s_n == 1) {
-            const auto shorts = space->compact(Precision::shorts);
+            const auto log16 = space->compact(Precision::log16);
+            const auto log8 = space->compact(Precision::log8);
             for (const ControlSpace* form : std::initializer_list<const ControlSpace*>{
-                     &space->built(), doubles.get(), floats.get(), shorts.get()}) {
+                     &space->built(), doubles.get(), floats.get(), log16.get(), log8.get()}) {
                 std::vector<double> lengths(x.size());
                 form->sample_lengths(x, lengths);
                 const std::vector<Metric> metrics = answers(*form, x);
@@ -117,7 +118,7 @@ CASE_OF_EACH(tree, trees(),
     }
 }
 
-CASE_OF_EACH(entry, tree_catalogue(), "shorts round lengths by 1e-4 at a million places",
+CASE_OF_EACH(entry, tree_catalogue(), "codes round lengths by half a step at a million places",
              "[long]") {
     const auto space = TreeUnderTest{&entry, SplitRule::middle}.graded(sphere(1));
     const bool interpolates = entry.order < 2;  // with weights from 0 to 1
@@ -127,16 +128,23 @@ CASE_OF_EACH(entry, tree_catalogue(), "shorts round lengths by 1e-4 at a million
         for (Metric& m : lengths) m = Metric::isotropic(1e-3 * std::pow(4.9e5, fraction()));
         space->assign(lengths);
     }
+    const auto nodes = space->control_nodes(Neighbourhood::faces).metrics;
+    const auto [shortest, longest] = std::ranges::minmax(nodes, {}, &Metric::xx);
     const std::vector<Point> x = random_points(domain, 1'000'000, 9);
     std::vector<double> expected(x.size()), rounded(x.size());
     space->compact(Precision::doubles)->sample_lengths(x, expected);
-    space->compact(Precision::shorts)->sample_lengths(x, rounded);
-    double most = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        most = std::max(most, std::abs(rounded[i] / expected[i] - 1));
+    for (const Precision precision : {Precision::log16, Precision::log8}) {
+        const double step =
+            precision == Precision::log16 ? 1.0002 : std::pow(longest.xx / shortest.xx, 1.0 / 255);
+        space->compact(precision)->sample_lengths(x, rounded);
+        double most = 1;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            most = std::max({most, rounded[i] / expected[i], expected[i] / rounded[i]});
+        }
+        CHECK(most > 1 + (std::sqrt(step) - 1) / 2);
+        // The quadratic's weights reach beyond 1.
+        CHECK(most <= (interpolates ? std::sqrt(step) * (1 + 1e-7) : step));
     }
-    CHECK(most > 5e-5);
-    CHECK(most <= (interpolates ? 1e-4 : 2e-4));
 }
 
 CASE_OF_EACH(tree, trees(), "frozen trees have the same control nodes and links as before") {
@@ -168,8 +176,10 @@ CASE_OF_EACH(tree, trees(),
     const std::vector<PointSource> sources = sphere(s_n);
     const auto space = tree.graded(sources);
     const Footprint full = space->footprint();
-    for (const Precision precision : {Precision::doubles, Precision::floats, Precision::shorts}) {
-        if (precision == Precision::shorts && numbers > 1) continue;
+    const auto all = {Precision::doubles, Precision::floats, Precision::log16, Precision::log8};
+    for (const Precision precision : all) {
+        const bool is_code = precision == Precision::log16 || precision == Precision::log8;
+        if (is_code && numbers > 1) continue;
         const std::size_t before = live_bytes();
         const auto frozen = space->compact(precision);
         const std::size_t allocated = live_bytes() - before;
@@ -185,21 +195,22 @@ CASE_OF_EACH(tree, trees(),
             tree.entry->id.ends_with("V") && numbers == 1 && precision != Precision::doubles;
         const std::size_t number = precision == Precision::doubles  ? sizeof(double)
                                    : precision == Precision::floats ? sizeof(float)
-                                                                    : sizeof(std::uint16_t);
+                                   : precision == Precision::log16  ? sizeof(std::uint16_t)
+                                                                    : sizeof(std::uint8_t);
         const std::size_t payload = (in_leaves ? 8 * footprint.cells : footprint.control_nodes) *
                                     static_cast<std::size_t>(numbers) * number;
-        const std::size_t table = precision == Precision::shorts ? 256 * sizeof(double) : 0;
+        const std::size_t table = is_code ? 256 * sizeof(double) : 0;
         CHECK(footprint.bytes_payload >= payload);
         CHECK(footprint.bytes_payload <= payload + table);
         CHECK(footprint.bytes_auxiliary <= full.bytes_auxiliary);
     }
 }
 
-TEST_CASE("lengths in floats and shorts take few bytes a leaf, beside the lookup grid") {
+TEST_CASE("lengths in floats and codes take few bytes a leaf, beside the lookup grid") {
     const std::vector<PointSource> sources = sphere(1);
-    const std::tuple<const char*, double, double> most[] = {
-        {"K_L", 21, 19}, {"K_oL", 14, 12}, {"K_V", 61, 45}, {"K_oV", 54, 38}};
-    for (const auto& [id, floats, shorts] : most) {
+    const std::tuple<const char*, double, double, double> most[] = {
+        {"K_L", 21, 19, 19}, {"K_oL", 14, 12, 12}, {"K_V", 61, 45, 39}, {"K_oV", 54, 38, 31}};
+    for (const auto& [id, floats, log16, log8] : most) {
         CAPTURE(id);
         const auto space =
             TreeUnderTest{find_entry(tree_catalogue(), id), SplitRule::middle}.graded(sources);
@@ -209,7 +220,8 @@ TEST_CASE("lengths in floats and shorts take few bytes a leaf, beside the lookup
                    static_cast<double>(f.cells);
         };
         CHECK(bytes_per_leaf(Precision::floats) <= floats);
-        CHECK(bytes_per_leaf(Precision::shorts) <= shorts);
+        CHECK(bytes_per_leaf(Precision::log16) <= log16);
+        CHECK(bytes_per_leaf(Precision::log8) <= log8);
     }
 }
 
@@ -234,7 +246,7 @@ CASE_OF_EACH(tree, trees(), "lengths of a tree that meets its first tensor are t
 
 CASE_OF_EACH(entry, tree_catalogue(), "a tree of one leaf is frozen like any other") {
     const double all = largest_metric(domain).xx;
-    for (const Precision precision : {Precision::floats, Precision::shorts}) {
+    for (const Precision precision : {Precision::floats, Precision::log16, Precision::log8}) {
         const auto frozen = editable(entry.make({.domain = domain}))->compact(precision);
         CHECK(sample_at(*frozen, Point(0.3, 0.1, 0.2)).xx == Approx(all).epsilon(1e-7));
     }
@@ -273,13 +285,14 @@ TEST_CASE("what cannot be frozen is refused, with what would help") {
     }
     const auto slab = with(layer_metric(slanted, 1e-3, 1));
     CHECK_NOTHROW(slab->compact(Precision::floats));
-    CHECK_THROWS_WITH(slab->compact(Precision::shorts), Contains("isotropic: use floats"));
+    CHECK_THROWS_WITH(slab->compact(Precision::log16), Contains("isotropic: use floats"));
+    CHECK_THROWS_WITH(slab->compact(Precision::log8), Contains("isotropic: use floats"));
     const double longest = largest_metric(domain).xx;
-    CHECK_NOTHROW(with(Metric::isotropic(longest / 4.9e5))->compact(Precision::shorts));
-    CHECK_THROWS_WITH(with(Metric::isotropic(longest / 5e5))->compact(Precision::shorts),
+    CHECK_NOTHROW(with(Metric::isotropic(longest / 4.9e5))->compact(Precision::log16));
+    CHECK_THROWS_WITH(with(Metric::isotropic(longest / 5e5))->compact(Precision::log16),
                       Contains("use floats"));
     const auto anchored = editable(tree_named("K_LA").make({.domain = domain}));
-    CHECK_THROWS_WITH(anchored->compact(Precision::doubles), Contains("choose a tree"));
+    CHECK_THROWS_WITH(anchored->compact(Precision::doubles), Contains("as it is made"));
 }
 
 }  // namespace controlspace::frozen_tree_test

@@ -177,9 +177,9 @@ TEST_CASE(
     check(false);
 }
 
-TEST_CASE("frozen trees answer alike, in less memory, and what cannot be frozen is as it was") {
+TEST_CASE("precisions answer alike, in less memory, and what has no choice is as it was") {
     Study study = small_study({"K_oV", "K_LA"});
-    study.runs[0]["frozen"] = {"no", "doubles", "floats", "shorts"};
+    study.runs[0]["precision"] = {"as-made", "double", "float", "log16"};
     const auto trees = tree_catalogue();
     std::vector<CatalogueEntry> catalogue(trees.begin(), trees.end());
     const auto anchored = anchored_catalogue();
@@ -187,8 +187,8 @@ TEST_CASE("frozen trees answer alike, in less memory, and what cannot be frozen 
     const auto rows = run(study, catalogue);
     REQUIRE(rows.size() == 5);
     for (const Row& row : rows) REQUIRE(row.is_measured());
-    CHECK(structure_label(rows[2].setting) == "K_oV, frozen with floats");
-    CHECK(structure_label(rows[3].setting) == "K_oV, frozen with shorts");
+    CHECK(structure_label(rows[2].setting) == "K_oV, float");
+    CHECK(structure_label(rows[3].setting) == "K_oV, log16");
     const auto bytes = [&](std::size_t i) { return rows[i].number("bytes_total"); };
     const auto sum = [&](std::size_t i) { return rows[i].values.at("checksum"); };
     CHECK(sum(1) == sum(0));
@@ -254,7 +254,7 @@ TEST_CASE("rows say which settings have no effect, and these have none") {
                                                 {"equal_memory", 0.1},
                                                 {"voxel", 0.3},
                                                 {"neighbourhood", "all", "queue"},
-                                                {"frozen", "floats"},
+                                                {"precision", "float"},
                                                 {"prune_delta", 0.5}}));
     CAPTURE(given.key);
     Study study = small_study({"all"});
@@ -362,6 +362,7 @@ TEST_CASE("rows are timed in batches of cases that share their probes") {
     Study study = small_study({"K_L", "K_oL"});
     study.runs[0]["tau"] = {1, 1.01};
     study.runs[0]["g_r"] = {1.25, 1.5};
+    study.runs[0]["precision"] = {"as-made"};  // as large as what making them takes
     const auto rows = run(study, tree_catalogue());
     REQUIRE(rows.size() == 8);
     for (std::size_t i = 0; i < 8; ++i) CHECK(rows[i].number("access_batch") == (i < 4 ? 0 : 4));

@@ -155,7 +155,7 @@ TEST_CASE("points and primitives together are the smallest of their closed forms
         CHECK(c.target_delta.has_value() == (c.structure[0] == 'K'));
         const Workload workload = make_workload(study, c.sources, readers_of(points));
         const auto exact = make_reference(study, c, workload);
-        const auto space = make_and_fill(study, c, program_rows(), workload).build(c);
+        const auto space = make_and_fill(study, c, program_rows(), workload).space;
         double worst = 1;
         for (const Point& x : places) {
             CHECK(value_at(*exact, x).xx == Approx(expected(x)).epsilon(1e-12));
@@ -177,7 +177,7 @@ TEST_CASE("what is small beside a steep growth is found by trees") {
     for (const Case& c : expand(study, program_rows())) {
         CAPTURE(c.structure);
         const Workload workload = workload_of(study);
-        const auto space = make_and_fill(study, c, program_rows(), workload).build(c);
+        const auto space = make_and_fill(study, c, program_rows(), workload).space;
         CHECK(value_at(*space, {0.7371, 0.2113, 0.5419}).xx < 1.2e-4);
         CHECK(value_at(*space, {0.1, 0.1, 0.1}).xx == Approx(0.01).epsilon(1e-3));
     }

@@ -71,7 +71,9 @@ void write(const LatticeData& data, const std::string& path) {
 }
 
 /// The nodes of `uniform-trilinear` as Gmsh's field Structured, which reads a file.
-std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const LatticeData>& data) {
+std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const LatticeData>& data,
+                                       std::optional<Precision> precision) {
+    if (precision) refuse("Gmsh has a precision of its own: choose none");
     const ScratchFile file;  // it is read before the constructor ends
     write(*data, file.path());
     Footprint counts;
@@ -104,6 +106,7 @@ std::unique_ptr<ControlSpaceBuilder> make(const SpaceOptions& options,
 CatalogueEntry gmsh_structured_row() {
     CatalogueEntry row = grid_row<make, Interpolation::trilinear>(
         "gmsh-structured", "Gmsh's field Structured: a grid of sizes, trilinear; isotropic only");
+    row.capabilities = {MetricNodes(), VoxelSize()};
     return row;
 }
 

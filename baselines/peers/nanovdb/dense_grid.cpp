@@ -16,7 +16,7 @@ namespace {
 template <class Tree, class ValueOf>
 NanoHandle dense_grid(const Lattice& lattice, std::span<const Metric> metrics, ValueOf&& value_of) {
     const auto grid = openvdb::Grid<Tree>::create();
-    fill_densely(grid->tree(), lattice, metrics, value_of);
+    fill_densely(grid->tree(), lattice, [&](NodeIndex node) { return value_of(metrics[node]); });
     return nanovdb::openToNanoVDB<nanovdb::HostBuffer, Tree>(*grid, nanovdb::StatsMode::Disable,
                                                              nanovdb::ChecksumMode::Disable);
 }

@@ -1,5 +1,6 @@
-// The grids of `openvdb-vec3s`, two of vectors of floats, as NanoVDB: one block of memory each,
-// which is only read; what renderers and GPUs take.
+// Dense grids of NanoVDB, in one block of memory each, which is only read; what renderers and GPUs
+// take: one of floats where a length is enough, two of vectors of floats, as those of
+// `openvdb-vec3s`, where metrics are needed.
 #include <nanovdb/NanoVDB.h>
 
 #include <array>
@@ -16,13 +17,94 @@ namespace controlspace {
 
 namespace {
 
-using Grid = nanovdb::NanoGrid<nanovdb::Vec3f>;
-using Leaf = nanovdb::NanoLeaf<nanovdb::Vec3f>;
-
 nanovdb::Coord coord(const Cell& cell) { return {cell[0], cell[1], cell[2]}; }
+
+/// Reads the values of one grid, for one thread. A cell's corners lie in one leaf as a rule.
+template <class T>
+class NanoReader {
+public:
+    using Leaf = nanovdb::NanoLeaf<T>;
+    template <std::size_t corners>
+    using Values = std::array<const T*, corners>;
+
+    explicit NanoReader(const NanoHandle& handle) : accessor_(handle.grid<T>()->getAccessor()) {}
+
+    T operator()(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
+        return accessor_.getValue({static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)});
+    }
+    const Leaf* prepare(const Cell& cell) const { return accessor_.probeLeaf(coord(cell)); }
+    template <std::size_t corners>
+    Values<corners> find(const Cell& cell, const Leaf* leaf) const {
+        constexpr auto side = static_cast<int>(Leaf::DIM);
+        Values<corners> found;
+        for (std::size_t corner = 0; corner < corners; ++corner) {
+            const auto bits = static_cast<int>(corner);
+            const nanovdb::Coord ijk(cell[0] + (bits & 1), cell[1] + (bits >> 1 & 1),
+                                     cell[2] + (bits >> 2));
+            if (((ijk[0] ^ cell[0]) | (ijk[1] ^ cell[1]) | (ijk[2] ^ cell[2])) >= side) {
+                const Leaf* beside = accessor_.probeLeaf(ijk);
+                // Beyond the last node, where its weight is 0.
+                found[corner] = beside == nullptr ? found[0] : value(*beside, ijk);
+            } else {
+                found[corner] = value(*leaf, ijk);
+            }
+            prefetch(found[corner]);
+        }
+        return found;
+    }
+
+private:
+    static const T* value(const Leaf& leaf, const nanovdb::Coord& ijk) {
+        return &leaf.data()->mValues[Leaf::CoordToOffset(ijk)];
+    }
+
+    typename nanovdb::NanoGrid<T>::AccessorType accessor_;
+};
+
+template <class T>
+void add_bytes(const NanoHandle& handle, Footprint& footprint) {
+    const std::size_t payload =
+        handle.grid<T>()->tree().nodeCount(0) * sizeof(nanovdb::NanoLeaf<T>::DataType::mValues);
+    footprint.bytes_payload += payload;
+    footprint.bytes_topology += handle.size() - payload;
+}
+
+/// Lengths, where all metrics are isotropic.
+class NanoLengths {
+public:
+    using Stored = StoredLength<float>;
+    static constexpr bool shares_field = false;
+
+    explicit NanoLengths(const std::shared_ptr<const LatticeData>& data)
+        : grid_(dense_lengths(data->lattice(), data->field())) {}
+
+    class Reader : public NanoReader<float> {
+    public:
+        using NanoReader::NanoReader;
+
+        Stored operator()(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
+            return length(NanoReader::operator()(i, j, k));
+        }
+        Stored metric(const auto& at, std::size_t corner) const { return length(*at[corner]); }
+
+    private:
+        static Stored length(float h) {
+            Stored stored;
+            stored.h = h;
+            return stored;
+        }
+    };
+    Reader reader() const { return Reader(grid_); }
+
+    void add_to(Footprint& footprint) const { add_bytes<float>(grid_, footprint); }
+
+private:
+    NanoHandle grid_;
+};
 
 class NanoPair {
 public:
+    using Stored = Metric;
     static constexpr bool shares_field = false;
 
     explicit NanoPair(const std::shared_ptr<const LatticeData>& data)
@@ -31,70 +113,38 @@ public:
     static double bytes_for(const Vector& nodes) { return 2 * dense_vec3s_bytes(nodes); }
     static Metric stored(const Metric& m) { return in_floats(m); }
 
-    /// Two accessors of one thread. A cell's corners lie in one leaf as a rule.
     class Reader {
+        using Nodes = NanoReader<nanovdb::Vec3f>;
+
     public:
-        using Leaves = std::pair<const Leaf*, const Leaf*>;
-        template <std::size_t corners>
-        using Values = std::array<const nanovdb::Vec3f*, corners>;
+        using Leaves = std::pair<const Nodes::Leaf*, const Nodes::Leaf*>;
 
         explicit Reader(const NanoPair& pair)
-            : diagonals_(pair.grids_.diagonals.grid<nanovdb::Vec3f>()->getAccessor()),
-              off_diagonals_(pair.grids_.off_diagonals.grid<nanovdb::Vec3f>()->getAccessor()) {}
+            : diagonals_(pair.grids_.diagonals), off_diagonals_(pair.grids_.off_diagonals) {}
 
         Metric operator()(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
-            const nanovdb::Coord ijk(static_cast<int>(i), static_cast<int>(j), static_cast<int>(k));
-            return metric_of(diagonals_.getValue(ijk), off_diagonals_.getValue(ijk));
+            return metric_of(diagonals_(i, j, k), off_diagonals_(i, j, k));
         }
         Leaves prepare(const Cell& cell) const {
-            return {diagonals_.probeLeaf(coord(cell)), off_diagonals_.probeLeaf(coord(cell))};
+            return {diagonals_.prepare(cell), off_diagonals_.prepare(cell)};
         }
         template <std::size_t corners>
         auto find(const Cell& cell, const Leaves& leaves) const {
-            return std::pair(values<corners>(diagonals_, cell, leaves.first),
-                             values<corners>(off_diagonals_, cell, leaves.second));
+            return std::pair(diagonals_.find<corners>(cell, leaves.first),
+                             off_diagonals_.find<corners>(cell, leaves.second));
         }
         Metric metric(const auto& at, std::size_t corner) const {
             return metric_of(*at.first[corner], *at.second[corner]);
         }
 
     private:
-        using Accessor = Grid::AccessorType;
-        template <std::size_t corners>
-        static Values<corners> values(const Accessor& accessor, const Cell& cell,
-                                      const Leaf* leaf) {
-            constexpr auto side = static_cast<int>(Leaf::DIM);
-            Values<corners> found;
-            for (std::size_t corner = 0; corner < corners; ++corner) {
-                const auto bits = static_cast<int>(corner);
-                const nanovdb::Coord ijk(cell[0] + (bits & 1), cell[1] + (bits >> 1 & 1),
-                                         cell[2] + (bits >> 2));
-                if (((ijk[0] ^ cell[0]) | (ijk[1] ^ cell[1]) | (ijk[2] ^ cell[2])) >= side) {
-                    const Leaf* beside = accessor.probeLeaf(ijk);
-                    // Beyond the last node, where its weight is 0.
-                    found[corner] = beside == nullptr ? found[0] : value(*beside, ijk);
-                } else {
-                    found[corner] = value(*leaf, ijk);
-                }
-                prefetch(found[corner]);
-            }
-            return found;
-        }
-        static const nanovdb::Vec3f* value(const Leaf& leaf, const nanovdb::Coord& ijk) {
-            return &leaf.data()->mValues[Leaf::CoordToOffset(ijk)];
-        }
-
-        Accessor diagonals_, off_diagonals_;
+        Nodes diagonals_, off_diagonals_;
     };
     Reader reader() const { return Reader(*this); }
 
     void add_to(Footprint& footprint) const {
-        for (const NanoHandle* handle : {&grids_.diagonals, &grids_.off_diagonals}) {
-            const std::size_t payload = handle->grid<nanovdb::Vec3f>()->tree().nodeCount(0) *
-                                        sizeof(Leaf::DataType::mValues);
-            footprint.bytes_payload += payload;
-            footprint.bytes_topology += handle->size() - payload;
-        }
+        add_bytes<nanovdb::Vec3f>(grids_.diagonals, footprint);
+        add_bytes<nanovdb::Vec3f>(grids_.off_diagonals, footprint);
     }
 
 private:
@@ -103,7 +153,7 @@ private:
 
 std::unique_ptr<ControlSpaceBuilder> make(const SpaceOptions& options,
                                           Interpolation interpolation) {
-    return make_grid<NanoPair>(options, interpolation);
+    return make_grid<OwnPrecision<NanoPair, NanoLengths>>(options, interpolation);
 }
 
 template <Interpolation interpolation>
@@ -116,13 +166,12 @@ CatalogueEntry row(std::string id, std::string description) {
 }  // namespace
 
 std::vector<CatalogueEntry> nanovdb_rows() {
-    return {
-        row<Interpolation::nearest>("nanovdb-nearest",
-                                    "two of NanoVDB's Vec3f grids, dense, six floats a voxel, "
-                                    "also of lengths; constant"),
-        row<Interpolation::trilinear>("nanovdb-trilinear",
-                                      "two of NanoVDB's Vec3f grids, dense, six floats a voxel, "
-                                      "also of lengths; trilinear")};
+    return {row<Interpolation::nearest>("nanovdb-nearest",
+                                        "dense NanoVDB, constant: a float grid of lengths, or two "
+                                        "Vec3f grids of metrics"),
+            row<Interpolation::trilinear>("nanovdb-trilinear",
+                                          "dense NanoVDB, trilinear: a float grid of lengths, or "
+                                          "two Vec3f grids of metrics")};
 }
 
 }  // namespace controlspace

@@ -48,7 +48,7 @@ public:
         return leaves_[leaf].across;
     }
     Metric metric(LeafIndex leaf) const { return metrics_[leaf]; }
-    void prefetch_metric(LeafIndex leaf) const { __builtin_prefetch(metrics_.items() + leaf); }
+    void prefetch_metric(LeafIndex leaf) const { __builtin_prefetch(&metrics_.items()[leaf]); }
     double length(LeafIndex leaf) const { return length_of(metrics_[leaf]); }
     bool all_isotropic() const { return isotropic_; }
     double slope() const { return rule_.slope; }

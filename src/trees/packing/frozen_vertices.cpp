@@ -65,7 +65,7 @@ public:
                 return packing(corners[c]);
             };
         } else {
-            return AtCorners<M>{corners, metrics_.items()};
+            return AtCorners<M>{corners, metrics_.items().data()};
         }
     }
 

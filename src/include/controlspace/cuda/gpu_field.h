@@ -15,11 +15,11 @@ namespace controlspace {
 
 /// A copy of an octree in the memory of a GPU, which answers there. With doubles, answers are those
 /// of the octree to the bit; with floats, those of its compact form in floats. Lengths of a compact
-/// form in shorts are rounded to floats.
+/// form in codes are rounded to floats.
 class GpuField {
 public:
     /// `field`: K_oL, K_oLB or K_oV, compact or not, to be copied to CUDA's current device. Throws
-    /// InputError for another structure, for shorts, and where no device is there or its memory is
+    /// InputError for another structure, for codes, and where no device is there or its memory is
     /// too small.
     explicit GpuField(const ControlSpace& field, Precision precision = Precision::floats);
     ~GpuField();

@@ -9,9 +9,10 @@
 
 namespace controlspace {
 
-/// Type of the numbers in the metrics of a compact form; shorts: lengths in 16 bits, where all
-/// metrics are isotropic.
-enum class Precision { doubles, floats, shorts };
+/// The numbers that a finished structure stores its metrics in: six doubles or floats each, or,
+/// where all are isotropic, their lengths in one. log16 and log8 hold lengths alone, as codes of 16
+/// and 8 bits, whose steps are equal ratios.
+enum class Precision { doubles, floats, log16, log8 };
 
 /// A metric in six numbers of another type; floats round each by a relative 6e-8 at most.
 template <class Number>
@@ -39,13 +40,17 @@ struct StoredLength {
     operator Metric() const { return Metric::isotropic(h); }
 };
 
-/// A length that is kept in 16 bits (Packing), as it is read from there.
+/// A length that is kept as a code (Packing), as it is read from there.
 template <>
 struct StoredLength<std::uint16_t> : StoredLength<double> {
     using StoredLength<double>::StoredLength;
 };
+template <>
+struct StoredLength<std::uint8_t> : StoredLength<double> {
+    using StoredLength<double>::StoredLength;
+};
 
-/// How arrays of a compact form keep metrics of type M: as they are.
+/// How arrays keep metrics of type M: as they are.
 template <class M>
 struct Packing {
     using Item = M;
@@ -73,11 +78,26 @@ struct Packing<StoredLength<std::uint16_t>> {
         return powers;
     }();
 
-    const double* coarse = nullptr;  ///< lengths `fine_steps` steps apart, from the shortest on
+    const double* table = nullptr;  ///< lengths `fine_steps` steps apart, from the shortest on
 
     StoredLength<std::uint16_t> operator()(Item code) const {
         return StoredLength<std::uint16_t>(
-            Metric::isotropic(coarse[code / fine_steps] * fine[code % fine_steps]));
+            Metric::isotropic(table[code / fine_steps] * fine[code % fine_steps]));
+    }
+};
+
+/// Lengths in 8 bits: one of 256 in equal ratios, from the shortest to the longest that there is,
+/// both of which are exact. Rounded by half a step, (longest / shortest)^(1/510) - 1 at most.
+template <>
+struct Packing<StoredLength<std::uint8_t>> {
+    using Item = std::uint8_t;
+
+    static constexpr std::size_t codes = 256;
+
+    const double* table = nullptr;  ///< the lengths
+
+    StoredLength<std::uint8_t> operator()(Item code) const {
+        return StoredLength<std::uint8_t>(Metric::isotropic(table[code]));
     }
 };
 

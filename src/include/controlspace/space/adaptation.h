@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "controlspace/metric/intersection.h"
+#include "controlspace/metric/stored_metric.h"
 #include "controlspace/sources/point_source.h"
 #include "controlspace/space/control_space.h"
 
@@ -25,6 +26,10 @@ struct AdaptationGoal {
     double target = 0.1;
     IntersectionRule intersection = IntersectionRule::order_free;
     double h_max = largest_magnitude;  ///< as of SpaceOptions: bounds M_max
+    /// What will be built (BuildOptions::precision): the target is kept by the numbers that a query
+    /// reads back, not only by those before they are rounded. Refused, by InputError, are codes
+    /// whose rounding takes more than a third of what the target allows, as the ratio of lengths.
+    Precision precision = Precision::doubles;
     /// Further places where trees are compared with the field, such as the middle of what is small
     /// in `continuous`; they may be outside the domain.
     std::span<const Point> places = {};

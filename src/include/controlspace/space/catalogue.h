@@ -29,7 +29,7 @@ struct MetricNodes {
 struct KeptSources {};
 /// Interpolates in a leaf over its neighbours: quadratic_form.
 struct QuadraticLeaves {};
-/// Has compact forms: BuildOptions::precision.
+/// Can be built in each precision: BuildOptions::precision.
 struct CompactForm {};
 /// A grid: voxel.
 struct VoxelSize {};

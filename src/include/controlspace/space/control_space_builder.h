@@ -19,10 +19,11 @@
 namespace controlspace {
 
 struct BuildOptions {
-    /// The compact form, for a CatalogueEntry that has CompactForm: answers alike in less memory;
-    /// isotropic metrics are kept as lengths.
-    /// With doubles it answers the same bits; floats round the metrics by 6e-8; shorts, for
-    /// isotropic fields alone, round lengths by a relative 1e-4.
+    /// A form that is only read, for a CatalogueEntry that has CompactForm, in these numbers: where
+    /// all metrics are isotropic, their lengths alone. Doubles answer the same bits; floats round
+    /// metrics by 6e-8. Codes hold lengths alone: log16 rounds them by a relative 1e-4, log8 by
+    /// half of 255 equal ratios from the shortest to the longest, (longest / shortest)^(1/510) - 1.
+    /// None: as the builder holds it, metrics in doubles.
     std::optional<Precision> precision = {};
 };
 
@@ -59,10 +60,10 @@ public:
     virtual AdaptationReport adapt(const AdaptationGoal& goal) = 0;
 
     /// The control space made so far. It stays as it is while the builder goes on; both share their
-    /// data until then, so that this costs no copy. Throws InputError where a compact form is
-    /// requested of a structure that has none, and for metrics that floats cannot hold (beyond
-    /// 1e-38 to 3e38, or with lengths in ratios above about 1e4) or shorts (tensors, or lengths of
-    /// more than 4.9e5 times the shortest).
+    /// data until then, so that this costs no copy. Throws InputError where a precision is
+    /// requested of a structure that has no choice, and for metrics that floats cannot hold (beyond
+    /// 1e-38 to 3e38, or with lengths in ratios above about 1e4) or codes (tensors; in 16 bits
+    /// lengths of more than 4.9e5 times the shortest).
     virtual std::unique_ptr<ControlSpace> build(const BuildOptions& options = {}) = 0;
 
     virtual Box domain() const = 0;

@@ -35,9 +35,9 @@ std::unique_ptr<ControlSpace> make_control_space(std::span<const CatalogueEntry>
                                                  std::optional<double> target = {},
                                                  AdaptationReport* report = nullptr);
 
-/// How a control space is built that is only read from then on: in its compact form with doubles,
-/// if it has one, unless options.takes_later_sources. It answers the same bits in less time, and
-/// takes less memory where all is isotropic.
+/// How a control space is built that is only read from then on: in doubles,
+/// if it has a choice, unless options.takes_later_sources. It answers the same bits in less time,
+/// and takes less memory where all is isotropic.
 BuildOptions to_be_read(const CatalogueEntry& entry, const SpaceOptions& options);
 
 /// The same, for more sources to come: the builder, filled. With options.takes_later_sources they

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "controlspace/gradation/grade.h"
+#include "controlspace/metric/stored_metric.h"
 #include "controlspace/space/space_options.h"
 #include "controlspace/space/split_words.h"
 #include "controlspace/study/sources_choice.h"
@@ -32,8 +33,11 @@ struct ReferenceKind {
 /// Intersection of all sources' cones (paper §5.2) and, as it stands, of the field.
 const ReferenceKind& exact_reference_kind();
 
-/// Whether a structure is built in its compact form (BuildOptions::precision).
-enum class Frozen { no, doubles, floats, shorts };
+/// What a finished structure stores its values in (BuildOptions::precision).
+enum class StoredIn { as_made, doubles, floats, log16, log8 };
+StoredIn stored_in(Precision precision);
+/// None of what is built as it was made, or has no choice.
+std::optional<Precision> precision_of(std::optional<StoredIn> form);
 
 /// One structure under one setting, which gives one row of results. Its members are set by the rows
 /// of case_parameters(). What does not apply to the structure is none, or has its default.
@@ -57,7 +61,7 @@ struct Case {
     std::optional<double> equal_delta = {};
     std::optional<double> equal_memory = {};
     std::optional<QuadraticForm> interpolation = {};  ///< trees with quadratic leaves only
-    Frozen frozen = Frozen::no;                       ///< structures with compact forms only
+    std::optional<StoredIn> precision = {};           ///< structures with a choice of it only
     GradationLaw law = GradationLaw::cone;
     GradationSchedule schedule = GradationSchedule::sources;
     Neighbourhood neighbourhood = Neighbourhood::faces;  ///< structures that hold metrics only
@@ -104,12 +108,16 @@ struct Words<QuadraticForm> {
         {QuadraticForm::published, "published", "with the two errors of the paper's program"}};
 };
 template <>
-struct Words<Frozen> {
-    static constexpr Word<Frozen> table[] = {
-        {Frozen::no, "no", "trees as they are made"},
-        {Frozen::doubles, "doubles", "compact and read-only, the same bits"},
-        {Frozen::floats, "floats", "compact, metrics rounded by 6e-8"},
-        {Frozen::shorts, "shorts", "compact, isotropic lengths in 16 bits, rounded by 1e-4"}};
+struct Words<StoredIn> {
+    static constexpr Word<StoredIn> table[] = {
+        {StoredIn::doubles, "double", "8 bytes a number: the bits that were computed"},
+        {StoredIn::floats, "float", "4 bytes a number, rounded by 6e-8"},
+        {StoredIn::log16, "log16",
+         "lengths in 2 bytes, rounded by 1e-4; longest <= 4.9e5 shortest"},
+        {StoredIn::log8, "log8",
+         "lengths in 1 byte, rounded by half of 255 equal ratios from the shortest to the longest"},
+        {StoredIn::as_made, "as-made",
+         "as insertion and gradation leave it: metrics in doubles; takes later sources"}};
 };
 
 }  // namespace controlspace

@@ -73,13 +73,12 @@ bool share_probes(const Case& a, const Case& b);
 /// The entry of the structure of `c`, which `expand` has found in `catalogue`.
 const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> catalogue);
 
-/// A builder with the sources of a case inserted, graded or adapted. Exceptions pass through.
+/// A builder with the sources of a case inserted, graded or adapted, and what it has built, in the
+/// precision of the case. Exceptions pass through.
 struct Filled {
     std::unique_ptr<ControlSpaceBuilder> builder;
-    Creation creation;  ///< of this one
-
-    /// In the requested form; conversion to a compact one is part of the creation.
-    std::unique_ptr<ControlSpace> build(const Case& c);
+    std::unique_ptr<ControlSpace> space;
+    Creation creation;  ///< of the space
 };
 Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
                      const Workload& workload, const StudyObserver& observer = {});

@@ -13,6 +13,7 @@
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/detail/adapt_for_precision.h"
 #include "controlspace/space/detail/given_sources.h"
 #include "controlspace/space/detail/plain_cursor.h"
 #include "controlspace/space/detail/saved.h"
@@ -99,7 +100,7 @@ concept HoldsMetrics = requires(Data& data, std::span<const Metric> metrics) {
 /// sample_lengths, length_at and length_cursor; insert(sources), grade(options), adapt, load; for a
 /// NodeBuilder assign, options and grade(NodeGradation), and it may leave out adapt. With
 /// pack(precision) it has compact forms; finish() is called before it is built. With
-/// finished(shared data) it is built in another form than SharedSpace.
+/// finished(shared data) it is built in another form than SharedSpace; with a precision there, too.
 ///
 /// What it builds shares the data, which are copied before the next change as long as they are
 /// shared.
@@ -168,10 +169,21 @@ public:
             this->set_grows_apart(false);
             note_growth(goal.sources);
         }
-        if constexpr (requires(Data & data) { data.adapt(goal); }) {
-            return edit().adapt(bounded(goal));
+        const auto adapt = [this](const AdaptationGoal& g) {
+            if constexpr (requires(Data & data) { data.adapt(g); }) {
+                return edit().adapt(g);
+            } else {
+                return Base::adapt(g);
+            }
+        };
+        const AdaptationGoal wanted = bounded(goal);
+        if constexpr (has_nodes) {
+            const double longest = largest_metric(domain(), wanted.h_max).xx;
+            return adapt_for_precision(wanted, longest, adapt, [this] {
+                return data_->control_nodes(Neighbourhood::faces).metrics;
+            });
         } else {
-            return Base::adapt(bounded(goal));
+            return adapt(wanted);
         }
     }
     std::unique_ptr<ControlSpace> build(const BuildOptions& options) override {
@@ -234,9 +246,15 @@ private:
     }
 
     template <class Space>
-    std::unique_ptr<Space> described(std::unique_ptr<Space> space) const {
+    std::unique_ptr<Space> described(std::unique_ptr<Space> space,
+                                     std::optional<Precision> precision = {}) const {
         auto& saved = dynamic_cast<Saved&>(*space);
-        saved.set_recipe(this->recipe());
+        if (this->recipe()) {
+            Recipe recipe = *this->recipe();
+            recipe.precision = precision;
+            saved.set_recipe(std::move(recipe));
+        }
+        if (precision) return space;  // it is only read
         saved.set_grows_apart(this->grows_apart());
         if constexpr (has_nodes) {
             if (data_->options().takes_later_sources) saved.set_given(this->given());
@@ -256,17 +274,12 @@ private:
     }
 
     std::unique_ptr<ControlSpace> pack(Precision precision) {
-        if constexpr (requires(const Data& data) { data.pack(precision); }) {
-            auto compact = data_->pack(precision);
-            if (this->recipe()) {
-                Recipe recipe = *this->recipe();
-                recipe.precision = precision;
-                dynamic_cast<Saved&>(*compact).set_recipe(std::move(recipe));
-            }
-            return compact;
+        if constexpr (requires { Data::finished(data_, precision); }) {
+            return described(Data::finished(data_, precision), precision);
+        } else if constexpr (requires(const Data& data) { data.pack(precision); }) {
+            return described(data_->pack(precision), precision);
         } else {
-            throw InputError(
-                "this structure has no compact form: choose a tree that holds metrics");
+            throw InputError("this structure has no choice of precision: build it as it is made");
         }
     }
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "controlspace/metric/stored_metric.h"
+#include "controlspace/metric/stored_metrics.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/detail/plain_cursor.h"
 #include "controlspace/space/detail/saved.h"
@@ -25,74 +25,14 @@ namespace controlspace {
 // lengths. With doubles they answer as the tree does, to the bit. They are saved as the tree is,
 // with nodes and leaves in their order.
 
-/// The metrics of a compact form.
-template <class M>
-class StoredMetrics {
-public:
-    using Item = typename Packing<M>::Item;
-
-    /// The metrics with these numbers, in their order. Throws InputError where one cannot be held.
-    StoredMetrics(std::span<const Metric> metrics, std::span<const NodeIndex> numbers);
-
-    std::size_t size() const { return items_.size(); }
-    decltype(auto) operator[](std::size_t i) const { return packing()(items_[i]); }
-    const Item* items() const { return items_.data(); }
-    Packing<M> packing() const {
-        if constexpr (requires(Packing<M> p) { p.coarse; }) {
-            return {coarse_.data()};
-        } else {
-            return {};
-        }
-    }
-    NodeView<M> values() const { return {items_, false, packing()}; }
-    std::vector<Metric> metrics() const {
-        std::vector<Metric> all;
-        all.reserve(size());
-        for (const Item& item : items_) all.push_back(packing()(item));
-        return all;
-    }
-    std::size_t bytes() const {
-        return items_.capacity() * sizeof(Item) + coarse_.capacity() * sizeof(double);
-    }
-    /// Leaves no items, only how they are packed.
-    void drop_items() { items_ = std::vector<Item>(); }
-
-private:
-    std::vector<Item> items_;
-    std::vector<double> coarse_;  // see Packing
-};
-
-/// The metrics of a compact form for a file: shorts as floats, which take less room there and are
-/// rounded to the same shorts again.
+/// The metrics of a compact form for a file: lengths in 16 bits as floats, which take less room
+/// there and are rounded to the same codes again.
 template <class M>
 NodeMetrics saved_metrics(std::vector<Metric> metrics) {
     if constexpr (std::is_same_v<M, StoredLength<std::uint16_t>>) {
         for (Metric& m : metrics) m = StoredLength<float>(m);
     }
     return NodeMetrics(std::move(metrics));
-}
-
-/// Throws InputError: shorts hold lengths only.
-[[noreturn]] void refuse_shorts();
-
-/// pack(std::type_identity<M>()) for the type that metrics are stored in, which is that of lengths
-/// where all are isotropic, if it `may_be_lengths`.
-template <bool may_be_lengths, class Pack>
-std::unique_ptr<ControlSpace> with_stored(Precision precision, std::span<const Metric> metrics,
-                                          Pack&& pack) {
-    const bool floats = precision == Precision::floats;
-    if constexpr (may_be_lengths) {
-        if (std::ranges::all_of(metrics, is_isotropic)) {
-            if (precision == Precision::shorts) {
-                return pack(std::type_identity<StoredLength<std::uint16_t>>());
-            }
-            return floats ? pack(std::type_identity<StoredLength<float>>())
-                          : pack(std::type_identity<StoredLength<double>>());
-        }
-    }
-    if (precision == Precision::shorts) refuse_shorts();
-    return floats ? pack(std::type_identity<StoredMetric<float>>())
-                  : pack(std::type_identity<StoredMetric<double>>());
 }
 
 /// What the leaves of a compact form hold, of any storage with one node a leaf: its data, and the
@@ -141,7 +81,9 @@ private:
         copy.metrics() = NodeMetrics(0, Metric());
         return copy;
     }
-    NodeField<Storage, M> field() const { return {storage_, metrics_.values()}; }
+    NodeField<Storage, M> field() const {
+        return {storage_, {metrics_.items(), false, metrics_.packing()}};
+    }
 
     Storage storage_;  // without metrics
     StoredMetrics<M> metrics_;

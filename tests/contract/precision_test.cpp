@@ -1,0 +1,148 @@
+// Structures in each precision: what is stored, what is read back, and what an adapted one
+// promises.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "contract/structure_case.h"
+#include "controlspace/error.h"
+#include "controlspace/measure/access_time.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/space/control_nodes.h"
+
+namespace controlspace::precision_test {
+
+using Catch::Matchers::Contains;
+
+namespace {
+
+// The largest factor, at least 1, between lengths at `x`.
+double largest_factor(const ControlSpace& a, const ControlSpace& b, const std::vector<Point>& x) {
+    double most = 1;
+    for (const Point& p : x) most = std::max(most, largest_ratio(a.metric_at(p), b.metric_at(p)));
+    return most;
+}
+
+// Half a step, as a factor, of 255 equal ratios.
+double half_step(const ControlSpace& space) {
+    const auto nodes = control_nodes(space, Neighbourhood::faces).value().metrics;
+    const auto [shortest, longest] = std::ranges::minmax(nodes, {}, &Metric::xx);
+    return std::pow(longest.xx / shortest.xx, 1.0 / 510);
+}
+
+bool is_linear(const CatalogueEntry& structure) {
+    return has_compact_form(structure) && structure.order < 2;
+}
+bool is_proved(const CatalogueEntry& structure) {
+    return is_linear(structure) && structure.has<SourceLeaves>();
+}
+bool is_grid(const CatalogueEntry& structure) {
+    return has_compact_form(structure) && structure.has<VoxelSize>();
+}
+
+// The cones of all sources, one by one.
+double exact_length(const Work& work, const Point& x) {
+    double h = work.domain.half_diagonal();
+    for (const PointSource& s : work.sources) {
+        h = std::min(h, s.metric.xx + 0.25 * (x - s.position).norm());
+    }
+    return h;
+}
+
+}  // namespace
+
+STRUCTURE_CASE(is_linear, "doubles give the same bits, floats and codes what their steps allow") {
+    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere(), oblong_box(), flat_box());
+    CAPTURE(work.name);
+    const auto space = work.graded(structure);
+    const std::vector<Point> x = random_points(work.domain, 2000, 5);
+    const std::vector<Metric> exact = answers(*space, x);
+    CHECK(answers(*space->compact(Precision::doubles), x) == exact);
+    const double in_floats = largest_factor(*space->compact(Precision::floats), *space, x);
+    CHECK(in_floats > 1);
+    CHECK(in_floats <= (work.isotropic() ? 1 + 6.1e-8 : 1 + 1e-5));
+    if (!work.isotropic()) return;
+    const double in_16_bits = largest_factor(*space->compact(Precision::log16), *space, x);
+    CHECK(in_16_bits > 1 + 2e-5);
+    CHECK(in_16_bits <= std::sqrt(1.0002) * (1 + 1.3e-7));
+    const double in_8_bits = largest_factor(*space->compact(Precision::log8), *space, x);
+    CHECK(in_8_bits > std::sqrt(std::sqrt(half_step(*space))));
+    CHECK(in_8_bits <= half_step(*space) * (1 + 1e-12));
+}
+
+STRUCTURE_CASE(is_grid,
+               "of lengths a grid stores one number a node, in fewer bytes where fewer are asked") {
+    const Work work = oblong_box();
+    const auto space = work.graded(structure);
+    const bool is_flat_array = structure.id.starts_with("uniform");
+    const auto payload = [&](Precision precision) {
+        const Footprint f = space->compact(precision)->footprint();
+        return static_cast<double>(f.bytes_payload);
+    };
+    const double in_doubles = payload(Precision::doubles);
+    const auto nodes = static_cast<double>(space->footprint().control_nodes);
+    CHECK(6 * in_doubles == static_cast<double>(space->footprint().bytes_payload));
+    if (is_flat_array) CHECK(in_doubles == 8 * nodes);
+    constexpr double table = 256 * sizeof(double);
+    CHECK(payload(Precision::floats) == in_doubles / 2);
+    CHECK(payload(Precision::log16) <= in_doubles / 4 + table);
+    CHECK(payload(Precision::log8) == in_doubles / 8 + table);
+    // What could be asked of it is the same.
+    const auto in_floats = space->compact(Precision::floats);
+    CHECK(in_floats->footprint().cells == space->footprint().cells);
+    CHECK(in_floats->cell_at(work.domain.centre()) == space->cell_at(work.domain.centre()));
+}
+
+STRUCTURE_CASE(is_proved, "what is read back keeps the target, in every precision") {
+    const Work work = GENERATE(isotropic_sphere(), oblong_box(), flat_box());
+    const auto precision =
+        GENERATE(Precision::doubles, Precision::floats, Precision::log16, Precision::log8);
+    constexpr double target = 0.05;
+    CAPTURE(work.name, static_cast<int>(precision));
+    const auto space = editable(structure.make(work.options()));
+    const AdaptationReport report = space->adapt(
+        {.sources = work.sources, .continuous = nullptr, .target = target, .precision = precision});
+    CHECK(report.met);
+    CHECK(report.is_bound);
+    CHECK(report.reached <= target);
+    const auto built = space->compact(precision);
+    std::vector<Point> x = random_points(work.domain, 20'000, 3);
+    for (const PointSource& s : work.sources) x.push_back(s.position);
+    double worst = 0;
+    for (const Point& p : x) {
+        worst = std::max(
+            worst, nonconformity(built->metric_at(p), Metric::isotropic(exact_length(work, p))));
+    }
+    CHECK(worst <= report.reached * (1 + 1e-9));
+    // Where rounding is large, it was made room for.
+    if (precision == Precision::log8) {
+        double in_doubles = 0;
+        const auto unrounded = space->compact(Precision::doubles);
+        for (const Point& p : x) {
+            in_doubles = std::max(
+                in_doubles,
+                nonconformity(unrounded->metric_at(p), Metric::isotropic(exact_length(work, p))));
+        }
+        const double room = largest_factor_within(target) / half_step(*unrounded);
+        CHECK(in_doubles <= nonconformity_of_factor(room) * (1 + 1e-9));
+    }
+}
+
+STRUCTURE_CASE(is_proved, "codes that take more than a third of what a target allows are refused") {
+    const Work work = oblong_box();
+    const auto adapt = [&](double target, Precision precision) {
+        return editable(structure.make(work.options()))
+            ->adapt({.sources = work.sources,
+                     .continuous = nullptr,
+                     .target = target,
+                     .precision = precision,
+                     .max_leaves = 2000});
+    };
+    CHECK_THROWS_WITH(adapt(1e-4, Precision::log8),
+                      Contains("8 bits") && Contains("a third") && Contains("16 bits"));
+    CHECK_NOTHROW(adapt(1e-4, Precision::log16));
+    CHECK_THROWS_AS(adapt(1e-8, Precision::log16), InputError);
+}
+
+}  // namespace controlspace::precision_test
