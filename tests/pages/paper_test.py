@@ -28,6 +28,14 @@ class Kept(InFolder):
         self.assertEqual(page.read_text(), (KEPT / "paper-sphere/paper.md").read_text())
         self.assertIn(done.stdout.split("\n")[0], page.read_text())
 
+    def test_kept_results_give_the_kept_conclusions(self):
+        shutil.copytree(KEPT / "paper-conclusions", self.folder / "out")
+        page = self.folder / "out/README.md"
+        page.unlink()
+        done = run("conclusions", "--output", self.folder / "out")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(page.read_text(), (KEPT / "paper-conclusions/README.md").read_text())
+
     def test_the_rerun_agrees_where_it_was_programmed_alike(self):
         # delta_R_max of the rerun, rounded, is the printed value; sizes follow from the counts.
         lines = (ROOT / "data/paper/reproduction.csv").read_text().splitlines()
