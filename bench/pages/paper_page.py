@@ -45,7 +45,7 @@ def experiment_lines(experiment, evidence, cell):
 
 
 def experiment_tables(evidence):
-    tables = [clock_ticks()]
+    tables = [clock_ticks(), octree_links()]
     for experiment in p.TEXTS["experiments"]:
         lines = [line for cell in evidence.measured_cells
                  for line in experiment_lines(experiment, evidence, cell)]
@@ -66,6 +66,22 @@ def clock_ticks():
          "shortest [ticks]"],
         [[str(len(times)), str(sum(x <= half_digit for x in off)), fixed(max(off), 4),
           str(len({round(t / tick) for t in times})), fixed(min(times) / tick, 0)]])
+
+
+def octree_links():
+    lines = []
+    for (rho, tau, kind), run in p.OCTREE_LINKS.items():
+        if kind == "published":
+            paper = p.PAPER_BY_SETTING["K_oL", "", rho, tau]
+            right = p.OCTREE_LINKS[rho, tau, "right"]
+            lines.append([plain(rho), plain(tau), f"{100 * run.wrong_links:.1f}", fixed(run.delta_R_max),
+                          fixed(paper.delta_R_max), fixed(right.delta_R_max)])
+    return Table(
+        "Experiment: the links of K_oL",
+        "A small program of its own (`bench/links`) with the published program's links between leaves: when an element "
+        "splits, its children take the children of a neighbour that has split by their number, even of a coarser one, "
+        "and these link back to them. Wrong: links between leaves that do not touch.",
+        ["ρ", "τ", "wrong [%]", "delta_R", "paper", "with right links"], lines)
 
 
 # ---- The summary
