@@ -1,6 +1,7 @@
-// What the adapters of foreign systems cost: the time of `sample` over that of a plain loop over
-// the library itself, which writes lengths alone, on the same sources and places. Samples are taken
-// in turns; printed is the median of their ratios, with its quartiles. Fails where answers differ.
+// What stands between a user and a library: the time of `sample_lengths`, and of `length_at` one
+// place after the other, over that of a plain loop over the library itself (of an array, for
+// uniform grids), on the same sources and places. Samples are taken in turns; printed is the median
+// of their ratios, with its quartiles. Fails where answers differ.
 //   peers_overhead [NUMBER OF PLACES [SAMPLES]]
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1
@@ -24,6 +25,7 @@
 #include <nanovdb/util/OpenToNanoVDB.h>
 #include <nanovdb/util/SampleFromVoxels.h>
 #include <openvdb/Grid.h>
+#include <openvdb/tools/Interpolation.h>
 #include <p8est.h>
 #include <p8est_extended.h>
 #include <p8est_search.h>
@@ -45,6 +47,7 @@
 
 #include "baselines/peers/gmsh/gmsh_classes.h"
 #include "baselines/peers/peer_rows.h"
+#include "controlspace/baselines/catalogue.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
 #include "measure/stopwatch.h"
@@ -70,6 +73,7 @@ std::unique_ptr<ControlSpace> finished(const CatalogueEntry& row,
     const auto builder = row.make(options);
     builder->insert(sources);
     builder->grade({.ratio = 1 + slope});
+    if (row.has<CompactForm>()) return builder->build({.precision = Precision::floats});
     return builder->build();
 }
 
@@ -112,35 +116,92 @@ Loop bare_netgen(std::span<const PointSource> sources) {
     };
 }
 
-// The two grids, of the field at the voxels' centres or at their corners.
+/// Of a grid whose nodes are the voxels' centres (order 0) or their corners (order 1): the place in
+/// units of voxels from the first node, within the domain.
+Vector in_voxels(const Point& x) { return (x - domain.low) / voxel; }
+
+/// visit(i, j, k, length) for all nodes.
+template <int order>
+void for_each_node(const ControlSpace& field, const auto& visit) {
+    constexpr int nodes = order == 0 ? voxels : voxels + 1;
+    for (int n = 0; n < nodes * nodes * nodes; ++n) {
+        const int i = n % nodes, j = n / nodes % nodes, k = n / nodes / nodes;
+        const Vector half = Vector::Constant(order == 0 ? 0.5 : 0);
+        visit(i, j, k, field.length_at(domain.low + voxel * (Vector(i, j, k) + half)));
+    }
+}
+
+/// A user's own array of floats.
+template <int order>
+Loop bare_array(const ControlSpace& field) {
+    constexpr std::size_t nodes = order == 0 ? voxels : voxels + 1;
+    const auto lengths = std::make_shared<std::vector<float>>(nodes * nodes * nodes);
+    for_each_node<order>(field, [&](std::size_t i, std::size_t j, std::size_t k, double h) {
+        (*lengths)[(k * nodes + j) * nodes + i] = static_cast<float>(h);
+    });
+    return [lengths](std::span<const Point> x, std::span<double> out) {
+        const float* const first = lengths->data();
+        for (std::size_t n = 0; n < x.size(); ++n) {
+            const Vector t = in_voxels(x[n]);
+            const auto cell = [&](Axis a) {
+                return std::min(static_cast<std::size_t>(t[a]), std::size_t{voxels - 1});
+            };
+            const std::size_t i = cell(0), j = cell(1), k = cell(2);
+            const float* const low = first + (k * nodes + j) * nodes + i;
+            if constexpr (order == 0) {
+                out[n] = static_cast<double>(*low);
+            } else {
+                const double u = t.x() - static_cast<double>(i), v = t.y() - static_cast<double>(j),
+                             w = t.z() - static_cast<double>(k);
+                const auto row = [u](const float* at) { return (1 - u) * at[0] + u * at[1]; };
+                const auto layer = [&](const float* at) {
+                    return (1 - v) * row(at) + v * row(at + nodes);
+                };
+                out[n] = (1 - w) * layer(low) + w * layer(low + nodes * nodes);
+            }
+        }
+    };
+}
+
+template <int order>
+openvdb::FloatGrid::Ptr float_grid(const ControlSpace& field) {
+    auto grid = openvdb::FloatGrid::create();
+    auto write = grid->getAccessor();
+    for_each_node<order>(field, [&](int i, int j, int k, double h) {
+        write.setValue({i, j, k}, static_cast<float>(h));
+    });
+    return grid;
+}
+
+/// OpenVDB as its documentation has it: an accessor that is kept, and its sampler.
+template <int order>
+Loop bare_openvdb(const ControlSpace& field) {
+    const auto grid = float_grid<order>(field);
+    return [grid](std::span<const Point> x, std::span<double> out) {
+        const auto read = grid->getConstAccessor();
+        for (std::size_t n = 0; n < x.size(); ++n) {
+            const Vector t = in_voxels(x[n]);
+            if constexpr (order == 0) {
+                out[n] = static_cast<double>(read.getValue(openvdb::Coord(
+                    static_cast<int>(t.x()), static_cast<int>(t.y()), static_cast<int>(t.z()))));
+            } else {
+                out[n] = static_cast<double>(
+                    openvdb::tools::BoxSampler::sample(read, openvdb::Vec3d(t.x(), t.y(), t.z())));
+            }
+        }
+    };
+}
+
 template <int order>
 Loop bare_nanovdb(const ControlSpace& field) {
     using Handle = nanovdb::GridHandle<nanovdb::HostBuffer>;
-    auto handles = std::make_shared<std::array<Handle, 2>>();
-    for (std::size_t part = 0; part < 2; ++part) {
-        const auto grid = openvdb::Vec3SGrid::create();
-        auto write = grid->getAccessor();
-        constexpr int nodes = order == 0 ? voxels : voxels + 1;
-        for (int n = 0; n < nodes * nodes * nodes; ++n) {
-            const int i = n % nodes, j = n / nodes % nodes, k = n / nodes / nodes;
-            const Point x =
-                domain.low + voxel * (Vector(i, j, k).array() + (order == 0) * 0.5).matrix();
-            const Metric m = sample_at(field, x);
-            write.setValue({i, j, k}, part == 0 ? openvdb::Vec3s(openvdb::Vec3d(m.xx, m.yy, m.zz))
-                                                : openvdb::Vec3s(openvdb::Vec3d(m.xy, m.xz, m.yz)));
-        }
-        (*handles)[part] = nanovdb::openToNanoVDB(*grid);
-    }
-    return [=](std::span<const Point> x, std::span<double> out) {
-        auto diagonals = (*handles)[0].grid<nanovdb::Vec3f>()->getAccessor();
-        auto others = (*handles)[1].grid<nanovdb::Vec3f>()->getAccessor();
-        const auto a = nanovdb::createSampler<order>(diagonals);
-        const auto b = nanovdb::createSampler<order>(others);
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            const Vector t = (x[i] - domain.low) / voxel - Vector::Constant(order == 0 ? 0.5 : 0);
-            const nanovdb::Vec3d at(t.x(), t.y(), t.z());
-            // Lengths alone would need no second grid: the sum keeps its reading.
-            out[i] = static_cast<double>(a(at)[0] + b(at)[0]);
+    const auto handle = std::make_shared<Handle>(nanovdb::openToNanoVDB(*float_grid<order>(field)));
+    return [handle](std::span<const Point> x, std::span<double> out) {
+        auto read = handle->grid<float>()->getAccessor();
+        const auto sampler = nanovdb::createSampler<order>(read);
+        for (std::size_t n = 0; n < x.size(); ++n) {
+            const Vector t = in_voxels(x[n]) - Vector::Constant(order == 0 ? 0.5 : 0);
+            out[n] = static_cast<double>(sampler(nanovdb::Vec3d(t.x(), t.y(), t.z())));
         }
     };
 }
@@ -288,26 +349,33 @@ double seconds(const auto& work) {
 /// Returns whether both answer alike, which a ratio needs to mean anything.
 bool compare(const std::string& id, const ControlSpace& space, const Loop& bare,
              std::span<const Point> x, int samples) {
-    std::vector<Metric> ours(x.size());
-    std::vector<double> theirs(x.size()), ratios;
-    const auto adapted = [&] { space.sample(x, ours); };
+    std::vector<double> ours(x.size()), theirs(x.size());
     const auto plain = [&] { bare(x, theirs); };
-    adapted();
-    plain();
-    double apart = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        apart = std::max(apart, std::abs(ours[i].xx / theirs[i] - 1));
-    }
-    for (int i = 0; i < samples; ++i) {
-        const double a = seconds(adapted);
-        ratios.push_back(a / seconds(plain));
-    }
-    std::ranges::sort(ratios);
-    const auto at = [&](double share) {
-        return ratios[static_cast<std::size_t>(share * static_cast<double>(ratios.size() - 1))];
+    const auto in_batches = [&] { space.sample_lengths(x, ours); };
+    const auto one_by_one = [&] {
+        for (std::size_t i = 0; i < x.size(); ++i) ours[i] = space.length_at(x[i]);
     };
-    fmt::print("{:20} {:6.2f}  {:5.2f} - {:5.2f}  {:.1e}\n", id, at(0.5), at(0.25), at(0.75),
-               apart);
+    double apart = 0;
+    const auto take_turns = [&](const std::string& name, const auto& adapted) {
+        adapted();
+        plain();
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            apart = std::max(apart, std::abs(ours[i] / theirs[i] - 1));
+        }
+        std::vector<double> ratios;
+        for (int i = 0; i < samples; ++i) {
+            const double a = seconds(adapted);
+            ratios.push_back(a / seconds(plain));
+        }
+        std::ranges::sort(ratios);
+        const auto at = [&](double share) {
+            return ratios[static_cast<std::size_t>(share * static_cast<double>(ratios.size() - 1))];
+        };
+        fmt::print("{:26} {:11} {:6.2f}  {:5.2f} - {:5.2f}  {:.1e}\n", id, name, at(0.5), at(0.25),
+                   at(0.75), apart);
+    };
+    take_turns("in batches", in_batches);
+    take_turns("one by one", one_by_one);
     return apart < 1e-5;
 }
 
@@ -327,13 +395,18 @@ int main(int argc, char** argv) {
     std::vector<Point> x(count);
     for (Point& p : x) p = Point(along(random), along(random), along(random));
 
-    const std::vector<CatalogueEntry> rows = peer_rows();
+    std::vector<CatalogueEntry> rows = peer_rows();
+    rows.insert(rows.end(), structures().begin(), structures().end());
     bool alike = true;
     const auto against = [&](const std::string& id, const auto& bare) {
         const auto space = finished(*find_entry(rows, id), sources);
         alike = compare(id, *space, bare(*space), x, samples) && alike;
     };
-    fmt::print("adapter / bare loop  median  quartiles      largest difference\n");
+    fmt::print("{:38} median  quartiles      largest difference\n", "time / that of a bare loop");
+    against("uniform-nearest", [](const ControlSpace& s) { return bare_array<0>(s); });
+    against("uniform-trilinear", [](const ControlSpace& s) { return bare_array<1>(s); });
+    against("openvdb-uniform-nearest", [](const ControlSpace& s) { return bare_openvdb<0>(s); });
+    against("openvdb-uniform-trilinear", [](const ControlSpace& s) { return bare_openvdb<1>(s); });
     against("kd-nearest", [&](const ControlSpace&) { return bare_nanoflann(sources); });
     against("nanovdb-nearest", [](const ControlSpace& s) { return bare_nanovdb<0>(s); });
     against("nanovdb-trilinear", [](const ControlSpace& s) { return bare_nanovdb<1>(s); });

@@ -1,11 +1,15 @@
 #include "baselines/lattice/lattice_data.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
+#include "baselines/lattice/fit_lattice.h"
 #include "baselines/lattice/stencil.h"
 #include "controlspace/geometry/detail/large_pages.h"
 #include "controlspace/metric/intersection.h"
+#include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/detail/past_gradation.h"
 #include "refuse.h"
 
@@ -43,9 +47,8 @@ void exchange(Later& later, State& state) {
 LatticeData::LatticeData(const SpaceOptions& options, const GridKind& kind)
     : options_(options),
       kind_(kind),
-      voxels_(choose_voxels(options, kind.interpolation, [&](const Vector& nodes) {
-          return (options.takes_later_sources ? 2 : 1) * kind.bytes_for(nodes);
-      })) {
+      chooses_voxels_(options.voxel == 0),
+      voxels_(voxels_of(options)) {
     if (!options.takes_later_sources) return;
     if (options.prune_delta > 0) {
         refuse("a grid that takes later sources cannot be pruned: set prune_delta 0");
@@ -53,6 +56,12 @@ LatticeData::LatticeData(const SpaceOptions& options, const GridKind& kind)
     if (kind.stored != nullptr) {
         refuse("a grid of floats takes no later sources: use one of doubles");
     }
+}
+
+Voxels LatticeData::voxels_of(const SpaceOptions& options) const {
+    return choose_voxels(options, kind_.interpolation, [&](const Vector& nodes) {
+        return (options.takes_later_sources ? 2 : 1) * kind_.bytes_for(nodes);
+    });
 }
 
 InsertionReport LatticeData::insert(std::span<const PointSource> sources) {
@@ -124,6 +133,58 @@ GradationReport LatticeData::regrade() {
                          later_.lowered.end());
     for (const NodeIndex node : later_.lowered) regradation.touch(node);
     return regradation.run(later_.past->largest_ratio_left);
+}
+
+AdaptationReport LatticeData::adapt(const AdaptationGoal& goal) {
+    // Voxels that are joined take values within this factor of each other.
+    const double joined = largest_factor_within(options_.prune_delta);
+    const double allowed = largest_factor_within(goal.target);
+    AdaptationGoal own = goal;
+    if (joined > 1) {
+        if (!(allowed > joined)) {
+            refuse(
+                "voxels that are joined within prune_delta {} cannot keep a target of {}: give "
+                "a smaller prune_delta",
+                options_.prune_delta, goal.target);
+        }
+        own.target = nonconformity_of_factor(allowed / joined);
+    }
+    const GoalField field(own, domain());
+    const LatticeFit fit(field, goal.sources, domain(), kind_);
+    FittedLattice fitted = !chooses_voxels_
+                               ? fit.at(voxels_)
+                               : fit.coarsest([&](double voxel) -> std::optional<Voxels> {
+                                     SpaceOptions options = options_;
+                                     options.voxel = voxel;
+                                     Voxels voxels = voxels_of(options);
+                                     if (!voxels.remark.empty()) return std::nullopt;
+                                     return voxels;
+                                 });
+    if (chooses_voxels_) {
+        voxels_ = std::move(fitted.voxels);
+        options_.voxel = domain().edges().cwiseQuotient(voxels_.cells).maxCoeff();
+    }
+    field_ = std::move(fitted.nodes);
+    later_ = {};
+    later_.requests_isotropic = std::ranges::all_of(field_, is_isotropic);
+
+    AdaptationReport report;
+    report.reached = fitted.reached;
+    report.is_bound = fitted.is_bound;
+    report.met = fitted.met;
+    if (joined > 1) {
+        report.reached = nonconformity_of_factor(largest_factor_within(fitted.reached) * joined);
+        if (report.met) report.reached = std::min(report.reached, goal.target);
+    }
+    if (!report.met) {
+        report.shortfall =
+            chooses_voxels_
+                ? fmt::format("no finer grid than this one of {:.0f} cells was tried: raise the {}",
+                              voxels_.cells.prod(),
+                              field.has_ranges() ? "target, or the cap on memory" : "target")
+                : "a grid keeps the voxels that were given: make them smaller";
+    }
+    return report;
 }
 
 ControlNodes LatticeData::control_nodes(Neighbourhood neighbourhood) const {

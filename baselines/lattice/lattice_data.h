@@ -55,6 +55,9 @@ public:
 
     InsertionReport insert(std::span<const PointSource> sources);
     GradationReport grade(const NodeGradation& gradation);
+    /// Chooses the voxels, the largest that keep the target (LatticeFit), where the options gave
+    /// none; keeps those that were given.
+    AdaptationReport adapt(const AdaptationGoal& goal);
     ControlNodes control_nodes(Neighbourhood neighbourhood) const;
     void assign(std::span<const Metric> metrics);
     static std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const LatticeData>& data,
@@ -76,11 +79,13 @@ public:
 private:
     template <Interpolation interpolation>
     InsertionReport insert_between(std::span<const PointSource> sources);
+    Voxels voxels_of(const SpaceOptions& options) const;
     GradationReport regrade();
     void round(std::vector<Metric>& metrics) const;
 
-    SpaceOptions options_;
+    SpaceOptions options_;  // with the voxel that was chosen, if one was
     GridKind kind_;
+    bool chooses_voxels_;
     Voxels voxels_;
     mutable std::vector<Metric> field_;  // empty until it is needed, so that files can be checked
 

@@ -133,10 +133,10 @@ public:
         CellBatch batch;
         locate({&x, 1}, batch);
         if constexpr (corners == 1) {
-            return at_corner(batch, 0, read);
+            return at_corner(batch[0], 0, read);
         } else {
             return blend_lengths(weights(batch, 0), [&](std::size_t corner) -> decltype(auto) {
-                return at_corner(batch, corner, read);
+                return at_corner(batch[0], corner, read);
             });
         }
     }
@@ -145,7 +145,15 @@ public:
     void for_each_node(const Point& x, Visit&& visit) const {
         CellBatch batch;
         locate({&x, 1}, batch);
-        for (std::size_t corner = 0; corner < corners; ++corner) at_corner(batch, corner, visit);
+        for (std::size_t corner = 0; corner < corners; ++corner) at_corner(batch[0], corner, visit);
+    }
+    /// visit(i, j, k), the node at a corner of a cell.
+    template <class Visit>
+    decltype(auto) at_corner(const Cell& cell, std::size_t corner, Visit&& visit) const {
+        const auto along = [&](std::size_t a) {
+            return static_cast<std::uint32_t>(cell[a]) + step_to(corner, a);
+        };
+        return visit(along(0), along(1), along(2));
     }
 
     /// The metrics at `x`, or, with a `Value` of double, the lengths where all is isotropic; for
@@ -210,13 +218,6 @@ private:
     static std::array<double, 8> weights(const CellBatch& batch, std::size_t i) {
         const auto high = [&](std::size_t a) { return batch.t[a][i] - batch.cell[a][i]; };
         return corner_weights({high(0), high(1), high(2)});
-    }
-    template <class Visit>
-    decltype(auto) at_corner(const CellBatch& batch, std::size_t corner, Visit&& visit) const {
-        const auto along = [&](std::size_t a) {
-            return static_cast<std::uint32_t>(batch.cell[a][0]) + step_to(corner, a);
-        };
-        return visit(along(0), along(1), along(2));
     }
 };
 

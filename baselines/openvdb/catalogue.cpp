@@ -7,10 +7,10 @@ namespace controlspace {
 std::vector<CatalogueEntry> openvdb_rows() {
     std::vector<CatalogueEntry> rows{
         grid_row<make_openvdb_grid, Interpolation::nearest>(
-            "openvdb-uniform-nearest", "OpenVDB 5-4-3 tree, dense, a metric per voxel, constant"),
+            "openvdb-uniform-nearest", "OpenVDB 5-4-3 tree, dense, a value per voxel, constant"),
         grid_row<make_openvdb_grid, Interpolation::trilinear>(
             "openvdb-uniform-trilinear",
-            "OpenVDB 5-4-3 tree, dense, a metric per voxel, trilinear")};
+            "OpenVDB 5-4-3 tree, dense, a value per voxel, trilinear")};
     rows[0].former_id = "openvdb-nearest";
     rows[1].former_id = "openvdb-trilinear";
     for (CatalogueEntry& row : rows) row.capabilities.push_back(Pruning());

@@ -27,9 +27,9 @@ bool has(const CatalogueEntry& entry, const Case&) {
 bool is_octree(const CatalogueEntry& entry, const Case&) {
     return entry.has<SourceLeaves>() && !entry.has<SplitRules>();
 }
-/// Nodes of trees and meshes lie where a field requires them, those of grids on a lattice.
-bool chooses_nodes(const CatalogueEntry& entry, const Case&) {
-    return entry.has<SourceLeaves>() || (entry.has<MetricNodes>() && !entry.has<VoxelSize>());
+/// Trees and meshes choose where nodes lie, grids their voxels.
+bool is_adapted_to(const CatalogueEntry& entry, const Case&) {
+    return entry.has<SourceLeaves>() || entry.has<MetricNodes>();
 }
 /// An adapted tree is not graded: it is exact at its nodes.
 bool is_graded(const CatalogueEntry& entry, const Case& c) {
@@ -39,7 +39,7 @@ bool is_inserted_into(const CatalogueEntry& entry, const Case& c) {
     return entry.has<SourceLeaves>() && !c.target_delta;
 }
 bool is_sized_by_tau(const CatalogueEntry& entry, const Case& c) {
-    return is_inserted_into(entry, c) || (entry.has<VoxelSize>() && !c.voxel);
+    return is_inserted_into(entry, c) || (entry.has<VoxelSize>() && !c.voxel && !c.target_delta);
 }
 bool is_adapted_tree(const CatalogueEntry& entry, const Case& c) {
     return entry.has<SourceLeaves>() && (c.target_delta || has_field(c.sources));
@@ -241,13 +241,14 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
             word<Case>(&Case::interpolation), {"corrected"}, unless_default("{} interpolation"),
             has<QuadraticLeaves>),
         row(structure, "target_delta", "",
-            "Non-conformity to the exact field that trees and meshes are adapted to, in place of "
-            "insertion and gradation; 0: not adapted",
-            target(), {0}, {"δ <= {:.4g}"}, chooses_nodes),
+            "Non-conformity to the exact field that structures are adapted to, in place of "
+            "insertion and "
+            "gradation: trees by their leaves, grids by their voxels; 0: not adapted",
+            target(), {0}, {"δ <= {:.4g}"}, is_adapted_to),
         row(structure, "within", "",
             "The same as the largest factor by which a length may differ from the exact field in "
             "any direction: 1.1 is target_delta = 0.01575, with tensors 0.00909; 0: not given",
-            target_factor(), {0}, {"within {:.4g}x"}, chooses_nodes),
+            target_factor(), {0}, {"within {:.4g}x"}, is_adapted_to),
         row(structure, "max_leaves", "",
             "Leaves at which the adaptation of trees stops, though it misses its target; 0: no "
             "limit",

@@ -79,10 +79,11 @@ std::vector<Case> variants_of(const CatalogueEntry& entry, const Run& run, const
     cases.front().structure = entry.id;
     for (const CaseParameter& p : parameters) {
         if (p.role != Role::structure || p.is_form()) continue;
-        // Without adaptation trees do not follow a field.
+        // Without adaptation trees do not follow a field; grids do with the voxels that are given.
+        const bool has_voxels = entry.has<VoxelSize>() && run.find("voxel") != nullptr;
         const bool is_default_target = p.key == "within" && has_field(setting.sources) &&
                                        run.find("target_delta") == nullptr &&
-                                       run.find("within") == nullptr;
+                                       run.find("within") == nullptr && !has_voxels;
         const Values values = is_default_target ? Values{default_within} : run.values(p);
         std::vector<Case> product;
         for (const Case& c : cases) {

@@ -8,6 +8,7 @@
 
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/control_nodes.h"
+#include "controlspace/space/control_space_file.h"
 #include "controlspace/study/run.h"
 #include "measure/stopwatch.h"
 #include "refuse.h"
@@ -22,7 +23,7 @@ constexpr std::size_t most_in_array = std::size_t{1} << 18;
 /// A field is followed by adaptation; without a target only what keeps its cells can follow it.
 void require_follows(const Case& c, const CatalogueEntry& entry) {
     if (c.target_delta || !entry.has<SourceLeaves>()) return;
-    refuse("a continuous field is followed by adaptation: set target_delta, for trees");
+    refuse("a continuous field is followed by adaptation: set target_delta");
 }
 
 /// δ and the factor between lengths, and how they are known.
@@ -124,6 +125,16 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
         filled.space = filled.builder->build({.precision = precision_of(c.precision)});
         creation.insert_s = {time.seconds()};
         creation.gradation_s = {0};
+        if (c.target_delta && entry.has<VoxelSize>() && !c.voxel) {
+            SpaceOptions options = space_options(study, c, workload, rows.parameters);
+            if (const auto recipe = recipe_of(*filled.space)) options.voxel = recipe->options.voxel;
+            add_remark(creation, fmt::format("voxel {:.4g}", options.voxel));
+            time = {};
+            Filled again{.builder = entry.make(options), .space = {}, .creation = {}};
+            adapt(again, c, workload, goal_sources);
+            again.builder->build({.precision = precision_of(c.precision)});
+            creation.known_s = {time.seconds()};
+        }
         add_largest_ratio(creation.gradation, *filled.space, GradationLaw::cone,
                           Neighbourhood::faces);
         remark_on_all(creation, study, c, rows);

@@ -44,6 +44,10 @@ std::vector<Measure> time_rows() {
             return sums;
         },
         {"creation s", "{:.3f}"});
+    rows.push_back({"t_creation_known_s", "s", [](const Finished& f) -> MeasuredValue {
+                        if (f.creation.known_s.empty()) return std::monostate();
+                        return quartile(f.creation.known_s, 2);
+                    }});
     add("t_access_ns_random", "ns", [](const Finished& f) { return f.access_random.samples_ns; },
         {"random ns", "{:.1f}", 1, "fastest access at random places"});
     add("t_access_ns_grid", "ns", [](const Finished& f) { return f.access_grid.samples_ns; },

@@ -23,6 +23,7 @@ void notify(const std::function<Callback>& callback, Arguments&&... arguments) {
 void append(Creation& creation, const Creation& again) {
     creation.insert_s.push_back(again.insert_s.front());
     creation.gradation_s.push_back(again.gradation_s.front());
+    if (!again.known_s.empty()) creation.known_s.push_back(again.known_s.front());
 }
 
 /// A case of a batch: its structure where it could be made, to be timed with the others.

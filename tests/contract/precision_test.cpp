@@ -4,12 +4,14 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "contract/structure_case.h"
 #include "controlspace/error.h"
 #include "controlspace/measure/access_time.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/control_nodes.h"
+#include "controlspace/space/control_space_file.h"
 
 namespace controlspace::precision_test {
 
@@ -33,9 +35,6 @@ double half_step(const ControlSpace& space) {
 
 bool is_linear(const CatalogueEntry& structure) {
     return has_compact_form(structure) && structure.order < 2;
-}
-bool is_proved(const CatalogueEntry& structure) {
-    return is_linear(structure) && structure.has<SourceLeaves>();
 }
 bool is_grid(const CatalogueEntry& structure) {
     return has_compact_form(structure) && structure.has<VoxelSize>();
@@ -94,7 +93,7 @@ STRUCTURE_CASE(is_grid,
     CHECK(in_floats->cell_at(work.domain.centre()) == space->cell_at(work.domain.centre()));
 }
 
-STRUCTURE_CASE(is_proved, "what is read back keeps the target, in every precision") {
+STRUCTURE_CASE(is_linear, "what is read back keeps the target, in every precision") {
     const Work work = GENERATE(isotropic_sphere(), oblong_box(), flat_box());
     const auto precision =
         GENERATE(Precision::doubles, Precision::floats, Precision::log16, Precision::log8);
@@ -129,7 +128,7 @@ STRUCTURE_CASE(is_proved, "what is read back keeps the target, in every precisio
     }
 }
 
-STRUCTURE_CASE(is_proved, "codes that take more than a third of what a target allows are refused") {
+STRUCTURE_CASE(is_linear, "codes that take more than a third of what a target allows are refused") {
     const Work work = oblong_box();
     const auto adapt = [&](double target, Precision precision) {
         return editable(structure.make(work.options()))
@@ -143,6 +142,68 @@ STRUCTURE_CASE(is_proved, "codes that take more than a third of what a target al
                       Contains("8 bits") && Contains("a third") && Contains("16 bits"));
     CHECK_NOTHROW(adapt(1e-4, Precision::log16));
     CHECK_THROWS_AS(adapt(1e-8, Precision::log16), InputError);
+}
+
+STRUCTURE_CASE(is_grid, "voxels chosen for a target keep it, and much larger ones do not") {
+    const Work work = GENERATE(isotropic_sphere(), oblong_box(), flat_box());
+    CAPTURE(work.name);
+    constexpr double target = 0.1;
+    const auto adapted = [&](double voxel) {
+        SpaceOptions options = work.options();
+        options.voxel = voxel;
+        auto space = editable(structure.make(options));
+        const AdaptationReport report =
+            space->adapt({.sources = work.sources, .continuous = nullptr, .target = target});
+        return std::pair(std::move(space), report);
+    };
+    const auto [space, report] = adapted(0);
+    CHECK(report.met);
+    CHECK(report.is_bound);
+    const double voxel = recipe_of(space->built())->options.voxel;
+    const std::vector<Point> x = random_points(work.domain, 2000, 9);
+    const auto [given, again] = adapted(voxel);
+    CHECK(again.met);
+    CHECK(answers(*given, x) == answers(*space, x));
+    const auto [coarse, missed] = adapted(1.6 * voxel);
+    CHECK_FALSE(missed.is_bound);
+    CHECK(coarse->footprint().cells < space->footprint().cells);
+    // It can be chosen anew for another target.
+    CHECK(space->adapt({.sources = work.sources, .continuous = nullptr, .target = 4 * target}).met);
+    CHECK(recipe_of(space->built())->options.voxel > 1.2 * voxel);
+}
+
+STRUCTURE_CASE(is_grid, "of tensors voxels are chosen by probes") {
+    const Work work = anisotropic_sphere();
+    constexpr double target = 0.5;
+    const auto space = editable(structure.make(work.options()));
+    const AdaptationReport report =
+        space->adapt({.sources = work.sources, .continuous = nullptr, .target = target});
+    CHECK(report.met);
+    CHECK_FALSE(report.is_bound);
+    const auto exact = structures_that(is_direct).front().make(work.options());
+    exact->insert(work.sources);
+    exact->grade({});
+    const auto field = exact->build();
+    double worst = 0;
+    for (const Point& p : random_points(work.domain, 2000, 9)) {
+        worst =
+            std::max(worst, directional_nonconformity(sample_at(*space, p), field->metric_at(p)));
+    }
+    CHECK(worst <= target);
+    CHECK(worst > 0.1 * target);
+}
+
+STRUCTURE_CASE(is_grid,
+               "a target that no grid within the memory keeps is missed, and the row says why") {
+    const Work work = isotropic_sphere();
+    SpaceOptions options = work.options();
+    options.max_bytes = 3'000'000;
+    const auto space = editable(structure.make(options));
+    const AdaptationReport report =
+        space->adapt({.sources = work.sources, .continuous = nullptr, .target = 1e-3});
+    CHECK_FALSE(report.met);
+    CHECK_THAT(report.shortfall, Contains("memory"));
+    CHECK(space->footprint().bytes_total() <= options.max_bytes);
 }
 
 }  // namespace controlspace::precision_test

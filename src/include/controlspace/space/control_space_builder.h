@@ -53,10 +53,10 @@ public:
     virtual GradationReport grade(const GradationOptions& options) = 0;
 
     /// Replaces all that was held by the field of `goal`, with few cells that keep within its
-    /// target. A tree is built anew from its root, without regard to l_min; a grid keeps its
-    /// voxels. The report states what could not be reached. Throws InputError for a goal that
-    /// is not valid, and where the structure would outgrow its cap on memory; the field is
-    /// undefined then.
+    /// target. A tree is built anew from its root, without regard to l_min; a grid chooses the
+    /// largest voxels that keep the target, unless SpaceOptions::voxel gives them. The report
+    /// states what could not be reached. Throws InputError for a goal that is not valid, and where
+    /// the structure would outgrow its cap on memory; the field is undefined then.
     virtual AdaptationReport adapt(const AdaptationGoal& goal) = 0;
 
     /// The control space made so far. It stays as it is while the builder goes on; both share their

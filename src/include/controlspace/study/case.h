@@ -51,7 +51,8 @@ struct Case {
     std::optional<int> max_depth = {};       ///< trees only
     std::optional<double> voxel = {};        ///< grids only; none: by tau and the sources
     std::optional<double> prune_delta = {};  ///< OpenVDB only; none: nothing is pruned
-    /// Trees and meshes: adapted to this δ in place of insertion and gradation; none: they are not.
+    /// Adapted to this δ in place of insertion and gradation, a grid by its voxels; none: not
+    /// adapted.
     std::optional<double> target_delta = {};
     /// Where the target was given as the largest factor between lengths in any direction.
     std::optional<double> within = {};

@@ -24,6 +24,8 @@ struct Creation {
     std::uint64_t sources_inserted = 0;  ///< sources that changed the structure
     std::vector<double> insert_s;        ///< making the structure and inserting all sources
     std::vector<double> gradation_s;     ///< with building the finished form
+    /// All of it where a grid's voxels, which were searched for a target, are known; else none.
+    std::vector<double> known_s = {};
     GradationReport gradation;
     std::string remark;     ///< "δ <= 0.1 everywhere: lengths within 1.27x"
     std::string shortfall;  ///< why a requested target was missed; empty where it was met

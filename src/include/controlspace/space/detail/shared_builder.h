@@ -179,9 +179,15 @@ public:
         const AdaptationGoal wanted = bounded(goal);
         if constexpr (has_nodes) {
             const double longest = largest_metric(domain(), wanted.h_max).xx;
-            return adapt_for_precision(wanted, longest, adapt, [this] {
+            const AdaptationReport report = adapt_for_precision(wanted, longest, adapt, [this] {
                 return data_->control_nodes(Neighbourhood::faces).metrics;
             });
+            if (this->recipe()) {
+                Recipe recipe = *this->recipe();
+                recipe.options.voxel = data_->options().voxel;  // a grid may have chosen it
+                this->set_recipe(std::move(recipe));
+            }
+            return report;
         } else {
             return adapt(wanted);
         }

@@ -1,0 +1,266 @@
+#include "baselines/lattice/fit_lattice.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "baselines/lattice/stencil.h"
+#include "controlspace/geometry/detail/place_sequence.h"
+#include "controlspace/metric/nonconformity.h"
+#include "controlspace/space/sample_parallel.h"
+#include "controlspace/trees/detail/nearby_field.h"
+
+namespace controlspace {
+
+namespace {
+
+// Calls check(first, end) for parts of so many, on all threads, until one answers false; returns
+// whether none did.
+template <class Check>
+bool all_of_parts(std::size_t count, const Check& check) {
+    constexpr std::size_t grain = 256;
+    std::atomic<bool> holds = true;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                      [&](const tbb::blocked_range<std::size_t>& part) {
+                          if (holds && !check(part.begin(), part.end())) holds = false;
+                      });
+    return holds;
+}
+
+// Beyond its faces by the rounding of places, which decides in which of two cells one is found.
+Box with_margin(const Box& cell) {
+    constexpr double ulps = 8 * std::numeric_limits<double>::epsilon();
+    const Vector margin = ulps * cell.low.cwiseAbs().cwiseMax(cell.high.cwiseAbs());
+    return {cell.low - margin, cell.high + margin};
+}
+
+}  // namespace
+
+LatticeFit::LatticeFit(const GoalField& field, std::span<const PointSource> sources,
+                       const Box& domain, const GridKind& kind)
+    : field_(field), domain_(domain), kind_(kind) {
+    constexpr std::size_t most_suspects = 4096;
+    const std::size_t step = sources.size() / most_suspects + 1;
+    for (std::size_t i = 0; i < sources.size(); i += step) {
+        suspects_.push_back(sources[i].position);
+    }
+    if (field.has_ranges()) return;
+    constexpr std::uint64_t everywhere = 100'000, near_sources = 100'000;
+    std::vector<Point> x;
+    for (const PointSource& source : sources) x.push_back(source.position);
+    for (std::uint64_t k = 0; k < everywhere; ++k) x.push_back(place_in(domain, k));
+    for (std::uint64_t k = 0; k < near_sources && !sources.empty(); ++k) {
+        const PointSource& source = sources[k * sources.size() / near_sources];
+        const Vector reach = Vector::Constant(mean_length(source.metric));
+        const Box around{source.position - reach, source.position + reach};
+        x.push_back(nearest_in(domain, place_in(around, k)));
+    }
+    probes_ = make_probes(field, std::move(x));
+}
+
+template <Interpolation interpolation>
+FittedLattice LatticeFit::fitted(const Voxels& voxels, bool only_if_met) const {
+    const Stencil<interpolation> stencil(domain_, voxels.cells);
+    const Lattice lattice = stencil.lattice();
+    FittedLattice fit{.voxels = voxels, .nodes = {}};
+    const auto kept = [&](const Metric& m) {
+        return kind_.stored != nullptr ? kind_.stored(m) : m;
+    };
+    const auto at_nodes = [&](auto i, auto j, auto k) -> const Metric& {
+        return fit.nodes[lattice.index(i, j, k)];
+    };
+    const auto set_to_field = [&] {
+        fit.nodes = sample_parallel(field_, positions(lattice));
+        if (kind_.stored != nullptr) std::ranges::transform(fit.nodes, fit.nodes.begin(), kept);
+    };
+    const double target = field_.target();
+
+    if (!field_.has_ranges()) {
+        if (only_if_met && !may_keep_probes(stencil)) return fit;
+        set_to_field();
+        std::vector<double> worst(probes_.points.size());
+        fit.met = all_of_parts(worst.size(), [&](std::size_t first, std::size_t end) {
+            bool holds = true;
+            for (std::size_t i = first; i < end; ++i) {
+                worst[i] = directional_nonconformity(stencil.value(probes_.points[i], at_nodes),
+                                                     probes_.reference[i]);
+                holds = holds && worst[i] <= target;
+            }
+            return holds || !only_if_met;
+        });
+        fit.reached = *std::ranges::max_element(worst);
+        fit.met = fit.reached <= target;
+        return fit;
+    }
+
+    // The value of a constant cell, and how far it departs at most.
+    const auto constant_in = [&](const Box& cell, NearbyField& nearby) {
+        nearby.enter(with_margin(cell), false);
+        const auto [least, most] = nearby.range();
+        const Metric middle = kept(Metric::isotropic(std::sqrt(least * most)));
+        return std::pair(middle, std::max(nonconformity(middle, Metric::isotropic(most)),
+                                          nonconformity(middle, Metric::isotropic(least))));
+    };
+    const auto is_kept_between = [&](const Box& cell, const std::array<double, 8>& corners,
+                                     NearbyField& nearby) {
+        nearby.enter(cell, true);
+        return !nearby.doubt_of(corners);
+    };
+    const auto cell_with = [&](const Cell& cell) {
+        const Vector edges = domain_.edges().cwiseQuotient(voxels.cells);
+        Box box;
+        for (Axis a = 0; a < 3; ++a) {
+            const auto i = static_cast<double>(cell[static_cast<std::size_t>(a)]);
+            box.low[a] = domain_.low[a] + i * edges[a];
+            box.high[a] = domain_.low[a] + (i + 1) * edges[a];
+        }
+        return box;
+    };
+
+    // Cells of sources first: those are what most lattices fail by, and few.
+    const bool may_be_met =
+        !only_if_met || all_of_parts(suspects_.size(), [&](std::size_t first, std::size_t end) {
+            NearbyField nearby(field_);
+            for (std::size_t i = first; i < end; ++i) {
+                const Box cell = stencil.cell_at(suspects_[i]);
+                if constexpr (interpolation == Interpolation::nearest) {
+                    if (constant_in(cell, nearby).second > target) return false;
+                } else {
+                    std::array<Point, 8> x;
+                    std::array<Metric, 8> m;
+                    std::array<double, 8> corners;
+                    for (int c = 0; c < 8; ++c) x[static_cast<std::size_t>(c)] = corner(cell, c);
+                    field_.sample(x, m);
+                    std::ranges::transform(m, corners.begin(),
+                                           [&](const Metric& f) { return kept(f).xx; });
+                    if (!is_kept_between(cell, corners, nearby)) return false;
+                }
+            }
+            return true;
+        });
+    if (!may_be_met) return fit;
+
+    const auto nx = static_cast<std::size_t>(voxels.cells.x()),
+               ny = static_cast<std::size_t>(voxels.cells.y());
+    const auto count = static_cast<std::size_t>(voxels.cells.prod());
+    if constexpr (interpolation == Interpolation::nearest) {
+        fit.nodes.resize(count);
+    } else {
+        set_to_field();
+    }
+    std::vector<double> of_cell(interpolation == Interpolation::nearest ? count : 0);
+    std::atomic<bool> is_shown = true;
+    fit.met =
+        all_of_parts(count,
+                     [&](std::size_t first, std::size_t end) {
+                         NearbyField nearby(field_);
+                         bool holds = true;
+                         for (std::size_t n = first; n < end; ++n) {
+                             const Cell cell{static_cast<std::int32_t>(n % nx),
+                                             static_cast<std::int32_t>(n / nx % ny),
+                                             static_cast<std::int32_t>(n / nx / ny)};
+                             if constexpr (interpolation == Interpolation::nearest) {
+                                 std::tie(fit.nodes[n], of_cell[n]) =
+                                     constant_in(cell_with(cell), nearby);
+                                 holds = holds && of_cell[n] <= target;
+                             } else {
+                                 std::array<double, 8> corners;
+                                 for (std::size_t c = 0; c < 8; ++c) {
+                                     corners[c] = stencil.at_corner(cell, c, at_nodes).xx;
+                                 }
+                                 holds = holds && is_kept_between(cell_with(cell), corners, nearby);
+                             }
+                             if (!holds && only_if_met) return false;
+                         }
+                         if (!holds) is_shown = false;
+                         return true;
+                     }) &&
+        is_shown;
+    fit.is_bound = fit.met;
+    fit.reached = interpolation == Interpolation::nearest && !of_cell.empty()
+                      ? *std::ranges::max_element(of_cell)
+                      : target;
+    if (!fit.met && !only_if_met && interpolation == Interpolation::trilinear) {
+        fit.reached = field_.largest_departure(domain_, [&](auto x, auto metrics) {
+            for (std::size_t i = 0; i < x.size(); ++i) metrics[i] = stencil.value(x[i], at_nodes);
+        });
+        fit.met = fit.reached <= target;
+    }
+    return fit;
+}
+
+// Nodes around some hundreds of probes show most lattices that are too coarse.
+template <class Stencil>
+bool LatticeFit::may_keep_probes(const Stencil& stencil) const {
+    constexpr std::size_t few = 512;
+    const Lattice lattice = stencil.lattice();
+    const std::size_t step = probes_.points.size() / few + 1;
+    return all_of_parts(probes_.points.size() / step, [&](std::size_t first, std::size_t end) {
+        for (std::size_t n = first; n < end; ++n) {
+            const std::size_t i = n * step;
+            const Metric own = stencil.value(probes_.points[i], [&](auto... ijk) {
+                Metric m;
+                const Point x = lattice.position(lattice.index(ijk...));
+                field_.sample({&x, 1}, {&m, 1});
+                return kind_.stored != nullptr ? kind_.stored(m) : m;
+            });
+            if (directional_nonconformity(own, probes_.reference[i]) > field_.target())
+                return false;
+        }
+        return true;
+    });
+}
+
+FittedLattice LatticeFit::fitted(const Voxels& voxels, bool only_if_met) const {
+    return kind_.interpolation == Interpolation::nearest
+               ? fitted<Interpolation::nearest>(voxels, only_if_met)
+               : fitted<Interpolation::trilinear>(voxels, only_if_met);
+}
+
+FittedLattice LatticeFit::at(const Voxels& voxels) const { return fitted(voxels, false); }
+
+FittedLattice LatticeFit::coarsest(
+    const std::function<std::optional<Voxels>(double edge)>& voxels_of) const {
+    const double longest = domain_.edges().maxCoeff();
+    const auto with = [&](std::int64_t n) { return voxels_of(longest / static_cast<double>(n)); };
+    std::int64_t refused = 0, n = 1;
+    std::optional<FittedLattice> best;
+    std::optional<Voxels> finest;
+    // Each node and probe of tensors takes a search of its own.
+    constexpr double most_nodes_by_probes = 1 << 21;
+    for (;; refused = n, n *= 2) {
+        const auto voxels = with(n);
+        if (!voxels) break;
+        if (!field_.has_ranges() && voxels->cells.prod() > most_nodes_by_probes) break;
+        finest = voxels;
+        FittedLattice fit = fitted(*voxels, true);
+        if (fit.met) {
+            best = std::move(fit);
+            break;
+        }
+    }
+    if (!best) {
+        if (!finest) finest = voxels_of(longest);
+        return at(*finest);
+    }
+    // To about a hundredth: coarser ones that are no multiple may do by chance.
+    while (n - refused > 1 + refused / 100) {
+        const std::int64_t middle = refused + (n - refused) / 2;
+        FittedLattice fit = fitted(*with(middle), true);
+        if (fit.met) {
+            best = std::move(fit);
+            n = middle;
+        } else {
+            refused = middle;
+        }
+    }
+    return *best;
+}
+
+}  // namespace controlspace

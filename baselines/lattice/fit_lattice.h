@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "baselines/lattice/lattice_data.h"
+#include "controlspace/measure/accuracy.h"
+#include "controlspace/space/detail/goal_field.h"
+
+namespace controlspace {
+
+/// A lattice whose nodes were set to follow a field.
+struct FittedLattice {
+    Voxels voxels;
+    std::vector<Metric> nodes;
+    double reached =
+        0;  ///< a δ that is kept everywhere if `is_bound`, else the largest that was found
+    bool is_bound = false;  ///< shown by bounds
+    bool met = false;
+};
+
+/// Fits the nodes of lattices over a domain to a field, with what a grid of `kind` makes of them:
+/// cells of lengths by the bounds of trees, which hold everywhere (K_oL's where they are constant,
+/// K_oV's where they are trilinear); of tensors and continuous fields by probes: all over the
+/// domain, at sources and beside them.
+class LatticeFit {
+public:
+    LatticeFit(const GoalField& field, std::span<const PointSource> sources, const Box& domain,
+               const GridKind& kind);
+
+    /// With these voxels.
+    FittedLattice at(const Voxels& voxels) const;
+    /// With about the largest that keep the field's target, found by halving, then bisection;
+    /// `voxels_of(edge)` are those with such edges, none where they would outgrow the memory. Where
+    /// none keep it, with the finest.
+    FittedLattice coarsest(
+        const std::function<std::optional<Voxels>(double edge)>& voxels_of) const;
+
+private:
+    template <class Stencil>
+    bool may_keep_probes(const Stencil& stencil) const;
+    template <Interpolation interpolation>
+    FittedLattice fitted(const Voxels& voxels, bool only_if_met) const;
+    FittedLattice fitted(const Voxels& voxels, bool only_if_met) const;
+
+    const GoalField& field_;
+    Box domain_;
+    GridKind kind_;
+    std::vector<Point> suspects_;  ///< where lattices that are too coarse mostly show it
+    Probes probes_;                ///< where there are no bounds
+};
+
+}  // namespace controlspace
