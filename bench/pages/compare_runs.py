@@ -60,7 +60,10 @@ def shown(value):
 
 
 def ratio_of(measure, pair):
-    """None where one of two numbers is 0, and the other is not."""
+    """None where one of two numbers is 0, and the other is not, and for times of lengths and of
+    metrics."""
+    if measure.key.startswith("t_access") and pair[0]["answers"] != pair[1]["answers"]:
+        return None
     a, b = ([row.measures.get(f"{measure.key}{quartile}", row[measure.key])
              for quartile in ("_q1", "", "_q3")] for row in pair)
     if a == b and a[0] == a[2]:

@@ -259,11 +259,13 @@ def paper_figures(evidence, styles):
 
 ACCESS = [("at random places", "t_access_ns_random_samples", "#0072B2"),
           ("in the order of a grid", "t_access_ns_grid_samples", "#E69F00"),
-          ("at random places, one a call", "t_access_ns_single_samples", "#009E73")]
+          ("at random places, one a call", "t_access_ns_single_samples", "#009E73"),
+          ("near the sources", "t_access_ns_near_samples", "#CC79A7"),
+          ("along walks, by a cursor", "t_access_ns_walk_samples", "#56B4E9")]
 
 
 def access_figures(rows):
-    """For each group and each order of places one, on the same axis; older results lack the last."""
+    """For each group and each order of places one, on the same axis; older results lack some."""
     for group, members in grouped(rows, lambda r: r.group).items():
         orders = [order for order in ACCESS if all(order[1] in row.measures for row in members)]
         all_samples = [x for row in members for _, key, _ in orders for x in row[key]]

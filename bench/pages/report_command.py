@@ -109,11 +109,11 @@ def measure_cells(row):
     # Older results do not have these.
     share = row.measures.get("coarser_fine_share")
     within = row.measures.get("within_fine_max")
-    single = row.measures.get("t_access_ns_single")
-    costs = [("memory_MB", 2), ("creation_s", 3), ("t_access_ns_random", 1), ("t_access_ns_grid", 1)]
+    times = [row.measures.get(f"t_access_ns_{order}") for order in ("near", "single")]
+    costs = [("memory_MB", 2), ("creation_s", 3), ("t_access_ns_random", 1)]
     errors = [(key, 4) for key in ("delta_R_max", "delta_R_mean", "delta_R_p99", "delta_R_fine_max")]
     return [str(row["cells"] or "–"), *(fixed(row[key], digits) for key, digits in costs),
-            "–" if single is None else fixed(single, 1),
+            *("–" if time is None else fixed(time, 1) for time in times),
             *(fixed(row[key], digits) for key, digits in errors),
             "–" if share is None else f"{100 * share:.2f} %",
             "–" if within is None else f"{fixed(within, 3)}x", fixed(row["gradation_max_left"], 4)]

@@ -12,6 +12,10 @@ class InputError(Exception):
 
 # Measures that every measured row has; JSON has no infinity: null where an error is infinite.
 TIMES = ["t_creation_s", "t_access_ns_random", "t_access_ns_grid"]
+# Access times of metrics, and where they are where nothing else was timed: of tensors, and in results
+# of earlier programs.
+METRIC_TIMES = {"t_access_ns_metric_random": "t_access_ns_random",
+                "t_access_ns_metric_single": "t_access_ns_single"}
 NUMBERS = """sources_inserted tree_nodes cells control_nodes depth bytes_total bytes_payload
     bytes_topology bytes_auxiliary gradation_max_left gradation_operations""".split() + [
         time + quartile for time in TIMES for quartile in ("", "_q1", "_q3")]
@@ -20,10 +24,12 @@ ERRORS = """delta_S_max delta_R_max delta_R_mean delta_R_p95 delta_R_p99 delta_R
 KNOWN = {*NUMBERS, *ERRORS, "access_batch", "bytes_published_accounting", *(
     f"coarser_{key}" for key in ("max", "share", "fine_max", "fine_share")), "finer_max",
     "finer_share", "finer_fine_max", "finer_fine_share", "within_max", "within_fine_max", *(
-    f"{time}{quartile}" for time in ("t_insert_s", "t_gradation_s", "t_access_ns_single") for quartile in (
-        "", "_q1", "_q3")), "size_MB", "memory_MB", "metrics_MB", "creation_s", "access_us"}
-# Times under the names of the paper's: the median, and its unit in that of the paper.
-PAPER_TIMES = {"access_us": ("t_access_ns_random", 1e-3), "creation_s": ("t_creation_s", 1)}
+    f"{time}{quartile}" for time in ("t_insert_s", "t_gradation_s", "t_access_ns_single",
+                                     "t_access_ns_near", "t_access_ns_walk", *METRIC_TIMES)
+    for quartile in ("", "_q1", "_q3")), "size_MB", "memory_MB", "metrics_MB", "creation_s", "access_us"}
+# Times under the names of the paper's, which are of metrics: the median, and its unit in that of the
+# paper.
+PAPER_TIMES = {"access_us": ("t_access_ns_metric_random", 1e-3), "creation_s": ("t_creation_s", 1)}
 PROVENANCE = "version commit dirty compiler flags cpu cores threads date command_line".split()
 
 def plain(x):
@@ -127,6 +133,10 @@ def checked(m, setting):
     for key in (f"{time}_samples" for time in TIMES):
         if not m[key] or not all(isinstance(x, (int, float)) for x in m[key]):
             raise ValueError(f"{key} is no list of numbers")
+    m = {**m, "answers": m.get("answers") or "metrics"}
+    if m["answers"] == "metrics":
+        m |= {metric + end: m[time + end] for metric, time in METRIC_TIMES.items()
+              for end in ("", "_q1", "_q3", "_samples") if time + end in m}
     return m | {"size_MB": size_in_table_1(setting, m) / 1e6,
                 "memory_MB": m["bytes_total"] / 1e6, "metrics_MB": m["bytes_payload"] / 1e6,
                 **{key: m[time] * unit for key, (time, unit) in PAPER_TIMES.items()}}

@@ -92,7 +92,8 @@ std::optional<Forecast> forecast_case(const PreparedStudy& prepared, std::size_t
     const double probes = cubed(study.probe_grid) + cubed(study.fine_probe_grid);
     const double timed =  // each run is preceded by one that is not timed
         2 * study.access_repeats *
-        (static_cast<double>(study.access_points) + cubed(study.probe_grid));
+        ((has_tensors(workload) ? 4.0 : 6.0) * static_cast<double>(study.access_points) +
+         cubed(study.probe_grid));
     const Trial trial = prepared.entry(c).has<VoxelSize>()
                             ? forecast_grid(prepared, c, workload)
                             : forecast_patches(prepared, c, workload);

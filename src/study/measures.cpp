@@ -31,9 +31,16 @@ std::vector<Measure> size_rows() {
 
 std::vector<Measure> time_rows() {
     std::vector<Measure> rows;
-    const auto add = [&](const char* key, const char* unit, auto samples, const Column& column) {
+    const auto add = [&](const std::string& key, const char* unit, auto samples,
+                         const Column& column) {
         const auto more = sampled_measure(key, unit, samples, column);
         rows.insert(rows.end(), more.begin(), more.end());
+    };
+    const auto add_access = [&](const char* order, AccessTime Finished::*time,
+                                const Column& column = {}) {
+        add(
+            fmt::format("t_access_ns_{}", order), "ns",
+            [time](const Finished& f) { return (f.*time).samples_ns; }, column);
     };
     add("t_insert_s", "s", [](const Finished& f) { return f.creation.insert_s; }, {});
     add("t_gradation_s", "s", [](const Finished& f) { return f.creation.gradation_s; }, {});
@@ -44,16 +51,31 @@ std::vector<Measure> time_rows() {
             return sums;
         },
         {"creation s", "{:.3f}"});
-    rows.push_back({"t_creation_known_s", "s", [](const Finished& f) -> MeasuredValue {
-                        if (f.creation.known_s.empty()) return std::monostate();
+    rows.push_back({.key = "t_creation_known_s",
+                    .unit = "s",
+                    .value = [](const Finished& f) -> MeasuredValue {
+                        if (f.creation.known_s.empty()) return {};
                         return quartile(f.creation.known_s, 2);
-                    }});
-    add("t_access_ns_random", "ns", [](const Finished& f) { return f.access_random.samples_ns; },
-        {"random ns", "{:.1f}", 1, "fastest access at random places"});
-    add("t_access_ns_grid", "ns", [](const Finished& f) { return f.access_grid.samples_ns; },
-        {"grid ns", "{:.1f}", 1, "fastest access in grid order"});
-    add("t_access_ns_single", "ns", [](const Finished& f) { return f.access_single.samples_ns; },
-        {"single ns", "{:.1f}"});
+                    },
+                    .may_be_missing = true});
+    add_access("random", &F::access_random,
+               {"random ns", "{:.1f}", 1, "fastest access at random places"});
+    add_access("grid", &F::access_grid);
+    const auto add_newer = [&](const char* order, AccessTime Finished::*time,
+                               const Column& column = {}) {
+        const std::size_t earlier = rows.size();
+        add_access(order, time, column);
+        for (std::size_t i = earlier; i < rows.size(); ++i) rows[i].may_be_missing = true;
+    };
+    add_newer("near", &F::access_near, {"near ns", "{:.1f}", 1, "fastest access near the sources"});
+    add_access("single", &F::access_single, {"single ns", "{:.1f}"});
+    add_newer("walk", &F::access_walk);
+    add_newer("metric_random", &F::access_metric_random);
+    add_newer("metric_single", &F::access_metric_single);
+    const auto answers = [](const Finished& f) {
+        return f.answers() == Answers::lengths ? "lengths" : "metrics";
+    };
+    rows.push_back({.key = "answers", .unit = "", .value = answers, .may_be_missing = true});
     rows.push_back(row_of("access_batch", &F::access_batch, std::identity()));
     return rows;
 }
@@ -106,7 +128,11 @@ std::vector<Measure> accuracy_rows() {
                [](const Creation& c) { return c.gradation.operations; }),
         // As text: JSON readers keep 53 bits of a number.
         {"checksum", "",
-         [](const Finished& f) { return fmt::format("{:016x}", f.access_random.checksum); }},
+         [](const Finished& f) {
+             const bool has_lengths = f.answers() == Answers::lengths;
+             const AccessTime& metrics = has_lengths ? f.access_metric_random : f.access_random;
+             return fmt::format("{:016x}", metrics.checksum);
+         }},
         {"remark",
          "",
          [](const Finished& f) { return remark_on(f.creation, f.footprint) + found_by_probes(f); },
@@ -141,14 +167,19 @@ std::vector<Measure> sampled_measure(const std::string& key, const std::string& 
                                      const Column& column) {
     const auto at = [&](int number) {
         return [samples, number](const Finished& f) -> MeasuredValue {
-            return quartile(samples(f), number);
+            const Samples found = samples(f);
+            if (found.empty()) return {};
+            return quartile(found, number);
         };
     };
     return {{key, unit, at(2), column},
             {key + "_q1", unit, at(1)},
             {key + "_q3", unit, at(3)},
-            {key + "_samples", unit,
-             [samples](const Finished& f) -> MeasuredValue { return samples(f); }}};
+            {key + "_samples", unit, [samples](const Finished& f) -> MeasuredValue {
+                 Samples found = samples(f);
+                 if (found.empty()) return {};
+                 return found;
+             }}};
 }
 
 double Row::number(const std::string& key) const {

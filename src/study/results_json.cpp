@@ -172,6 +172,7 @@ Row row_from_json(const Json& json, const StudyRows& rows, const SourcesChoice& 
     row.sources = json.at("sources");
     row.error = json.at("error");
     for (const Measure& measure : rows.measures) {
+        if (measure.may_be_missing && !json.contains(measure.key)) continue;
         const Json& value = json.at(measure.key);
         if (row.is_measured()) row.values[measure.key] = measured_from(value);
     }

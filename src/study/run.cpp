@@ -199,16 +199,25 @@ private:
         const Stopwatch time;
         const Finished& any = *timed.front()->finished;
         const auto places = random_points(any.workload.domain, study_.access_points, study_.seed);
-        const auto random = access_times(spaces, places, study_.access_repeats);
-        const auto grid = access_times(spaces, any.probes.coarse.points, study_.access_repeats);
-        const auto single = access_times(spaces, places, study_.access_repeats, Calls::each);
-        const double each = time.seconds() / static_cast<double>(timed.size());
-        for (std::size_t i = 0; i < timed.size(); ++i) {
-            timed[i]->finished->access_random = random[i];
-            timed[i]->finished->access_grid = grid[i];
-            timed[i]->finished->access_single = single[i];
-            timed[i]->row.seconds += each;
+        const auto measure = [&](AccessTime Finished::*result, std::span<const Point> x,
+                                 AccessQuery query) {
+            auto times = access_times(spaces, x, study_.access_repeats, query);
+            for (std::size_t i = 0; i < timed.size(); ++i) {
+                (*timed[i]->finished).*result = std::move(times[i]);
+            }
+        };
+        const Answers answers = any.answers();
+        measure(&Finished::access_random, places, {answers});
+        measure(&Finished::access_grid, any.probes.coarse.points, {answers});
+        measure(&Finished::access_near, any.probes.near, {answers});
+        measure(&Finished::access_single, places, {answers, Calls::each});
+        measure(&Finished::access_walk, any.probes.walk, {answers, Calls::cursor});
+        if (answers == Answers::lengths) {
+            measure(&Finished::access_metric_random, places, {Answers::metrics});
+            measure(&Finished::access_metric_single, places, {Answers::metrics, Calls::each});
         }
+        const double each = time.seconds() / static_cast<double>(timed.size());
+        for (Member* member : timed) member->row.seconds += each;
     }
 
     const PreparedStudy& prepared_;

@@ -36,8 +36,11 @@ TextTable table_of(const std::string& setting, const Rows& rows, const StudyRows
         "δ of isotropic lengths that differ by a factor k is √3(k + 1/k - 2): 0.02 is 1.11, 0.1 is "
         "1.27. Fine: at the finer probes. Within: largest factor there between a requested length "
         "and the reference's, longer or shorter, in any direction. Coarser, finer: share of them "
-        "where a requested length is longer, shorter by over 1 %. G_det, G_dir: "
-        "largest growth of the finished field between places 0.01 to 1 metric length apart, of "
+        "where a requested length is longer, shorter by over 1 %. Access, in ns a query: of "
+        "lengths where all is isotropic, otherwise of metrics; in batches at random places and "
+        "near the sources (within two of their lengths), and one a call at random places (single). "
+        "G_det, G_dir: largest growth of the finished field between places 0.01 to 1 metric length "
+        "apart, of "
         "elements' mean length and of any length, as gradation ratios.",
         "structure", columns.measures, rows,
         [&](const Row& row) { return structure_label(row.setting, columns.parameters); },

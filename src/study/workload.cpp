@@ -10,6 +10,7 @@
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/fields/mixture.h"
 #include "controlspace/io/read_sources.h"
+#include "controlspace/measure/access_places.h"
 #include "controlspace/measure/reference.h"
 #include "controlspace/space/control_space.h"
 #include "refuse.h"
@@ -269,8 +270,18 @@ const ReferenceKind& exact_reference_kind() {
 
 ReferenceProbes make_reference_probes(const Study& study, const Case& c, const Workload& workload) {
     const auto field = make_reference(study, c, workload);
-    return {make_probes(*field, cell_centres(workload.domain, study.probe_grid)),
-            make_probes(*field, cell_centres(workload.domain, study.fine_probe_grid))};
+    const Box& domain = workload.domain;
+    const std::size_t n = study.access_points;
+    ReferenceProbes probes{make_probes(*field, cell_centres(domain, study.probe_grid)),
+                           make_probes(*field, cell_centres(domain, study.fine_probe_grid)),
+                           {},
+                           {}};
+    probes.near =
+        workload.sources.empty()
+            ? places_where_fine(probes.fine, study.fine_probe_grid, domain, n, study.seed + 1)
+            : places_near(workload.sources, domain, n, study.seed + 1);
+    probes.walk = walks(*field, domain, probes.near, n, study.seed + 2);
+    return probes;
 }
 
 }  // namespace controlspace

@@ -87,12 +87,61 @@ TEST_CASE("Places are passed to a structure all at once, or one in each call") {
     const Counting space;
     const ControlSpace* const spaces[] = {&space};
     const auto points = random_points(box, 100, 3);
-    const auto times = access_times(spaces, points, 2, Calls::each, 0);
+    const auto times = access_times(spaces, points, 2, {.calls = Calls::each}, 0);
     CHECK(times[0].samples_ns.size() == 2);
     CHECK(space.calls == 2 * points.size());
     CHECK(space.most == points.size());  // the untimed run
-    access_times(spaces, points, 2, Calls::one, 0);
+    access_times(spaces, points, 2, {}, 0);
     CHECK(space.calls == 2 * points.size());
+}
+
+TEST_CASE("Lengths are timed by the calls that return lengths, and give their own checksum") {
+    /// Counts each of its calls; `wrong` times the lengths of its metrics.
+    class Counting final : public ControlSpace {
+    public:
+        explicit Counting(double wrong = 1) : wrong_(wrong) {}
+        void sample(std::span<const Point> x, std::span<Metric> out) const override {
+            for (std::size_t i = 0; i < x.size(); ++i) out[i] = Metric::isotropic(x[i].z());
+        }
+        void sample_lengths(std::span<const Point> x, std::span<double> out) const override {
+            ++batches;
+            for (std::size_t i = 0; i < x.size(); ++i) out[i] = wrong_ * x[i].z();
+        }
+        double length_at(const Point& x) const override {
+            ++singles;
+            return wrong_ * x.z();
+        }
+        std::unique_ptr<Cursor> cursor() const override {
+            ++cursors;
+            return ControlSpace::cursor();
+        }
+        mutable std::size_t batches = 0, singles = 0, cursors = 0;
+
+    private:
+        double wrong_;
+    };
+    const Counting space;
+    const ControlSpace* const spaces[] = {&space};
+    const auto points = random_points(box, 100, 3);
+    std::vector<double> lengths;
+    for (const Point& p : points) lengths.push_back(p.z());
+    const auto time = [&](Calls calls) {
+        return access_times(spaces, points, 2, {Answers::lengths, calls}, 0).front();
+    };
+    CHECK(time(Calls::one).checksum == checksum(lengths));
+    CHECK(space.batches == 4);
+    CHECK(space.singles == 0);
+    CHECK(time(Calls::each).checksum == checksum(lengths));
+    CHECK(space.batches == 6);
+    CHECK(space.singles == 200);
+    CHECK(space.cursors == 0);
+    CHECK(time(Calls::cursor).checksum == checksum(lengths));
+    CHECK(space.cursors == 2);
+    CHECK(space.singles == 400);  // a plain cursor calls the structure
+    const Counting wrong(1.01);
+    const ControlSpace* const of_wrong[] = {&wrong};
+    CHECK_THROWS_AS(access_times(of_wrong, points, 1, {Answers::lengths}, 0), std::logic_error);
+    CHECK(access_times(of_wrong, points, 1, {}, 0).size() == 1);
 }
 
 TEST_CASE("A repeat goes on until it has lasted long enough") {

@@ -180,6 +180,25 @@ class TwoRuns(unittest.TestCase):
         same = compare_runs.ratio_of(compare_runs.MEASURES[0], (slow, near))
         self.assertTrue(same.low <= 1 <= same.high)
 
+    def test_times_of_lengths_and_of_metrics_are_not_compared(self):
+        of_metrics = json_row("K_oL")
+        of_lengths = {**of_metrics, "answers": "lengths", **times("t_access_ns_metric_random", 80.0, 81.0)}
+        access, *_, memory = compare_runs.MEASURES[:4]
+        for pair, is_compared in (((of_metrics, of_lengths), False), ((of_lengths, of_metrics), False),
+                                  ((of_metrics, of_metrics), True), ((of_lengths, of_lengths), True)):
+            rows = results_of(pair).rows
+            self.assertEqual(compare_runs.ratio_of(access, rows) is not None, is_compared)
+            self.assertIsNotNone(compare_runs.ratio_of(memory, rows))
+
+    def test_the_papers_access_time_is_that_of_metrics(self):
+        of_metrics, of_lengths = results_of([
+            json_row("K_oL"),
+            {**json_row("K_oL"), "answers": "lengths", **times("t_access_ns_metric_random", 80.0, 81.0, 82.0)}]).rows
+        self.assertAlmostEqual(of_metrics["access_us"], 0.051)
+        self.assertAlmostEqual(of_lengths["access_us"], 0.081)
+        self.assertAlmostEqual(of_lengths.spread("access_us")[1], 0.0815)
+        self.assertEqual(of_lengths["t_access_ns_random"], 51)
+
     def test_what_changed_is_counted_and_stands_in_the_tables(self):
         before = [json_row("K_oL"), json_row("K_oV"), json_row("K_oL", tau=0.5)]
         after = [json_row("K_oL", **times("t_access_ns_random", 26, 25, 25.5), bytes_total=2_460_000,

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -80,6 +81,24 @@ TEST_CASE("what was written is read back") {
     }
     write(folder.path(), read.provenance, read.study, read.rows, false);
     CHECK(file_text(folder.path() / "results.json") == text);
+}
+
+TEST_CASE("of an earlier program's results the access times that it did not measure are none") {
+    const ScratchDirectory folder;
+    Json json = valid_json();
+    for (Json& row : json["rows"]) {
+        for (const char* order : {"near", "walk", "metric_random", "metric_single"}) {
+            for (const char* end : {"", "_q1", "_q3", "_samples"}) {
+                REQUIRE(row.erase(std::string("t_access_ns_") + order + end) == 1);
+            }
+        }
+        REQUIRE(row.erase("answers") == 1);
+    }
+    folder.file("results.json", json.dump());
+    const auto rows = read_results(folder.path(), rows_of_trees).rows;
+    CHECK(rows[0].number("t_access_ns_random") == 51);
+    CHECK(std::isnan(rows[0].number("t_access_ns_near")));
+    CHECK(to_json(rows[0], rows_of_trees)["answers"].is_null());
 }
 
 TEST_CASE("of results that were torn the whole rows are read") {

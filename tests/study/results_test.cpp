@@ -82,6 +82,11 @@ TEST_CASE("each field of a row has its own measure") {
     CHECK(json["t_access_ns_random_samples"] == std::vector<double>{52, 50, 51});
     CHECK(json["t_access_ns_grid"] == 11);
     CHECK(json["t_access_ns_single"] == 71);
+    CHECK(json["t_access_ns_near"] == 61);
+    CHECK(json["t_access_ns_walk_q1"] == 30.5);
+    CHECK(json["t_access_ns_metric_random"] == 81);
+    CHECK(json["t_access_ns_metric_single_samples"] == std::vector<double>{92, 90, 91});
+    CHECK(json["answers"] == "lengths");
     CHECK(json["delta_S_max"] == 0.19);
     CHECK(json["delta_R_max"] == 1.78);
     CHECK(json["delta_R_p95"] == 0.3);

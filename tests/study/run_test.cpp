@@ -1,13 +1,17 @@
 #include "controlspace/study/run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <map>
 #include <set>
 
 #include "cli/paper_reference.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
+#include "controlspace/space/sample_parallel.h"
 
 namespace controlspace::run_test {
 
@@ -75,6 +79,59 @@ TEST_CASE("a study gives a row with measures for every case") {
         CHECK(row.number("delta_R_mean") < row.number("delta_R_max"));
         CHECK(row.number("gradation_max_left") < 1.2501);
     }
+}
+
+TEST_CASE("access is timed of lengths where all is isotropic, and of metrics otherwise") {
+    Study study = small_study({"K_L", "K_oV"});
+    const bool is_isotropic = GENERATE(true, false);
+    study.runs[0]["s_n"] = {is_isotropic ? 1 : 0.5};
+    std::map<std::string, std::uint64_t> sums;
+    PreparedStudy prepared(study, {tree_catalogue()});
+    StudyObserver observer;
+    observer.case_checked = [&](const Finished& f, Row&) {
+        const auto places = random_points(f.workload.domain, study.access_points, study.seed);
+        sums[f.setting.structure] = checksum(sample_parallel(f.space, places));
+        CHECK(f.probes.near.size() == study.access_points);
+        CHECK(f.probes.walk.size() == study.access_points);
+    };
+    observer.case_finished = [&](const Row& row) {
+        INFO(row.error);
+        REQUIRE(row.is_measured());
+        CHECK(row.text("answers") == (is_isotropic ? "lengths" : "metrics"));
+        CHECK(row.text("checksum") == fmt::format("{:016x}", sums.at(row.setting.structure)));
+        for (const char* order : {"random", "grid", "near", "single", "walk"}) {
+            CHECK(row.number(std::string("t_access_ns_") + order) > 0);
+        }
+        for (const char* order : {"metric_random", "metric_single"}) {
+            CHECK(std::isnan(row.number(std::string("t_access_ns_") + order)) == !is_isotropic);
+        }
+    };
+    std::move(prepared).run(observer);
+    CHECK(sums.size() == 2);
+}
+
+TEST_CASE("with a field alone, access is timed where the field is fine") {
+    Study study = small_study({"K_oV"});
+    study.sources.kind = SourcesKind::none;
+    study.sources.h = SourcesChoice{}.h;
+    study.sources.field.lengths = {.across = 0.1, .along = 0.1};
+    study.runs[0]["field"] = {"planes"};
+    study.runs[0]["target_delta"] = {0.3};
+    PreparedStudy prepared(study, {tree_catalogue()});
+    double at_random = 0, near = 0;
+    StudyObserver observer;
+    observer.case_checked = [&](const Finished& f, Row&) {
+        const auto mean = [&](const std::vector<Point>& x) {
+            double sum = 0;
+            for (const Metric& m : sample_parallel(*f.workload.field.field, x)) sum += m.xx;
+            return sum / static_cast<double>(x.size());
+        };
+        at_random = mean(f.probes.coarse.points);
+        near = mean(f.probes.near);
+    };
+    std::move(prepared).run(observer);
+    CHECK(near > 0);
+    CHECK(near < 0.7 * at_random);
 }
 
 TEST_CASE("the same study gives the same answers") {

@@ -34,9 +34,13 @@ inline Finished sample_finished(const Case& setting) {
                    .bytes_topology = 200'000,
                    .bytes_auxiliary = 30'000,
                    .remark = ""};
-    f.access_random = {.samples_ns = {52, 50, 51}, .checksum = 0xff00000000000001};
+    f.access_random = {.samples_ns = {52, 50, 51}, .checksum = 1};
     f.access_grid = {.samples_ns = {12, 10, 11}, .checksum = 2};
-    f.access_single = {.samples_ns = {72, 70, 71}, .checksum = 0xff00000000000001};
+    f.access_single = {.samples_ns = {72, 70, 71}, .checksum = 1};
+    f.access_near = {.samples_ns = {62, 60, 61}, .checksum = 3};
+    f.access_walk = {.samples_ns = {32, 30, 31}, .checksum = 4};
+    f.access_metric_random = {.samples_ns = {82, 80, 81}, .checksum = 0xff00000000000001};
+    f.access_metric_single = {.samples_ns = {92, 90, 91}, .checksum = 0xff00000000000001};
     f.access_batch = 3;
     f.accuracy = {.max = 1.78,
                   .mean = 0.08,

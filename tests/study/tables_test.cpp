@@ -59,7 +59,7 @@ TEST_CASE("every row is in one table of measures that names its mode") {
     CHECK(cell(tables[0], "K_L s_L", "cells") == "103");
     CHECK(cell(tables[0], "K_L s_L", "creation s") == "1.750");
     CHECK(cell(tables[0], "K_L s_L", "random ns") == "51.0");
-    CHECK(cell(tables[0], "K_L s_L", "grid ns") == "11.0");
+    CHECK(cell(tables[0], "K_L s_L", "near ns") == "61.0");
     CHECK(cell(tables[0], "K_L s_L", "δ_R p99") == "0.4000");
     CHECK(cell(tables[0], "K_L s_L", "fine max") == "2.7800");
     CHECK(cell(tables[0], "K_L s_L", "fine coarser") == "7.00 %");

@@ -52,11 +52,19 @@ struct Finished {
     Accuracy accuracy_fine = {};    ///< δ_R at the fine probes
     double source_accuracy = 0;     ///< δ_S
     Steepness steepness = {};       ///< G_det and G_dir
-    AccessTime access_random = {};  ///< at random places
+    AccessTime access_random = {};  ///< at random places; these five of `answers()`
     AccessTime access_grid = {};    ///< at the coarse probes, x fastest
+    AccessTime access_near = {};    ///< near the sources
     AccessTime access_single = {};  ///< at random places, one a call
+    AccessTime access_walk = {};    ///< along walks, by a cursor
+    /// Of metrics, where `answers()` are lengths; else empty.
+    AccessTime access_metric_random = {};
+    AccessTime access_metric_single = {};
     /// First case of its batch, whose structures were timed in turns.
     std::size_t access_batch = 0;
+
+    /// What the access is timed of: lengths where all is isotropic.
+    Answers answers() const { return has_tensors(workload) ? Answers::metrics : Answers::lengths; }
 };
 
 /// A value in a row of results: none where the measure does not apply.
@@ -81,6 +89,7 @@ struct MeasureOf {
     std::string unit;  ///< empty for pure numbers and texts
     std::function<MeasuredValue(const Subject&)> value;
     Column column = {};
+    bool may_be_missing = false;  ///< in results of earlier programs
 };
 /// One of a structure of a study.
 using Measure = MeasureOf<Finished>;
@@ -109,7 +118,7 @@ MeasureOf<Subject> row_of(const char* key, Part Subject::*part, Place place, Col
 std::span<const Measure> measures();
 
 /// The rows of a sampled measure: its median as `key`, its quartiles as key_q1 and key_q3, and the
-/// samples as key_samples.
+/// samples as key_samples; none of them where there are no samples.
 std::vector<Measure> sampled_measure(const std::string& key, const std::string& unit,
                                      std::function<std::vector<double>(const Finished&)> samples,
                                      const Column& column);

@@ -55,10 +55,13 @@ Workload make_workload(const Study& study, const SourcesChoice& choice,
 SpaceOptions space_options(const Study& study, const Case& c, const Workload& workload,
                            std::span<const CaseParameter> parameters = case_parameters());
 
-/// Points at which structures are compared with their reference, and the reference there.
+/// Points at which structures are compared with their reference, and the reference there; and
+/// places that depend on it at which their access is timed.
 struct ReferenceProbes {
-    Probes coarse;  ///< probe_grid^3 cell centres
-    Probes fine;    ///< fine_probe_grid^3 cell centres
+    Probes coarse;            ///< probe_grid^3 cell centres
+    Probes fine;              ///< fine_probe_grid^3 cell centres
+    std::vector<Point> near;  ///< near the sources; without, where the reference is fine
+    std::vector<Point> walk;  ///< walks by half lengths of the reference, from near the sources
 };
 
 /// The reference of `c`, for δ_R and for exact values at control nodes. Depends only on the
