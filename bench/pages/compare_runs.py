@@ -20,8 +20,9 @@ MEASURES = [
 # Settings of a study that are not compared, and those that say how is measured; the others are of
 # the sources.
 NOT_COMPARED = {"name", "output", "runs"}
-MEASURING = {"domain", "margin", "max_memory", "seed", "threads", "access_points", "access_repeats",
-             "creation_repeats", "probe_grid", "fine_probe_grid", "reference_tolerance"}
+MEASURING = {"domain", "margin", "max_memory", "max_seconds", "max_memory_ratio", "seed", "threads",
+             "access_points", "access_repeats", "creation_repeats", "probe_grid", "fine_probe_grid",
+             "reference_tolerance"}
 
 # After over before, and what the scatter of the samples makes of it: from the lower quartile of the
 # later samples over the upper one of the earlier to the reverse.

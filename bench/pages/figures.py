@@ -187,8 +187,10 @@ def fronts(rows):
 
 def front_of(rows, cost, error):
     """The rows that no other beats, as in pareto.json: none of at most this error has a smaller
-    cost, beyond the quartiles of times, and none of equal cost a smaller error."""
-    points = [(row, row[cost], *row.spread(cost), row[error]) for row in rows]
+    cost, beyond the quartiles of times, and none of equal cost a smaller error. Rows that a limit
+    stopped are not compared."""
+    points = [(row, row[cost], *row.spread(cost), row[error]) for row in rows
+              if not row.measures.get("stopped")]
     return [row for row, at, low, _, e in points
             if not any(y <= e and high < low or y < e and x == at for _, x, _, high, y in points)]
 

@@ -40,6 +40,10 @@ struct Compare : Job {
     bool dry_run = false;          ///< list the cases instead of running them
 };
 
+// Where a user's file is compared, not a study: no row keeps others waiting.
+constexpr double seconds_of_row = 60;
+constexpr double memory_ratio_of_row = 20;
+
 /// The study that the options request. Throws InputError.
 Study study_of(const Compare& job) {
     const std::filesystem::path& input = job.input;
@@ -51,6 +55,10 @@ Study study_of(const Compare& job) {
         is_study || std::ranges::any_of(given, [](const auto& s) { return s.first == "name"; });
     if (!is_named && study.sources.kind == SourcesKind::file) {
         apply({{"name", {study.sources.files.front().stem().string()}}}, study);
+    }
+    if (!is_study && !is_sampled(study.sources)) {
+        if (!are_given(given, {"max_seconds"})) study.max_seconds = seconds_of_row;
+        if (!are_given(given, {"max_memory_ratio"})) study.max_memory_ratio = memory_ratio_of_row;
     }
     if (job.as_published) {
         for (Run& run : study.runs) {

@@ -42,7 +42,7 @@ void add_remark(Creation& creation, const std::string& remark) {
 }
 
 void adapt(Filled& filled, const Case& c, const Workload& workload,
-           std::span<const PointSource> sources) {
+           std::span<const PointSource> sources, const RowLimits& limits) {
     AdaptationGoal goal{.sources = sources,
                         .continuous = workload.field.field,
                         .ratio = c.g_r,
@@ -57,6 +57,7 @@ void adapt(Filled& filled, const Case& c, const Workload& workload,
     if (c.within && is_along) goal.target = nonconformity_along(*c.within);
     const auto factor_of = is_along ? largest_factor_along : largest_factor_within;
     const AdaptationReport report = filled.builder->adapt(goal);
+    filled.creation.stopped = limits.place_of(report.stop, c);
     if (c.target_delta) {
         const double reached = factor_of(report.reached);
         add_remark(filled.creation, outcome_of(report, reached));
@@ -94,6 +95,13 @@ void remark_on_all(Creation& creation, const Study& study, const Case& c, const 
     }
 }
 
+/// A grid that a cap on memory made coarser than it was to be says so in its remark.
+void note_coarser(Creation& creation, const CatalogueEntry& entry, const ControlSpace& space,
+                  const RowLimits& limits) {
+    if (!entry.has<VoxelSize>() || space.footprint().remark.empty()) return;
+    creation.stopped = "at " + (limits.memory.empty() ? "max_memory" : limits.memory);
+}
+
 // Whether the leaf of a source has an edge longer than tau in its metric.
 bool has_long_leaf(const ControlSpace& space, const SourceColumns& sources, double tau) {
     const auto numbers = std::views::iota(std::size_t{0}, sources.size());
@@ -106,8 +114,23 @@ bool has_long_leaf(const ControlSpace& space, const SourceColumns& sources, doub
 
 }  // namespace
 
+std::string RowLimits::place_of(GrowthStop stop, const Case& c) const {
+    switch (stop) {
+        case GrowthStop::none:
+            break;
+        case GrowthStop::leaves:
+            return fmt::format("at {} leaves", c.max_leaves.value_or(0));
+        case GrowthStop::time:
+            return "at " + time;
+        case GrowthStop::memory:
+            return "at " + memory;
+    }
+    return "";
+}
+
 Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
-                     const Workload& workload, const StudyObserver& observer) {
+                     const Workload& workload, const StudyObserver& observer,
+                     const RowLimits& limits) {
     const CatalogueEntry& entry = entry_of(c, rows.structures);
     const bool is_adapted = c.target_delta || has_field(c.sources);
     if (is_adapted) require_follows(c, entry);
@@ -119,19 +142,25 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     Creation& creation = filled.creation;
     const auto goal_sources = is_adapted ? workload.sources.all() : std::vector<PointSource>();
     Stopwatch time = phase(is_adapted ? "adaptation" : "insertion");
-    filled.builder = entry.make(space_options(study, c, workload, rows.parameters));
+    SpaceOptions options = space_options(study, c, workload, rows.parameters);
+    options.growth = limits.growth;
+    if (entry.has<VoxelSize>()) {
+        options.max_bytes = std::min(options.max_bytes, limits.growth.bytes);
+    }
+    filled.builder = entry.make(options);
     if (is_adapted) {
-        adapt(filled, c, workload, goal_sources);
+        adapt(filled, c, workload, goal_sources, limits);
         filled.space = filled.builder->build({.precision = precision_of(c.precision)});
+        note_coarser(creation, entry, *filled.space, limits);
         creation.insert_s = {time.seconds()};
         creation.gradation_s = {0};
         if (c.target_delta && entry.has<VoxelSize>() && !c.voxel) {
-            SpaceOptions options = space_options(study, c, workload, rows.parameters);
+            options.growth = {};
             if (const auto recipe = recipe_of(*filled.space)) options.voxel = recipe->options.voxel;
             add_remark(creation, fmt::format("voxel {:.4g}", options.voxel));
             time = {};
             Filled again{.builder = entry.make(options), .space = {}, .creation = {}};
-            adapt(again, c, workload, goal_sources);
+            adapt(again, c, workload, goal_sources, limits);
             again.builder->build({.precision = precision_of(c.precision)});
             creation.known_s = {time.seconds()};
         }
@@ -155,6 +184,7 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
         {.law = c.law, .schedule = c.schedule, .ratio = c.g_r, .neighbourhood = c.neighbourhood});
     // Where grids of other systems and the search of `direct` are made.
     filled.space = filled.builder->build({.precision = precision_of(c.precision)});
+    note_coarser(creation, entry, *filled.space, limits);
     creation.gradation_s = {time.seconds()};
     const ControlSpace& space = *filled.space;
     if (c.schedule == GradationSchedule::sources && entry.has<MetricNodes>()) {

@@ -95,6 +95,14 @@ std::string found_by_probes(const Finished& f) {
     return fmt::format("; the probes found more: δ {:.4g}, lengths within {:.4g}x", delta, found);
 }
 
+/// "stopped at 60 s, 1234 leaves, δ 0.31 reached"; empty where no limit ended the making.
+std::string stopped_text(const Finished& f) {
+    if (f.creation.stopped.empty()) return "";
+    return fmt::format("stopped {}, {} {}, δ {:.4g} reached", f.creation.stopped, f.footprint.cells,
+                       f.footprint.tree_nodes > 0 ? "leaves" : "cells",
+                       std::max(f.accuracy.max, f.accuracy_fine.max));
+}
+
 std::vector<Measure> accuracy_rows() {
     return {
         {"delta_S_max", "", [](const Finished& f) { return f.source_accuracy; }},
@@ -135,9 +143,14 @@ std::vector<Measure> accuracy_rows() {
          }},
         {"remark",
          "",
-         [](const Finished& f) { return remark_on(f.creation, f.footprint) + found_by_probes(f); },
+         [](const Finished& f) {
+             std::string remark = stopped_text(f);
+             const std::string more = remark_on(f.creation, f.footprint) + found_by_probes(f);
+             return remark + (remark.empty() || more.empty() ? "" : "; ") + more;
+         },
          {"remark", "{}"}},
         {"shortfall", "", [](const Finished& f) { return f.creation.shortfall; }},
+        {.key = "stopped", .unit = "", .value = stopped_text, .may_be_missing = true},
     };
 }
 

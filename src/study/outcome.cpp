@@ -87,14 +87,27 @@ bool follows_exact_field(const Rows& rows) {
 /// Where no row is within the factor.
 std::string nearest(const Rows& measured, double factor, bool is_asked, const StudyRows& columns) {
     Rows finite = measured;
-    std::erase_if(finite, [](const Row* row) { return !std::isfinite(factor_of(*row)); });
+    std::erase_if(finite, [](const Row* row) {
+        return !row->is_ranked() || !std::isfinite(factor_of(*row));
+    });
     const std::string found =
         finite.empty()
-            ? "All errors are infinite"
+            ? "All errors are infinite, or rows were stopped"
             : fmt::format("Closest: {}", named(least(finite, factor_of, rounding), columns));
     if (is_asked) return found + "; the remarks of the rows say what would help.";
     if (!follows_exact_field(measured)) return found + ".";
     return fmt::format("{}; --within {:.4g} adapts trees to it.", found, factor);
+}
+
+/// A sentence on the rows that limits stopped, which are not ranked.
+void add_stopped(Outcome& o, const Rows& measured, const StudyRows& columns) {
+    std::string text;
+    for (const Row* row : measured) {
+        if (row->is_ranked()) continue;
+        text += fmt::format("{}{} ({})", text.empty() ? "" : "; ",
+                            method_label(row->setting, columns.parameters), row->text("stopped"));
+    }
+    if (!text.empty()) o.sentences.push_back(fmt::format("Not ranked: {}.", text));
 }
 
 /// Of the rows of a work that were measured, of `rows`.
@@ -108,7 +121,7 @@ Outcome outcome_of(const std::string& work, const Rows& measured, const Asked& a
     const double factor = asked.factor;
     Outcome o{.work = work, .factor = factor, .is_asked = is_asked, .measured = measured.size()};
     Rows within = measured;
-    std::erase_if(within, [&](const Row* row) { return !asked.is_met(*row); });
+    std::erase_if(within, [&](const Row* row) { return !row->is_ranked() || !asked.is_met(*row); });
     o.within = indices(within);
     std::string error = fmt::format("within {:.4g}x of the reference's at all probes{}", factor,
                                     is_asked ? "" : " (by default)");
@@ -118,6 +131,7 @@ Outcome outcome_of(const std::string& work, const Rows& measured, const Asked& a
     if (within.empty()) {
         o.sentences = {fmt::format("No structure has lengths {}.", error),
                        nearest(measured, factor, is_asked, columns)};
+        add_stopped(o, measured, columns);
         return o;
     }
     const Rows smallest = least(within, [](const Row& row) { return row.number("bytes_total"); });
@@ -142,6 +156,7 @@ Outcome outcome_of(const std::string& work, const Rows& measured, const Asked& a
             "No tree was adapted: --within {:.4g} makes trees for this error, often smaller ones.",
             factor));
     }
+    add_stopped(o, measured, columns);
     return o;
 }
 

@@ -15,7 +15,7 @@ struct ParetoPoint {
     double cost = 0;
     double error = 0;
     /// No point of at most this error has a smaller cost, beyond the quartiles of times, and none
-    /// of equal cost a smaller error.
+    /// of equal cost a smaller error. Rows that a limit stopped are not compared.
     bool on_front = false;
 };
 

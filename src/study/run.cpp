@@ -1,6 +1,10 @@
 #include "controlspace/study/run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <chrono>
+#include <limits>
 #include <list>
 #include <memory>
 #include <new>
@@ -9,6 +13,7 @@
 
 #include "controlspace/space/sample_parallel.h"
 #include "measure/stopwatch.h"
+#include "refuse.h"
 #include "study/equal_setting.h"
 
 namespace controlspace {
@@ -48,7 +53,7 @@ public:
     template <class After>
     void run(const After& after) {
         const auto cases = prepared_.cases();
-        const double most_bytes = 0.5 * study_.max_memory_gib * 1024 * 1024 * 1024;
+        const double most_bytes = 0.5 * most_bytes_of_all();
         std::size_t first = 0;
         double bytes = 0;
         Stopwatch time;
@@ -97,11 +102,22 @@ private:
         Member& member = batch_.emplace_back();
         member.row.setting = c;
         member.row.sources = workload.sources.size();
+        RowLimits limits;
         try {
             const ReferenceProbes& probes = probes_of(i);
-            const std::string shortfall = choose_voxels(member.row.setting, workload, probes);
-            make_and_check(member, i, workload, probes);
-            if (!shortfall.empty()) member.finished->creation.shortfall = shortfall;
+            limits = limits_of(i);
+            const Chosen chosen = choose_voxels(member.row.setting, workload, probes, limits);
+            make_and_check(member, i, workload, probes, limits);
+            Creation& creation = member.finished->creation;
+            if (!chosen.shortfall.empty()) creation.shortfall = chosen.shortfall;
+            if (!chosen.stopped.empty()) creation.stopped = chosen.stopped;
+            if (creation.stopped.empty()) {
+                smallest_ = std::min(smallest_,
+                                     static_cast<double>(member.finished->footprint.bytes_total()));
+            }
+        } catch (const GrowthStopped& stopped) {
+            member.row.error = fmt::format("stopped {}, {} leaves",
+                                           limits.place_of(stopped.stop(), c), stopped.leaves());
         } catch (const std::bad_alloc&) {
             member.row.error = "out of memory: lower max_memory, or raise tau";
         } catch (const std::exception& error) {
@@ -116,31 +132,74 @@ private:
         member.row.seconds = time.seconds();
     }
 
-    /// Chooses the voxels for equal_delta or equal_memory; returns why they miss it, or nothing.
-    std::string choose_voxels(Case& c, const Workload& workload, const ReferenceProbes& probes) {
-        if (!c.equal_delta && !c.equal_memory) return "";
+    /// Of case `i`, whose time begins now.
+    RowLimits limits_of(std::size_t i) {
+        constexpr double least_bytes = 4.0 * 1024 * 1024;  // a grid of OpenVDB takes 1.8 MB
+        if (i > 0 && !share_probes(prepared_.cases()[i - 1], prepared_.cases()[i])) {
+            smallest_ = std::numeric_limits<double>::infinity();
+        }
+        RowLimits limits;
+        if (study_.max_seconds > 0) {
+            const std::chrono::duration<double> most(std::min(study_.max_seconds, 1e9));
+            limits.growth.deadline = GrowthLimit::Clock::now() +
+                                     std::chrono::duration_cast<GrowthLimit::Clock::duration>(most);
+            limits.time = fmt::format("{:.4g} s", study_.max_seconds);
+        }
+        const double wanted_bytes = study_.max_memory_ratio * smallest_;
+        const double bytes = std::max(wanted_bytes, least_bytes);
+        if (study_.max_memory_ratio > 0 && bytes < most_bytes_of_all()) {
+            limits.growth.bytes = static_cast<std::size_t>(bytes);
+            limits.memory = wanted_bytes < least_bytes
+                                ? "4 MiB"
+                                : fmt::format("{:.4g} times the memory of the smallest row",
+                                              study_.max_memory_ratio);
+        }
+        return limits;
+    }
+    double most_bytes_of_all() const { return study_.max_memory_gib * 1024 * 1024 * 1024; }
+
+    /// Why voxels miss their goal, and the limit that ended the search; empty where not.
+    struct Chosen {
+        std::string shortfall, stopped;
+    };
+    /// Chooses the voxels for equal_delta or equal_memory.
+    Chosen choose_voxels(Case& c, const Workload& workload, const ReferenceProbes& probes,
+                         const RowLimits& limits) {
+        if (!c.equal_delta && !c.equal_memory) return {};
+        std::string stopped;
         const EqualSetting found = find_equal_setting(
             c, prepared_.entry(c), workload.domain.edges().maxCoeff(), [&](const Case& trial) {
-                const auto space = make_and_fill(study_, trial, rows_, workload).space;
+                if (limits.growth.is_late()) {
+                    stopped = "at " + limits.time;
+                    refuse("stopped {}", stopped);
+                }
+                const auto space =
+                    make_and_fill(study_, trial, rows_, workload, {}, limits).space;
                 return Trial{std::max(accuracy(*space, probes.coarse).max,
                                       accuracy(*space, probes.fine).max),
                              static_cast<double>(space->footprint().bytes_total())};
             });
         c = found.setting;
-        return found.shortfall;
+        return {found.shortfall, stopped};
     }
 
-    /// Makes the structure creation_repeats times, with the same answers, and measures its
-    /// accuracy.
+    /// Makes the structure creation_repeats times, as far as the limit of time allows, with the
+    /// same answers, and measures its accuracy.
     void make_and_check(Member& member, std::size_t i, const Workload& workload,
-                        const ReferenceProbes& probes) {
+                        const ReferenceProbes& probes, RowLimits limits) {
         const Case& c = member.row.setting;
         const auto places = random_points(workload.domain, study_.access_points, study_.seed);
         Creation creation;
         std::uint64_t expected = 0;
+        const Stopwatch time;
         for (int repeat = 0; repeat < study_.creation_repeats; ++repeat) {
+            if (repeat > 0 && study_.max_seconds > 0) {
+                const double with_this = time.seconds() * (repeat + 1) / repeat;
+                if (!creation.stopped.empty() || with_this > study_.max_seconds) break;
+                limits.growth.deadline = GrowthLimit{}.deadline;  // for the same answers
+            }
             member.space.reset();  // its memory first
-            Filled filled = make_and_fill(study_, c, rows_, workload, observer_);
+            Filled filled = make_and_fill(study_, c, rows_, workload, observer_, limits);
             member.space = std::move(filled.space);
             const std::uint64_t sum = checksum(sample_parallel(*member.space, places));
             if (repeat == 0) {
@@ -228,6 +287,8 @@ private:
     /// By the first case that needs them.
     std::vector<std::pair<std::size_t, std::unique_ptr<ReferenceProbes>>> probes_;
     std::list<Member> batch_;  // a Finished refers to its row
+    /// Bytes of the smallest structure that was not stopped, of those that share probes.
+    double smallest_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace

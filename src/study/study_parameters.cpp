@@ -191,6 +191,17 @@ std::vector<Parameter<Study>> table() {
          number<Study>(&Study::max_memory_gib,
                        [](double x) { return within(0, 1 << 20)(positive(x)); }),
          making, always, performance},
+        {"max_seconds", "s",
+         "Time after which the making of a row's structure is stopped: trees keep the leaves made "
+         "so far, a search for voxels the best grid so far, and neither is ranked; 0: no limit. "
+         "Left out, for an input that is no study: 60",
+         number<Study>(&Study::max_seconds, at_least(0), Zero::is_none), Use::timing, always,
+         performance},
+        {"max_memory_ratio", "memory of the smallest row before it",
+         "Memory at which a row is stopped, 4 MiB at least: trees as after max_seconds; a grid is "
+         "made coarser, and not ranked; 0: no limit. Left out, for an input that is no study: 20",
+         number<Study>(&Study::max_memory_ratio, at_least(0), Zero::is_none), Use::timing, always,
+         performance},
         {"seed", "", "Seed of the random places, and of sources that are not regular",
          number<Study>(&Study::seed, within(0, exact_integers)), making, always, performance},
         {"threads", "",

@@ -15,7 +15,7 @@ using Rows = std::vector<const Row*>;
 /// that overlap with the smallest median.
 std::string verdict(const Measure& measure, const Rows& rows, const StudyRows& columns) {
     Rows timed = rows;
-    std::erase_if(timed, [](const Row* row) { return !row->is_measured(); });
+    std::erase_if(timed, [](const Row* row) { return !row->is_ranked(); });
     if (timed.size() < 2 || measure.column.least.empty()) return "";
     std::string what = measure.column.least;
     what.front() = static_cast<char>(std::toupper(what.front()));

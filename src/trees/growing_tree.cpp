@@ -29,4 +29,14 @@ std::string leaves_shortfall(std::size_t max_leaves) {
                        max_leaves);
 }
 
+std::string limit_shortfall(GrowthStop stop) {
+    return stop == GrowthStop::time ? "no time was left" : "no memory was left";
+}
+
+void fail_stopped(GrowthStop stop, std::size_t leaves) {
+    throw GrowthStopped(
+        stop, leaves,
+        fmt::format("the tree is not finished: {} with {} leaves", limit_shortfall(stop), leaves));
+}
+
 }  // namespace controlspace

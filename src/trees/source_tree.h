@@ -69,12 +69,13 @@ public:
         const GoalField field(goal, Base::domain());
         storage_.take_over(goal);
         GradationReport report;
-        TreeAdaptation adaptation(topology_, storage_, field, goal);
+        TreeAdaptation adaptation(topology_, storage_, field, goal, Base::options_.growth);
         adaptation.run(false, [&](const Box& box, const auto& along, auto& cut) {
             ++report.operations;
             return Base::cuts().is_too_long(value_at(topology_, storage_, box.centre()), box) &&
                    Base::split_across(box, along, cut);
         });
+        if (adaptation.is_late()) Base::require_may_grow();
         finish();
         is_graded_ = true;
         report.largest_ratio_left = ratio_left();

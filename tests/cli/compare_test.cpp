@@ -54,6 +54,48 @@ TEST_CASE("all structures are compared on sources from a file", "[threads]") {
     CHECK(lines(outcome.err) == json["rows"].size());
 }
 
+TEST_CASE("rows of a file are limited unless told otherwise, those of a study are not") {
+    const Sandbox box("limits");
+    box.write("s.csv", sources_csv);
+    box.write("study.toml", "sources = 's.csv'\nstructures = 'K_oL'\n");
+    const auto settings = [&](const std::string& arguments, const std::string& folder) {
+        REQUIRE(box.run("compare " + arguments + " --quiet --output " + folder + quick).status ==
+                0);
+        return nlohmann::json::parse(file_text(box / folder / "results.json"))["settings"];
+    };
+    const auto of_file = settings("s.csv --structures K_oL", "a");
+    CHECK(of_file["max_seconds"] == 60);
+    CHECK(of_file["max_memory_ratio"] == 20);
+    const auto told = settings("s.csv --structures K_oL --max-seconds 0 --max-memory-ratio 5", "b");
+    CHECK(told["max_seconds"].is_null());
+    CHECK(told["max_memory_ratio"] == 5);
+    const auto of_study = settings("study.toml", "c");
+    CHECK(of_study["max_seconds"].is_null());
+    CHECK(of_study["max_memory_ratio"].is_null());
+}
+
+#ifdef CONTROLSPACE_OPENVDB
+TEST_CASE("tensors are compared in OpenVDB's rows too") {
+    const Sandbox box("tensors");
+    box.write("s.csv",
+              "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n0,0,0,0.1,0.2,0.2,0,0,0\n1,1,1,0.4,0.3,0.3,0."
+              "05,0,0\n");
+    const Outcome outcome = box.run("compare s.csv --output out" + quick);
+    INFO(outcome.err);
+    REQUIRE(outcome.status == 0);
+    const auto json = nlohmann::json::parse(file_text(box / "out" / "results.json"));
+    std::size_t rows = 0;
+    for (const auto& row : json["rows"]) {
+        if (!row["structure"].get<std::string>().starts_with("openvdb")) continue;
+        INFO(row.dump());
+        CHECK(row["error"] == "");
+        CHECK(row["answers"] == "metrics");
+        ++rows;
+    }
+    CHECK(rows >= 3);
+}
+#endif
+
 TEST_CASE("options override the study file, and quiet is quiet") {
     const Sandbox box("override");
     box.write("s.csv", sources_csv);

@@ -92,6 +92,14 @@ class Figures(InFolder):
                 checked += 1
         self.assertGreater(checked, 30)
 
+    def test_a_row_that_a_limit_stopped_is_on_no_front(self):
+        first, second, _ = three_rows()
+        stopped = {**first, "stopped": "stopped at 60 s, 9 leaves, δ 2.78 reached"}
+        before, after = (figures.front_of(results_of(rows).rows, "memory_MB", "delta_R_fine_max")
+                         for rows in ([first, second], [stopped, second]))
+        self.assertEqual([row.method for row in before], ["K_oL"])
+        self.assertEqual([row.method for row in after], [results_of([second]).rows[0].method])
+
     def test_70_structures_look_different(self):
         styles = figures.Styles(results_of([json_row(f"K_{i}") for i in range(70)]).rows)
         splits = [None, "s_G", "s_Gx", "s_M"]

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
 #include "case_of_each.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/error.h"
+#include "controlspace/input_errors.h"
 #include "controlspace/measure/access_time.h"
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/metric/intersection.h"
@@ -425,6 +427,40 @@ TEST_CASE("a target out of reach is told, with what was reached") {
     }
     const auto small = editable(tree_named("K_oL").make({.domain = domain, .max_bytes = 1000000}));
     CHECK_THROWS_AS(small->adapt({sources, nullptr, g, 0.01}), InputError);
+}
+
+CASE_OF_EACH(entry, all_trees(),
+             "a tree at its limit of time or memory says so, and answers with what it has") {
+    const std::vector<PointSource> sources = sample_sphere({.h = 0.06});
+    const AdaptationGoal goal{sources, nullptr, g, 0.1};
+    SpaceOptions options{.domain = domain, .finest_length = 0.06};
+    options.growth.deadline = GrowthLimit::Clock::now();
+    const auto late = editable(entry.make(options));
+    const AdaptationReport report = late->adapt(goal);
+    CHECK(report.stop == GrowthStop::time);
+    CHECK_FALSE(report.met);
+    CHECK(report.shortfall == "no time was left");
+    CHECK(late->footprint().cells == 1);
+    CHECK(is_positive_definite(sample_at(*late, Point::Zero())));
+    CHECK_THROWS_AS(editable(entry.make(options))->insert(sources), GrowthStopped);
+
+    // A limit that is not reached changes nothing.
+    const auto free = editable(entry.make({.domain = domain, .finest_length = 0.06}));
+    CHECK(free->adapt(goal).met);
+    options.growth = {.deadline = GrowthLimit::Clock::now() + std::chrono::hours(1),
+                      .bytes = std::size_t{1} << 40};
+    const auto limited = editable(entry.make(options));
+    CHECK(limited->adapt(goal).stop == GrowthStop::none);
+    const auto x = random_points(domain, 1000, 1);
+    CHECK(answers(*limited, x) == answers(*free, x));
+
+    options.growth = {.bytes = free->footprint().bytes_total() / 4};
+    const auto small = editable(entry.make(options));
+    const AdaptationReport stopped = small->adapt(goal);
+    CHECK(stopped.stop == GrowthStop::memory);
+    CHECK_FALSE(stopped.met);
+    CHECK(small->footprint().cells > 1);
+    CHECK(small->footprint().cells < free->footprint().cells);
 }
 
 CASE_OF_EACH(entry, vertex_trees(),

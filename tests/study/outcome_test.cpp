@@ -73,6 +73,22 @@ TEST_CASE("either kind of probes puts a structure out, and so does an infinite e
     CHECK(only(rows).within.empty());
 }
 
+TEST_CASE("what a limit stopped is not ranked, and is named") {
+    std::vector<Row> rows = sample();
+    const std::string stopped = "stopped at 60 s, 1234 leaves, δ 0.02 reached";
+    rows[2].values["stopped"] = stopped;
+    const Outcome outcome = only(rows);
+    CHECK(outcome.measured == 4);
+    CHECK(outcome.within == Indices{1, 3});
+    CHECK(outcome.smallest == Indices{1});
+    CHECK(outcome.sentences.back() == "Not ranked: small (" + stopped + ").");
+    for (Row& row : rows) row.values["stopped"] = stopped;
+    const Outcome none = only(rows);
+    CHECK(none.within.empty());
+    CHECK(none.smallest.empty());
+    CHECK(none.sentences.size() == 3);
+}
+
 TEST_CASE("times whose quartiles overlap are indistinguishable, in one batch") {
     std::vector<Row> rows = sample();
     rows.push_back(row_of("near", 1.1, 1'000'000, {10, 11, 12}));

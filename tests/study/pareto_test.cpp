@@ -52,6 +52,15 @@ TEST_CASE("a front holds what nothing else is at most as large as in both") {
     CHECK(tables[0].rows[2].back() == "access");
 }
 
+TEST_CASE("a row that a limit stopped is on no front and keeps no other row from one") {
+    std::vector<Row> rows{row_at("a", 10, 1, 0.1, 0.1), row_at("b", 20, 2, 0.2, 0.2)};
+    CHECK(front(pareto_plots(rows)[0]) == std::vector{true, false});
+    rows[0].values["stopped"] = "stopped at 60 s, 9 leaves, δ 0.1 reached";
+    for (const ParetoPlot& plot : pareto_plots(rows)) {
+        CHECK(front(plot) == std::vector{false, true});
+    }
+}
+
 TEST_CASE("rows are weighed against those of the same work, at any tau and target") {
     std::vector<Row> rows(6, row_at("K_oL", 10, 9, 0.5, 0.1));
     rows[1].setting.tau = 0.5;

@@ -400,6 +400,63 @@ TEST_CASE("a row shows where the probes found more than adaptation states") {
     CHECK(stated == 3);
 }
 
+TEST_CASE("a row whose making a limit of time ends says how far it came, and is not ranked") {
+    Study study = small_study({"K_oV", "K_oLA", "uniform-nearest"});
+    study.max_seconds = 1e-6;
+    study.runs[0]["target_delta"] = {0.01};
+    study.runs[0]["equal_delta"] = {0.5};
+    auto rows = run(study, structures());
+    REQUIRE(rows.size() == 3);
+    for (std::size_t i = 0; i < 2; ++i) {
+        REQUIRE(rows[i].is_measured());
+        CHECK_FALSE(rows[i].is_ranked());
+        CHECK_FALSE(rows[i].is_as_requested());
+        CHECK_THAT(rows[i].text("stopped"),
+                   Contains("stopped at 1e-06 s, 1 leaves, δ ") && EndsWith(" reached"));
+        CHECK_THAT(rows[i].text("remark"), Contains(rows[i].text("stopped")));
+        CHECK(samples(rows[i], "t_insert_s_samples").size() == 1);
+    }
+    CHECK(rows[2].error == "stopped at 1e-06 s");
+    study.runs[0]["target_delta"] = {0};
+    rows = run(study, structures());
+    for (std::size_t i = 0; i < 2; ++i) {
+        CHECK_THAT(rows[i].error, Contains("stopped at 1e-06 s, ") && EndsWith(" leaves"));
+    }
+    // One that is not reached leaves all as it was.
+    study.max_seconds = 0;
+    const auto free = run(study, structures());
+    study.max_seconds = 1e6;
+    study.max_memory_ratio = 1e6;
+    rows = run(study, structures());
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(rows[i].is_ranked());
+        CHECK(rows[i].text("checksum") == free[i].text("checksum"));
+        CHECK(samples(rows[i], "t_insert_s_samples").size() == 2);
+    }
+}
+
+TEST_CASE("a row far larger than the smallest before it is stopped, and is not ranked") {
+    Study study = small_study({"K_L", "uniform-nearest", "K_oL"});
+    study.max_memory_ratio = 2;
+    study.runs[0]["voxel"] = {0.02};
+    study.runs.push_back({{"structures", {"K_oL"}}, {"target_delta", {0.0005}}});
+    const auto rows = run(study, structures());
+    REQUIRE(rows.size() == 4);
+    // The smallest takes less than half of that.
+    const std::string at = "stopped at 4 MiB, ";
+    for (const Row& row : rows) {
+        INFO(row.setting.structure << row.error);
+        REQUIRE(row.is_measured());
+        const bool is_large =
+            row.setting.structure == "uniform-nearest" || row.setting.target_delta;
+        CHECK(row.is_ranked() == !is_large);
+        if (!is_large) continue;
+        CHECK_THAT(row.text("stopped"), Contains(at));
+        CHECK(row.number("bytes_total") < 8e6);  // of at least 4 MiB
+        CHECK(row.number("bytes_total") > 1e6);
+    }
+}
+
 TEST_CASE("structures that answer otherwise when made again have no times") {
     CatalogueEntry moody{.id = "moody", .description = "", .capabilities = {MetricNodes()}};
     static int made;  // `construct` is a plain function

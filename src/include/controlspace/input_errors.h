@@ -32,6 +32,23 @@ private:
     std::size_t bytes_;
 };
 
+/// What ended the growth of a tree before it was finished.
+enum class GrowthStop { none, leaves, time, memory };
+
+/// A tree reached its SpaceOptions::growth limit of time or memory before it was finished.
+class GrowthStopped : public InputError {
+public:
+    GrowthStopped(GrowthStop stop, std::size_t leaves, const std::string& what)
+        : InputError(what), stop_(stop), leaves_(leaves) {}
+    GrowthStop stop() const noexcept { return stop_; }
+    /// Number of leaves then.
+    std::size_t leaves() const noexcept { return leaves_; }
+
+private:
+    GrowthStop stop_;
+    std::size_t leaves_;
+};
+
 /// No structure has this name; what() lists those there are.
 class UnknownStructure : public InputError {
 public:

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "controlspace/input_errors.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/stored_metric.h"
 #include "controlspace/sources/point_source.h"
@@ -55,6 +56,7 @@ struct AdaptationReport {
     bool is_bound = false;  ///< `reached` is kept everywhere; otherwise it was sampled
     bool met = false;       ///< reached <= target
     std::string shortfall;  ///< why it was not met, and what would help; empty where it was
+    GrowthStop stop = GrowthStop::none;  ///< the limit at which it stopped, where it was not met
 };
 
 }  // namespace controlspace

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
+#include <limits>
 
 #include "controlspace/geometry/box.h"
 #include "controlspace/metric/intersection.h"
@@ -16,6 +18,18 @@ enum class QuadraticForm {
     /// As the published program did, for comparison: the trilinear part is evaluated at t in [0,1]
     /// in place of 2t - 1, one corner takes the wrong face, and nothing bounds the result.
     published,
+};
+
+/// When trees stop growing, finished or not. Adaptation then reports how far it came
+/// (AdaptationReport::stop); insertion, and gradation that cuts leaves, throw GrowthStopped.
+struct GrowthLimit {
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point deadline = Clock::time_point::max();
+    std::size_t bytes = std::numeric_limits<std::size_t>::max();  ///< of the tree, gradation aside
+
+    bool is_late() const {
+        return deadline != Clock::time_point::max() && Clock::now() >= deadline;
+    }
 };
 
 /// What a structure is made with.
@@ -60,6 +74,7 @@ struct SpaceOptions {
     /// InputError. The sources that a builder keeps to grade by them, up to 72 bytes each, and the
     /// search through them while it does, are not counted.
     std::size_t max_bytes = std::size_t{4} << 30;
+    GrowthLimit growth = {};  ///< trees only; not saved
 };
 
 /// M_max, which a new control space holds everywhere: H I, H half of the domain's diagonal, or

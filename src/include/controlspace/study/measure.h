@@ -29,6 +29,8 @@ struct Creation {
     GradationReport gradation;
     std::string remark;     ///< "δ <= 0.1 everywhere: lengths within 1.27x"
     std::string shortfall;  ///< why a requested target was missed; empty where it was met
+    /// The limit that ended the making: "at 60 s"; empty where none did. Such a row is not ranked.
+    std::string stopped = {};
     /// The largest factor between lengths that the remark states; 0: none.
     double within = 0;
     double delta = 0;  ///< the δ that it states
@@ -140,6 +142,8 @@ struct Row {
     double seconds = 0;  ///< that the case took
 
     bool is_measured() const { return error.empty(); }
+    /// Whether it was measured, and no limit ended the making of its structure.
+    bool is_ranked() const { return is_measured() && text("stopped").empty(); }
     /// Whether it was measured, and met the target that was requested.
     bool is_as_requested() const { return is_measured() && text("shortfall").empty(); }
     /// A number; NaN where there is none.

@@ -73,6 +73,17 @@ bool share_probes(const Case& a, const Case& b);
 /// The entry of the structure of `c`, which `expand` has found in `catalogue`.
 const CatalogueEntry& entry_of(const Case& c, std::span<const CatalogueEntry> catalogue);
 
+/// Limits that end the making of a structure: those of trees; a grid is made coarser than wanted to
+/// keep `growth.bytes`.
+struct RowLimits {
+    GrowthLimit growth;
+    /// "60 s", "20 times the memory of the smallest row", for texts.
+    std::string time, memory;
+
+    /// "at 60 s".
+    std::string place_of(GrowthStop stop, const Case& c) const;
+};
+
 /// A builder with the sources of a case inserted, graded or adapted, and what it has built, in the
 /// precision of the case. Exceptions pass through.
 struct Filled {
@@ -81,6 +92,7 @@ struct Filled {
     Creation creation;  ///< of the space
 };
 Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
-                     const Workload& workload, const StudyObserver& observer = {});
+                     const Workload& workload, const StudyObserver& observer = {},
+                     const RowLimits& limits = {});
 
 }  // namespace controlspace

@@ -73,8 +73,12 @@ struct Study {
     std::optional<Box> domain;
     double margin = 0.05;       ///< around sources from a file, in units of their longest extent
     double max_memory_gib = 4;  ///< cap on a structure
-    std::uint64_t seed = 1;     ///< of the random places that access is timed at, and of sources
-    int threads = 0;            ///< for all but the access, which is timed on one; 0: all
+    /// A row is stopped after so many seconds of making its structure, and at so many times the
+    /// memory of the smallest row of the same sources before it (see RowLimits); 0: not.
+    double max_seconds = 0;
+    double max_memory_ratio = 0;
+    std::uint64_t seed = 1;  ///< of the random places that access is timed at, and of sources
+    int threads = 0;         ///< for all but the access, which is timed on one; 0: all
     std::size_t access_points = 100000;  ///< random places
     int access_repeats = 9;
     int creation_repeats = 3;

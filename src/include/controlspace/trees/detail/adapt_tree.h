@@ -15,6 +15,7 @@
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/detail/goal_field.h"
 #include "controlspace/space/sample_parallel.h"
+#include "controlspace/space/space_options.h"
 #include "controlspace/trees/detail/control_nodes.h"
 #include "controlspace/trees/detail/in_parallel.h"
 #include "controlspace/trees/detail/leaf_judge.h"
@@ -31,12 +32,13 @@ template <class Node, class Storage>
 class TreeAdaptation {
 public:
     TreeAdaptation(const Topology<Node>& tree, Storage& storage, const GoalField& field,
-                   const AdaptationGoal& goal)
+                   const AdaptationGoal& goal, const GrowthLimit& limit = {})
         : tree_(tree),
           storage_(storage),
           field_(field),
           aim_(field.target()),
           max_leaves_(goal.max_leaves),
+          limit_(limit),
           next_to_sources_(tree, storage, field, goal.sources) {
         if (field.has_ranges()) {
             for (const std::uint32_t i : field.kept()) {
@@ -78,7 +80,7 @@ public:
         if constexpr (follows_neighbours<Storage>()) {
             // Neighbours may have been cut after a leaf was sampled.
             constexpr int rounds_of_all = 2;
-            for (int k = 0; proved && k < rounds_of_all; ++k) {
+            for (int k = 0; proved && !is_late_ && k < rounds_of_all; ++k) {
                 states_.assign(tree_.leaves(), LeafState::changed);
                 while (round(proved, split)) {
                 }
@@ -88,6 +90,9 @@ public:
         for (const Departure& d : departures_) left = std::max(left, d.worst);
         return left;
     }
+
+    /// Whether it ended at the deadline. Leaves that were not sampled depart without bound then.
+    bool is_late() const { return is_late_; }
 
     /// Whether a target that is met is shown by bounds to be kept everywhere.
     bool shows_bounds() const {
@@ -119,6 +124,8 @@ private:
             sample(young, proved);
         }
         for (const LeafBox& l : young) states_[l.leaf] = LeafState::settled;
+        is_late_ = limit_.is_late();
+        if (is_late_) return false;
         if (tree_.leaves() + Node::arity * young.size() > max_leaves_) {
             std::ranges::stable_sort(young, std::greater(),
                                      [&](const LeafBox& l) { return departures_[l.leaf].worst; });
@@ -141,7 +148,7 @@ private:
             cut.clear();
             const bool is_cut = split(l.box, departure.along, cut);
             changes = is_cut || changes;
-            if (!is_cut && departure.is_unknown()) {
+            if (!is_cut && departure.is_unknown() && !limit_.is_late()) {
                 const Departure found = at_some_places(l);
                 if (found.worst > field_.target()) departure = found;
             }
@@ -257,6 +264,10 @@ private:
         }
         in_parallel(leaves.size(), [&, nearby = NearbyField(field_)](std::size_t i) mutable {
             const LeafBox& l = leaves[i];
+            if (limit_.is_late()) {
+                departures_[l.leaf].worst = std::numeric_limits<double>::infinity();
+                return;
+            }
             nearby.enter(l.box, true);
             Findings found(l);
             Departure& departure = found.departure;
@@ -350,6 +361,8 @@ private:
     double aim_;  // leaves above it are cut
     bool is_thorough_ = false;
     const std::size_t max_leaves_;
+    const GrowthLimit limit_;
+    bool is_late_ = false;
     std::vector<Point> sources_;
     std::vector<Metric> at_sources_;  // the field there
     NextToSources<Node, Storage> next_to_sources_;

@@ -24,6 +24,9 @@ namespace controlspace {
 std::string depth_shortfall(int max_depth);
 /// The same where there are as many leaves as allowed.
 std::string leaves_shortfall(std::size_t max_leaves);
+/// The same at a limit of time or memory.
+std::string limit_shortfall(GrowthStop stop);
+[[noreturn]] void fail_stopped(GrowthStop stop, std::size_t leaves);
 
 /// A tree over a box whose leaves are cut, for sources or to follow a field: what MetricTree and
 /// SourceTree share. `Node` is how a box is cut, `Storage` what leaves hold (storage.h).
@@ -62,17 +65,20 @@ protected:
         constexpr std::size_t bytes_of_adaptation = 240;  // for each leaf
         const GoalField field(goal, domain());
         bytes_to_come_ = bytes_of_adaptation;
+        next_check_ = 0;
+        is_adapted_ = true;
+        outgrows_ = false;
         topology_ = Topology<Node>(domain());
         storage_ = Storage(options_);
         begin();
         AdaptationReport report;
         bool too_deep = false;
         bool too_short = false;
-        bool too_many = false;
-        TreeAdaptation adaptation(topology_, storage_, field, goal);
+        GrowthStop stop = GrowthStop::none;
+        TreeAdaptation adaptation(topology_, storage_, field, goal, options_.growth);
         report.reached = adaptation.run(true, [&](const Box& box, const auto& along, auto& cut) {
-            too_many = topology_.leaves() >= goal.max_leaves;
-            if (too_many) return false;
+            stop = topology_.leaves() >= goal.max_leaves ? GrowthStop::leaves : growth_stop();
+            if (stop != GrowthStop::none) return false;
             if (is_negligible(box, field.largest_ratio())) {
                 too_short = true;
                 return false;
@@ -82,12 +88,16 @@ protected:
             return done;
         });
         bytes_to_come_ = 0;
+        is_adapted_ = false;
+        if (adaptation.is_late()) stop = GrowthStop::time;
         report.met = report.reached <= goal.target;
         report.is_bound = report.met && adaptation.shows_bounds();
         if (report.met) {
             // Leaves that were not cut may be just below the target.
-        } else if (too_many) {
-            report.shortfall = leaves_shortfall(goal.max_leaves);
+        } else if (stop != GrowthStop::none) {
+            report.stop = stop;
+            report.shortfall = stop == GrowthStop::leaves ? leaves_shortfall(goal.max_leaves)
+                                                          : limit_shortfall(stop);
         } else if (too_deep) {
             report.shortfall = depth_shortfall(cuts().max_depth());
         } else if (too_short) {
@@ -146,7 +156,15 @@ protected:
     void make_room_for(std::size_t more) {
         if (topology_.is_full(more)) fail_too_many_leaves();
         const std::size_t leaves = topology_.leaves() + more;
-        if (leaves > next_check_) require_memory(leaves);
+        if (leaves <= next_check_) return;
+        require_memory(leaves);
+        // Adaptation ends between leaves.
+        if (!is_adapted_) require_may_grow();
+    }
+    /// Throws GrowthStopped at a limit of time or memory.
+    void require_may_grow() const {
+        const GrowthStop stop = growth_stop();
+        if (stop != GrowthStop::none) fail_stopped(stop, topology_.leaves());
     }
 
     /// Stops a tree of so many leaves that outgrows the cap, long before the system stops the
@@ -157,6 +175,7 @@ protected:
         const std::size_t bytes = footprint().bytes_total();
         require_bytes(bytes + std::min(bytes, most_bytes_twice) + bytes_aside_ +
                       leaves * (bytes_beside + bytes_to_come_));
+        outgrows_ = bytes > options_.growth.bytes;
         next_check_ = leaves + leaves / 16;
     }
     /// The same of gradation from node to node, which copies the nodes and links them.
@@ -195,6 +214,10 @@ protected:
     std::size_t bytes_aside_ = 0;    // of what is to be entered into the tree
 
 private:
+    GrowthStop growth_stop() const {
+        if (outgrows_) return GrowthStop::memory;
+        return options_.growth.is_late() ? GrowthStop::time : GrowthStop::none;
+    }
     void require_bytes(std::size_t bytes) const {
         if (bytes > options_.max_bytes) fail_too_large(bytes, options_.max_bytes);
     }
@@ -222,6 +245,8 @@ private:
     }
 
     std::size_t next_check_ = 0;  // number of leaves at which memory is checked again
+    bool outgrows_ = false;       // its limit of memory, when it was checked last
+    bool is_adapted_ = false;     // at this moment
 };
 
 }  // namespace controlspace
