@@ -72,12 +72,15 @@ void require_of_metrics(const ControlSpace& space, std::span<const Point> x,
 template <class Answer>
 std::vector<AccessTime> times_of(std::span<const ControlSpace* const> spaces,
                                  std::span<const Point> points, int repeats, Calls calls,
-                                 double shortest_s) {
+                                 double shortest_s, double most_s) {
     std::vector<Answer> answers(points.size());
     const auto sum = [&] { return checksum(std::span<const Answer>(answers)); };
     std::vector<AccessTime> results(spaces.size());
+    std::vector<double> taken(spaces.size(), 0);
     for (int repeat = 0; repeat < repeats; ++repeat) {
         for (std::size_t i = 0; i < spaces.size(); ++i) {
+            if (taken[i] > most_s) continue;
+            const Stopwatch time;
             AccessTime& result = results[i];
             const auto require_same = [&] {
                 if (sum() == result.checksum) return;
@@ -98,6 +101,7 @@ std::vector<AccessTime> times_of(std::span<const ControlSpace* const> spaces,
             } while (seconds < shortest_s);
             result.samples_ns.push_back(
                 seconds * 1e9 / (static_cast<double>(runs) * static_cast<double>(points.size())));
+            taken[i] += time.seconds();
         }
     }
     return results;
@@ -142,12 +146,12 @@ double quartile(std::vector<double> samples, int number) {
 
 std::vector<AccessTime> access_times(std::span<const ControlSpace* const> spaces,
                                      std::span<const Point> points, int repeats, AccessQuery query,
-                                     double shortest_s) {
+                                     double shortest_s, double most_s) {
     if (points.empty()) refuse("access time at no places: give at least one point");
     if (repeats < 1) refuse("{} timed repeats: give at least one", repeats);
     return query.answers == Answers::lengths
-               ? times_of<double>(spaces, points, repeats, query.calls, shortest_s)
-               : times_of<Metric>(spaces, points, repeats, query.calls, shortest_s);
+               ? times_of<double>(spaces, points, repeats, query.calls, shortest_s, most_s)
+               : times_of<Metric>(spaces, points, repeats, query.calls, shortest_s, most_s);
 }
 
 AccessTime access_time(const ControlSpace& space, std::span<const Point> points, int repeats,

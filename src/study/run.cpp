@@ -77,6 +77,8 @@ public:
     }
 
 private:
+    /// Of lengths, or of metrics beside them: random, grid, near, single and walk.
+    static constexpr double kinds_of_access = 5;
     /// An interrupted run loses no more.
     static constexpr double longest_batch_s = 600;
 
@@ -258,9 +260,12 @@ private:
         const Stopwatch time;
         const Finished& any = *timed.front()->finished;
         const auto places = random_points(any.workload.domain, study_.access_points, study_.seed);
+        constexpr double shortest_s = 0.005;
+        const double most_s = study_.max_seconds > 0 ? study_.max_seconds / kinds_of_access
+                                                     : std::numeric_limits<double>::infinity();
         const auto measure = [&](AccessTime Finished::*result, std::span<const Point> x,
                                  AccessQuery query) {
-            auto times = access_times(spaces, x, study_.access_repeats, query);
+            auto times = access_times(spaces, x, study_.access_repeats, query, shortest_s, most_s);
             for (std::size_t i = 0; i < timed.size(); ++i) {
                 (*timed[i]->finished).*result = std::move(times[i]);
             }

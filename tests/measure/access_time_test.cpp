@@ -2,9 +2,11 @@
 
 #include <bit>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <random>
 #include <set>
 #include <stdexcept>
+#include <thread>
 
 #include "controlspace/error.h"
 #include "measure/fake_spaces.h"
@@ -155,6 +157,18 @@ TEST_CASE("A repeat goes on until it has lasted long enough") {
     const double least = 1e6 / time.samples_ns[0] + 1e6 / time.samples_ns[1];
     CHECK(calls - 10 >= least * (1 - 1e-12));
     CHECK(access_time(space, random_points(box, 10, 1), 1, 0).samples_ns.size() == 1);
+}
+
+TEST_CASE("A structure that takes too long gets fewer samples, and others all") {
+    const FunctionSpace fast([](const Point&) { return Metric::isotropic(1); });
+    const FunctionSpace slow([](const Point&) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        return Metric::isotropic(1);
+    });
+    const ControlSpace* const spaces[] = {&slow, &fast};
+    const auto times = access_times(spaces, random_points(box, 1, 1), 5, {}, 0, 0.01);
+    CHECK(times[0].samples_ns.size() == 1);
+    CHECK(times[1].samples_ns.size() == 5);
 }
 
 TEST_CASE("Answers that change are not timed") {

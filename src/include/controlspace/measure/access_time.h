@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -45,12 +46,14 @@ struct AccessTime {
 /// Times `query` of several structures at the same points in turns, so that other load of the
 /// machine affects all of them alike. In each of the `repeats` rounds each structure answers all in
 /// one call untimed, which warms the caches, and then until `shortest_s` have passed, which gives
-/// one sample. The clock is read twice a run (about 50 ns), so the batch should have at least a
-/// thousand points. Throws std::logic_error if answers differ from the first ones, or if lengths
-/// are not those of the structure's metrics; InputError for no points or no repeats.
+/// one sample; a structure that has taken `most_s` gets no further ones. The clock is read twice a
+/// run (about 50 ns), so the batch should have at least a thousand points. Throws std::logic_error
+/// if answers differ from the first ones, or if lengths are not those of the structure's metrics;
+/// InputError for no points or no repeats.
 std::vector<AccessTime> access_times(std::span<const ControlSpace* const> spaces,
                                      std::span<const Point> points, int repeats,
-                                     AccessQuery query = {}, double shortest_s = 0.005);
+                                     AccessQuery query = {}, double shortest_s = 0.005,
+                                     double most_s = std::numeric_limits<double>::infinity());
 
 /// The same for one structure, of metrics in batches.
 AccessTime access_time(const ControlSpace& space, std::span<const Point> points, int repeats,
