@@ -197,7 +197,7 @@ Loop bare_nanovdb(const ControlSpace& field) {
     using Handle = nanovdb::GridHandle<nanovdb::HostBuffer>;
     const auto handle = std::make_shared<Handle>(nanovdb::openToNanoVDB(*float_grid<order>(field)));
     return [handle](std::span<const Point> x, std::span<double> out) {
-        auto read = handle->grid<float>()->getAccessor();
+        auto read = handle->template grid<float>()->getAccessor();
         const auto sampler = nanovdb::createSampler<order>(read);
         for (std::size_t n = 0; n < x.size(); ++n) {
             const Vector t = in_voxels(x[n]) - Vector::Constant(order == 0 ? 0.5 : 0);

@@ -34,18 +34,20 @@ bool all_of_parts(std::size_t count, const Check& check) {
 }
 
 // Beyond its faces by the rounding of places, which decides in which of two cells one is found.
-Box with_margin(const Box& cell) {
+Box with_margin(const Box& cell, const Box& domain) {
     constexpr double ulps = 8 * std::numeric_limits<double>::epsilon();
-    const Vector margin = ulps * cell.low.cwiseAbs().cwiseMax(cell.high.cwiseAbs());
+    const Vector margin =
+        ulps * domain.low.cwiseAbs().cwiseMax(domain.high.cwiseAbs()).cwiseMax(domain.edges());
     return {cell.low - margin, cell.high + margin};
 }
 
 }  // namespace
 
-LatticeFit::LatticeFit(const GoalField& field, std::span<const PointSource> sources,
-                       const Box& domain, const GridKind& kind)
+LatticeFit::LatticeFit(const GoalField& field, const AdaptationGoal& goal, const Box& domain,
+                       const GridKind& kind)
     : field_(field), domain_(domain), kind_(kind) {
     constexpr std::size_t most_suspects = 4096;
+    const auto sources = goal.sources;
     const std::size_t step = sources.size() / most_suspects + 1;
     for (std::size_t i = 0; i < sources.size(); i += step) {
         suspects_.push_back(sources[i].position);
@@ -54,6 +56,7 @@ LatticeFit::LatticeFit(const GoalField& field, std::span<const PointSource> sour
     constexpr std::uint64_t everywhere = 100'000, near_sources = 100'000;
     std::vector<Point> x;
     for (const PointSource& source : sources) x.push_back(source.position);
+    for (const Point& place : goal.places) x.push_back(nearest_in(domain, place));
     for (std::uint64_t k = 0; k < everywhere; ++k) x.push_back(place_in(domain, k));
     for (std::uint64_t k = 0; k < near_sources && !sources.empty(); ++k) {
         const PointSource& source = sources[k * sources.size() / near_sources];
@@ -61,7 +64,8 @@ LatticeFit::LatticeFit(const GoalField& field, std::span<const PointSource> sour
         const Box around{source.position - reach, source.position + reach};
         x.push_back(nearest_in(domain, place_in(around, k)));
     }
-    probes_ = make_probes(field, std::move(x));
+    at_probes_ = sample_parallel(field, x);
+    probes_ = std::move(x);
 }
 
 template <Interpolation interpolation>
@@ -84,12 +88,12 @@ FittedLattice LatticeFit::fitted(const Voxels& voxels, bool only_if_met) const {
     if (!field_.has_ranges()) {
         if (only_if_met && !may_keep_probes(stencil)) return fit;
         set_to_field();
-        std::vector<double> worst(probes_.points.size());
+        std::vector<double> worst(probes_.size());
         fit.met = all_of_parts(worst.size(), [&](std::size_t first, std::size_t end) {
             bool holds = true;
             for (std::size_t i = first; i < end; ++i) {
-                worst[i] = directional_nonconformity(stencil.value(probes_.points[i], at_nodes),
-                                                     probes_.reference[i]);
+                worst[i] =
+                    directional_nonconformity(stencil.value(probes_[i], at_nodes), at_probes_[i]);
                 holds = holds && worst[i] <= target;
             }
             return holds || !only_if_met;
@@ -101,7 +105,7 @@ FittedLattice LatticeFit::fitted(const Voxels& voxels, bool only_if_met) const {
 
     // The value of a constant cell, and how far it departs at most.
     const auto constant_in = [&](const Box& cell, NearbyField& nearby) {
-        nearby.enter(with_margin(cell), false);
+        nearby.enter(with_margin(cell, domain_), false);
         const auto [least, most] = nearby.range();
         const Metric middle = kept(Metric::isotropic(std::sqrt(least * most)));
         return std::pair(middle, std::max(nonconformity(middle, Metric::isotropic(most)),
@@ -200,18 +204,17 @@ template <class Stencil>
 bool LatticeFit::may_keep_probes(const Stencil& stencil) const {
     constexpr std::size_t few = 512;
     const Lattice lattice = stencil.lattice();
-    const std::size_t step = probes_.points.size() / few + 1;
-    return all_of_parts(probes_.points.size() / step, [&](std::size_t first, std::size_t end) {
+    const std::size_t step = probes_.size() / few + 1;
+    return all_of_parts(probes_.size() / step, [&](std::size_t first, std::size_t end) {
         for (std::size_t n = first; n < end; ++n) {
             const std::size_t i = n * step;
-            const Metric own = stencil.value(probes_.points[i], [&](auto... ijk) {
+            const Metric own = stencil.value(probes_[i], [&](auto... ijk) {
                 Metric m;
                 const Point x = lattice.position(lattice.index(ijk...));
                 field_.sample({&x, 1}, {&m, 1});
                 return kind_.stored != nullptr ? kind_.stored(m) : m;
             });
-            if (directional_nonconformity(own, probes_.reference[i]) > field_.target())
-                return false;
+            if (directional_nonconformity(own, at_probes_[i]) > field_.target()) return false;
         }
         return true;
     });
@@ -228,39 +231,39 @@ FittedLattice LatticeFit::at(const Voxels& voxels) const { return fitted(voxels,
 FittedLattice LatticeFit::coarsest(
     const std::function<std::optional<Voxels>(double edge)>& voxels_of) const {
     const double longest = domain_.edges().maxCoeff();
-    const auto with = [&](std::int64_t n) { return voxels_of(longest / static_cast<double>(n)); };
-    std::int64_t refused = 0, n = 1;
+    const auto with = [&](std::int64_t n) -> std::optional<Voxels> {
+        auto voxels = voxels_of(longest / static_cast<double>(n));
+        if (voxels && !field_.has_ranges() && voxels->cells.prod() > most_cells_by_probes) {
+            voxels.reset();
+        }
+        return voxels;
+    };
+    // Cells along the longest edge that are too few, and those that will do or outgrow a limit.
+    std::int64_t refused = 0, most = 1;
     std::optional<FittedLattice> best;
-    std::optional<Voxels> finest;
-    // Each node and probe of tensors takes a search of its own.
-    constexpr double most_nodes_by_probes = 1 << 21;
-    for (;; refused = n, n *= 2) {
-        const auto voxels = with(n);
-        if (!voxels) break;
-        if (!field_.has_ranges() && voxels->cells.prod() > most_nodes_by_probes) break;
-        finest = voxels;
+    Voxels finest = *with(1);
+    const auto is_enough = [&](std::int64_t n) {
+        auto voxels = with(n);
+        if (!voxels) return true;
         FittedLattice fit = fitted(*voxels, true);
-        if (fit.met) {
-            best = std::move(fit);
-            break;
+        if (!fit.met) {
+            finest = std::move(*voxels);
+            return false;
         }
+        best = std::move(fit);
+        return true;
+    };
+    while (!is_enough(most)) {
+        refused = most;
+        most *= 2;
     }
-    if (!best) {
-        if (!finest) finest = voxels_of(longest);
-        return at(*finest);
+    // To about a hundredth: larger voxels that are no multiple may do by chance.
+    while (most - refused > 1 + refused / 100) {
+        const std::int64_t middle = refused + (most - refused) / 2;
+        (is_enough(middle) ? most : refused) = middle;
     }
-    // To about a hundredth: coarser ones that are no multiple may do by chance.
-    while (n - refused > 1 + refused / 100) {
-        const std::int64_t middle = refused + (n - refused) / 2;
-        FittedLattice fit = fitted(*with(middle), true);
-        if (fit.met) {
-            best = std::move(fit);
-            n = middle;
-        } else {
-            refused = middle;
-        }
-    }
-    return *best;
+    if (best) return std::move(*best);
+    return at(finest);
 }
 
 }  // namespace controlspace

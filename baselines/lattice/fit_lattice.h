@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "baselines/lattice/lattice_data.h"
-#include "controlspace/measure/accuracy.h"
 #include "controlspace/space/detail/goal_field.h"
 
 namespace controlspace {
@@ -27,14 +26,19 @@ struct FittedLattice {
 /// domain, at sources and beside them.
 class LatticeFit {
 public:
-    LatticeFit(const GoalField& field, std::span<const PointSource> sources, const Box& domain,
+    LatticeFit(const GoalField& field, const AdaptationGoal& goal, const Box& domain,
                const GridKind& kind);
+
+    /// Lattices of tensors and continuous fields are tried up to so many cells: each node takes a
+    /// search of its own.
+    static constexpr double most_cells_by_probes = 1 << 21;
 
     /// With these voxels.
     FittedLattice at(const Voxels& voxels) const;
     /// With about the largest that keep the field's target, found by halving, then bisection;
-    /// `voxels_of(edge)` are those with such edges, none where they would outgrow the memory. Where
-    /// none keep it, with the finest.
+    /// `voxels_of(edge)` are those with such edges, none where they would outgrow the memory, or
+    /// the search is to end; not for one cell along the longest edge. Where none keep it, with the
+    /// finest.
     FittedLattice coarsest(
         const std::function<std::optional<Voxels>(double edge)>& voxels_of) const;
 
@@ -49,7 +53,8 @@ private:
     Box domain_;
     GridKind kind_;
     std::vector<Point> suspects_;  ///< where lattices that are too coarse mostly show it
-    Probes probes_;                ///< where there are no bounds
+    std::vector<Point> probes_;    ///< where there are no bounds, and the field there
+    std::vector<Metric> at_probes_;
 };
 
 }  // namespace controlspace

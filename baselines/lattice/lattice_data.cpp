@@ -136,30 +136,38 @@ GradationReport LatticeData::regrade() {
 }
 
 AdaptationReport LatticeData::adapt(const AdaptationGoal& goal) {
-    // Voxels that are joined take values within this factor of each other.
+    // Of lengths, voxels that are joined take values within this factor of each other.
     const double joined = largest_factor_within(options_.prune_delta);
     const double allowed = largest_factor_within(goal.target);
     AdaptationGoal own = goal;
-    if (joined > 1) {
+    if (joined > 1 && chooses_voxels_) {
         if (!(allowed > joined)) {
             refuse(
-                "voxels that are joined within prune_delta {} cannot keep a target of {}: give "
-                "a smaller prune_delta",
+                "voxels that are joined within prune_delta {} cannot keep a target of {}: give a "
+                "smaller prune_delta",
                 options_.prune_delta, goal.target);
         }
         own.target = nonconformity_of_factor(allowed / joined);
     }
     const GoalField field(own, domain());
-    const LatticeFit fit(field, goal.sources, domain(), kind_);
-    FittedLattice fitted = !chooses_voxels_
-                               ? fit.at(voxels_)
-                               : fit.coarsest([&](double voxel) -> std::optional<Voxels> {
-                                     SpaceOptions options = options_;
-                                     options.voxel = voxel;
-                                     Voxels voxels = voxels_of(options);
-                                     if (!voxels.remark.empty()) return std::nullopt;
-                                     return voxels;
-                                 });
+    if (joined > 1 && chooses_voxels_ && !field.has_ranges()) {
+        refuse(
+            "voxels are joined by what bounds nothing along each direction of a tensor: give "
+            "voxels, or prune_delta 0");
+    }
+    const LatticeFit fit(field, goal, domain(), kind_);
+    GrowthStop stop = GrowthStop::none;
+    const auto next = [&](double voxel) -> std::optional<Voxels> {
+        SpaceOptions options = options_;
+        options.voxel = voxel;
+        Voxels voxels = voxels_of(options);
+        const bool is_first = voxel == domain().edges().maxCoeff();
+        if (!is_first && options_.growth.is_late()) stop = GrowthStop::time;
+        if (!voxels.remark.empty()) stop = GrowthStop::memory;
+        if (stop != GrowthStop::none) return std::nullopt;
+        return voxels;
+    };
+    FittedLattice fitted = chooses_voxels_ ? fit.coarsest(next) : fit.at(voxels_);
     if (chooses_voxels_) {
         voxels_ = std::move(fitted.voxels);
         options_.voxel = domain().edges().cwiseQuotient(voxels_.cells).maxCoeff();
@@ -173,16 +181,23 @@ AdaptationReport LatticeData::adapt(const AdaptationGoal& goal) {
     report.is_bound = fitted.is_bound;
     report.met = fitted.met;
     if (joined > 1) {
-        report.reached = nonconformity_of_factor(largest_factor_within(fitted.reached) * joined);
-        if (report.met) report.reached = std::min(report.reached, goal.target);
+        const double reached =
+            nonconformity_of_factor(largest_factor_within(fitted.reached) * joined);
+        report.is_bound = fitted.is_bound && chooses_voxels_;
+        report.met = report.met && (chooses_voxels_ || reached <= goal.target);
+        report.reached = report.met ? std::min(reached, goal.target) : reached;
     }
+    if (stop == GrowthStop::time || !report.met) report.stop = stop;
     if (!report.met) {
+        const std::string tried = fmt::format(
+            "no finer grid than this one of {:.0f} cells was tried", voxels_.cells.prod());
         report.shortfall =
-            chooses_voxels_
-                ? fmt::format("no finer grid than this one of {:.0f} cells was tried: raise the {}",
-                              voxels_.cells.prod(),
-                              field.has_ranges() ? "target, or the cap on memory" : "target")
-                : "a grid keeps the voxels that were given: make them smaller";
+            !chooses_voxels_     ? "a grid keeps the voxels that were given: make them smaller"
+            : field.has_ranges() ? tried + ": raise the target, or the cap on memory"
+                                 : fmt::format(
+                                       "{}, of tensors and continuous fields up to {:.0f}: "
+                                       "raise the target, or give voxels",
+                                       tried, LatticeFit::most_cells_by_probes);
     }
     return report;
 }

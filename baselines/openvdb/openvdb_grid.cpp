@@ -1,5 +1,6 @@
 #include <optional>
 #include <type_traits>
+#include <vector>
 
 #include "baselines/lattice/grid_space.h"
 #include "baselines/openvdb/catalogue.h"
@@ -59,7 +60,13 @@ public:
         if constexpr (std::is_same_v<M, Metric>) {
             fill(*data, data->field());
         } else {
-            stored_.emplace(data->field());
+            if (is_code && data->options().prune_delta > 0) {
+                // Voxels are joined first: what codes stand for depends on the lengths that are
+                // left, so that they are the same after a file.
+                stored_.emplace(joined(data));
+            } else {
+                stored_.emplace(data->field());
+            }
             fill(*data, stored_->items());
             stored_->drop_items();
         }
@@ -93,12 +100,25 @@ public:
     }
 
 private:
+    static constexpr bool is_code = std::is_integral_v<typename Value::Type>;
+
+    static std::vector<Metric> joined(const std::shared_ptr<const LatticeData>& data) {
+        const VdbTree<StoredLength<double>> tree(data);
+        const auto read = tree.reader();
+        const Lattice lattice = data->lattice();
+        std::vector<Metric> metrics(lattice.size());
+        for (NodeIndex n = 0; n < metrics.size(); ++n) {
+            const auto [i, j, k] = lattice.coordinates(n);
+            metrics[n] = read(i, j, k);
+        }
+        return metrics;
+    }
     void fill(const LatticeData& data, const auto& items) {
         fill_densely(tree_, data.lattice(), [&](NodeIndex node) { return Value::of(items[node]); });
         const double delta = data.options().prune_delta;
         // Voxels that fill up the outermost leaves are inactive, and nobody reads them.
         if (delta > 0) {
-            prune_metrics(tree_, delta,
+            prune_metrics(tree_, is_code ? 0 : delta,
                           [value = value()](const auto& v) { return Metric(value(v)); });
         }
     }

@@ -11,7 +11,7 @@
 namespace controlspace {
 
 AdaptationReport adapt_for_precision(
-    const AdaptationGoal& goal, double longest,
+    const AdaptationGoal& goal, double longest, bool is_convex,
     const std::function<AdaptationReport(const AdaptationGoal&)>& adapt,
     const std::function<std::vector<Metric>()>& held) {
     if (goal.precision == Precision::doubles) return adapt(goal);
@@ -34,7 +34,11 @@ AdaptationReport adapt_for_precision(
             goal.precision == Precision::log8 ? "codes of 16 bits or floats" : "floats");
     };
     const bool depends_on_range = goal.precision == Precision::log8;
-    double expected = rounding_of(goal.precision, are_lengths, shortest, longest);
+    const auto rounding_for = [&](double least, double most) {
+        const double rounding = rounding_of(goal.precision, are_lengths, least, most);
+        return is_convex ? rounding : rounding * rounding;
+    };
+    double expected = rounding_for(shortest, longest);
     if (!depends_on_range) require_fine(expected);
     expected = std::min(expected, most_rounding);
 
@@ -48,14 +52,21 @@ AdaptationReport adapt_for_precision(
         if (depends_on_range) {
             const std::vector<Metric> metrics = held();
             const auto [least, most] = std::ranges::minmax(metrics, {}, &Metric::xx);
-            rounding = rounding_of(goal.precision, are_lengths, least.xx, most.xx);
+            rounding = rounding_for(least.xx, most.xx);
             require_fine(rounding);
         }
-        if (rounding <= expected || round == most_rounds) {
+        const bool is_done = rounding <= expected;
+        if (is_done || round == most_rounds || report.stop != GrowthStop::none) {
+            if (report.met && !is_done) {
+                report.met = report.is_bound = false;
+                report.shortfall =
+                    "codes round by more in each tree that makes room for them: use "
+                    "codes of 16 bits or floats";
+            }
+            if (std::isinf(report.reached)) return report;
             // Where the target is met it is to be kept, whichever way the quotient is rounded.
             const double reached =
                 nonconformity_of_factor(largest_factor_within(report.reached) * rounding);
-            report.met = report.met && rounding <= expected;
             report.reached = report.met ? std::min(reached, goal.target) : reached;
             return report;
         }

@@ -37,7 +37,7 @@ AdaptationReport NodeBuilder::adapt(const AdaptationGoal& goal) {
     report.reached =
         field.largest_departure(domain(), [&](auto x, auto metrics) { space->sample(x, metrics); });
     report.met = report.reached <= goal.target;
-    if (!report.met) report.shortfall = "a grid keeps its voxels: make them smaller";
+    if (!report.met) report.shortfall = "nodes stay where they are: more are needed";
     return report;
 }
 

@@ -209,8 +209,9 @@ std::unique_ptr<ControlSpaceBuilder> load_builder(const std::filesystem::path& f
                                                   std::span<const CatalogueEntry> structures) {
     auto builder = open_control_space(file, structures).builder;
     if (!builder) {
-        throw InputError(file.string() +
-                         " holds a compact form, which is read-only: save its builder");
+        throw InputError(
+            file.string() +
+            " holds what is only read: save its builder, or build it with --precision as-made");
     }
     return builder;
 }

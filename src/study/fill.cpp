@@ -89,6 +89,9 @@ void remark_on_all(Creation& creation, const Study& study, const Case& c, const 
                                          "g_r {:.4g}",
                                          left, c.g_r));
     }
+    if (const auto& own = entry_of(c, rows.structures).own_precision; !own.empty()) {
+        add_remark(creation, "in " + own);
+    }
     const std::vector<std::string> names = settings_without_effect(study, c, rows);
     if (!names.empty()) {
         add_remark(creation, fmt::format("without effect: {}", fmt::join(names, ", ")));
@@ -99,7 +102,7 @@ void remark_on_all(Creation& creation, const Study& study, const Case& c, const 
 void note_coarser(Creation& creation, const CatalogueEntry& entry, const ControlSpace& space,
                   const RowLimits& limits) {
     if (!entry.has<VoxelSize>() || space.footprint().remark.empty()) return;
-    creation.stopped = "at " + (limits.memory.empty() ? "max_memory" : limits.memory);
+    creation.stopped = limits.place_of(GrowthStop::memory, {});
 }
 
 // Whether the leaf of a source has an edge longer than tau in its metric.
@@ -123,9 +126,35 @@ std::string RowLimits::place_of(GrowthStop stop, const Case& c) const {
         case GrowthStop::time:
             return "at " + time;
         case GrowthStop::memory:
-            return "at " + memory;
+            return "at " + (memory.empty() ? "max_memory" : memory);
     }
     return "";
+}
+
+/// What making a structure takes for each byte of the finished one: limits are of that. Builders
+/// hold metrics in doubles, those of grids room for gradation too; leaves some 16 bytes of
+/// topology.
+static double bytes_while_made(const CatalogueEntry& entry, const Case& c,
+                               const Workload& workload) {
+    const bool is_grid = entry.has<VoxelSize>();
+    const double held = is_grid ? 48 + 53 : 48 + 16;
+    double number = 8;
+    switch (precision_of(c.precision).value_or(Precision::doubles)) {
+        case Precision::doubles:
+            break;
+        case Precision::floats:
+            number = 4;
+            break;
+        case Precision::log16:
+            number = 2;
+            break;
+        case Precision::log8:
+            number = 1;
+            break;
+    }
+    const bool is_as_made = c.precision.value_or(StoredIn::as_made) == StoredIn::as_made;
+    const double numbers = is_as_made || has_tensors(workload) ? 6 : 1;
+    return held / (numbers * number + (is_grid ? 0 : 16));
 }
 
 Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
@@ -144,8 +173,12 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     Stopwatch time = phase(is_adapted ? "adaptation" : "insertion");
     SpaceOptions options = space_options(study, c, workload, rows.parameters);
     options.growth = limits.growth;
-    if (entry.has<VoxelSize>()) {
-        options.max_bytes = std::min(options.max_bytes, limits.growth.bytes);
+    const double factor = bytes_while_made(entry, c, workload);
+    const auto most = static_cast<double>(options.max_bytes);
+    if (static_cast<double>(limits.growth.bytes) * factor < most) {
+        options.growth.bytes =
+            static_cast<std::size_t>(static_cast<double>(limits.growth.bytes) * factor);
+        if (entry.has<VoxelSize>()) options.max_bytes = options.growth.bytes;
     }
     filled.builder = entry.make(options);
     if (is_adapted) {
@@ -154,15 +187,9 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
         note_coarser(creation, entry, *filled.space, limits);
         creation.insert_s = {time.seconds()};
         creation.gradation_s = {0};
-        if (c.target_delta && entry.has<VoxelSize>() && !c.voxel) {
-            options.growth = {};
-            if (const auto recipe = recipe_of(*filled.space)) options.voxel = recipe->options.voxel;
-            add_remark(creation, fmt::format("voxel {:.4g}", options.voxel));
-            time = {};
-            Filled again{.builder = entry.make(options), .space = {}, .creation = {}};
-            adapt(again, c, workload, goal_sources, limits);
-            again.builder->build({.precision = precision_of(c.precision)});
-            creation.known_s = {time.seconds()};
+        if (const auto recipe = recipe_of(*filled.space);
+            recipe && c.target_delta && entry.has<VoxelSize>() && !c.voxel) {
+            add_remark(creation, fmt::format("voxel {:.4g}", recipe->options.voxel));
         }
         add_largest_ratio(creation.gradation, *filled.space, GradationLaw::cone,
                           Neighbourhood::faces);

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "controlspace/space/control_space_file.h"
 #include "controlspace/space/sample_parallel.h"
 #include "measure/stopwatch.h"
 #include "refuse.h"
@@ -28,7 +29,6 @@ void notify(const std::function<Callback>& callback, Arguments&&... arguments) {
 void append(Creation& creation, const Creation& again) {
     creation.insert_s.push_back(again.insert_s.front());
     creation.gradation_s.push_back(again.gradation_s.front());
-    if (!again.known_s.empty()) creation.known_s.push_back(again.known_s.front());
 }
 
 /// A case of a batch: its structure where it could be made, to be timed with the others.
@@ -78,7 +78,7 @@ public:
 
 private:
     /// Of lengths, or of metrics beside them: random, grid, near, single and walk.
-    static constexpr double kinds_of_access = 5;
+    static constexpr double kinds_of_access = 7;
     /// An interrupted run loses no more.
     static constexpr double longest_batch_s = 600;
 
@@ -175,8 +175,7 @@ private:
                     stopped = "at " + limits.time;
                     refuse("stopped {}", stopped);
                 }
-                const auto space =
-                    make_and_fill(study_, trial, rows_, workload, {}, limits).space;
+                const auto space = make_and_fill(study_, trial, rows_, workload, {}, limits).space;
                 return Trial{std::max(accuracy(*space, probes.coarse).max,
                                       accuracy(*space, probes.fine).max),
                              static_cast<double>(space->footprint().bytes_total())};
@@ -214,6 +213,7 @@ private:
                 }
             }
         }
+        time_with_known_voxels(c, workload, *member.space, creation);
         notify(observer_.phase_started, "accuracy");
         member.finished.emplace(Finished{finished_before_ + i, study_, c, workload, probes,
                                          *member.space, std::move(creation),
@@ -225,6 +225,23 @@ private:
         finished.source_accuracy = source_accuracy(*member.space, sources);
         finished.steepness = steepness(*member.space, workload.domain, sources, study_.seed);
         finished.access_batch = finished_before_ + i + 1 - batch_.size();
+    }
+
+    /// The time of a grid whose voxels were searched for its target, made again with them.
+    void time_with_known_voxels(const Case& c, const Workload& workload, const ControlSpace& space,
+                                Creation& creation) {
+        const auto recipe = recipe_of(space);
+        if (!recipe || !c.target_delta || c.voxel || !prepared_.entry(c).has<VoxelSize>() ||
+            !creation.shortfall.empty() || !creation.stopped.empty()) {
+            return;
+        }
+        Case known = c;
+        known.voxel = recipe->options.voxel;
+        for (std::size_t i = 0; i < creation.insert_s.size(); ++i) {
+            const Filled filled = make_and_fill(study_, known, rows_, workload);
+            creation.known_s.push_back(filled.creation.insert_s.front() +
+                                       filled.creation.gradation_s.front());
+        }
     }
 
     /// Times the access of all structures of the batch in turns, and completes the rows.

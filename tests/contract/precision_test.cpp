@@ -128,6 +128,47 @@ STRUCTURE_CASE(is_linear, "what is read back keeps the target, in every precisio
     }
 }
 
+STRUCTURE_CASE(is_linear, "what is stopped at once says so, in every precision") {
+    const Work work = isotropic_sphere();
+    const auto precision =
+        GENERATE(Precision::doubles, Precision::floats, Precision::log16, Precision::log8);
+    SpaceOptions options = work.options();
+    options.growth.deadline = GrowthLimit::Clock::time_point::min();
+    const auto space = editable(structure.make(options));
+    const AdaptationReport report = space->adapt(
+        {.sources = work.sources, .continuous = nullptr, .target = 0.05, .precision = precision});
+    CHECK_FALSE(report.met);
+    CHECK(report.stop == GrowthStop::time);
+    CHECK(report.reached > 0.05);
+    CHECK_FALSE(report.shortfall.empty());
+}
+
+bool is_quadratic(const CatalogueEntry& structure) {
+    return has_compact_form(structure) && structure.order == 2;
+}
+
+STRUCTURE_CASE(is_quadratic, "codes make room for weights beyond 1, too") {
+    const Work work = isotropic_sphere();
+    constexpr double target = 0.05;
+    const auto space = editable(structure.make(work.options()));
+    const AdaptationReport report = space->adapt({.sources = work.sources,
+                                                  .continuous = nullptr,
+                                                  .target = target,
+                                                  .precision = Precision::log8});
+    CHECK(report.met);
+    const auto built = space->compact(Precision::log8);
+    const auto unrounded = space->compact(Precision::doubles);
+    const std::vector<Point> x = random_points(work.domain, 20'000, 3);
+    const double rounded = largest_factor(*built, *unrounded, x);
+    CHECK(rounded <= std::pow(half_step(*unrounded), 2) * (1 + 1e-12));
+    double worst = 0;
+    for (const Point& p : x) {
+        worst = std::max(
+            worst, nonconformity(built->metric_at(p), Metric::isotropic(exact_length(work, p))));
+    }
+    CHECK(worst <= target);
+}
+
 STRUCTURE_CASE(is_linear, "codes that take more than a third of what a target allows are refused") {
     const Work work = oblong_box();
     const auto adapt = [&](double target, Precision precision) {

@@ -102,6 +102,18 @@ STRUCTURE_CASE(every_structure,
     const auto adapted = load_control_space(scratch / "adapted.ctrl", structures());
     CHECK(checksum(answers(*adapted)) == checksum(answers(*space)));
     check_alike(adapted->footprint(), space->footprint());
+    if (!structure.has<Pruning>() || !has_compact_form(structure)) return;
+    // What codes stand for depends on the lengths that are left.
+    const auto pruned = editable(structure.make(options));
+    pruned->insert(work.sources);
+    pruned->grade({});
+    for (const Precision precision : {Precision::floats, Precision::log16, Precision::log8}) {
+        CAPTURE(static_cast<int>(precision));
+        const auto compact = pruned->compact(precision);
+        save_control_space(scratch / "pruned.ctrl", *compact);
+        const auto again = load_control_space(scratch / "pruned.ctrl", structures());
+        CHECK(answers(*again) == answers(*compact));
+    }
 }
 
 }  // namespace controlspace::saving_test

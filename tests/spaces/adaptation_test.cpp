@@ -420,7 +420,7 @@ TEST_CASE("a target out of reach is told, with what was reached") {
     }
     for (const CatalogueEntry& entry : structures()) {
         if (entry.id != "uniform-nearest") continue;
-        const auto space = editable(entry.make({.domain = domain, .finest_length = 0.5}));
+        const auto space = editable(entry.make({.domain = domain, .voxel = 0.5}));
         const AdaptationReport report = space->adapt({sources, nullptr, g, 0.1});
         CHECK_FALSE(report.met);
         CHECK(report.shortfall.find("voxels") != std::string::npos);

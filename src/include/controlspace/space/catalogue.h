@@ -50,6 +50,8 @@ struct CatalogueEntry {
     std::unique_ptr<ControlSpaceBuilder> (*construct)(const SpaceOptions&) = nullptr;
     std::vector<Capability> capabilities = {};
     std::string former_id = {};  ///< still understood in options and study files
+    /// Without CompactForm: the numbers that it stores, for rows of results.
+    std::string own_precision = {};
 
     /// A builder of a new structure. Throws InputError where options are invalid.
     std::unique_ptr<ControlSpaceBuilder> make(const SpaceOptions& options) const;

@@ -54,7 +54,8 @@ public:
 
     /// Replaces all that was held by the field of `goal`, with few cells that keep within its
     /// target. A tree is built anew from its root, without regard to l_min; a grid chooses the
-    /// largest voxels that keep the target, unless SpaceOptions::voxel gives them. The report
+    /// largest voxels that keep the target, unless SpaceOptions::voxel gives them (one that is
+    /// loaded keeps those that were chosen). The report
     /// states what could not be reached. Throws InputError for a goal that is not valid, and where
     /// the structure would outgrow its cap on memory; the field is undefined then.
     virtual AdaptationReport adapt(const AdaptationGoal& goal) = 0;

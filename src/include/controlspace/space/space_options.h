@@ -74,7 +74,7 @@ struct SpaceOptions {
     /// InputError. The sources that a builder keeps to grade by them, up to 72 bytes each, and the
     /// search through them while it does, are not counted.
     std::size_t max_bytes = std::size_t{4} << 30;
-    GrowthLimit growth = {};  ///< trees only; not saved
+    GrowthLimit growth = {};  ///< grids: the search for voxels; not saved
 };
 
 /// M_max, which a new control space holds everywhere: H I, H half of the domain's diagonal, or

@@ -179,9 +179,9 @@ public:
         const AdaptationGoal wanted = bounded(goal);
         if constexpr (has_nodes) {
             const double longest = largest_metric(domain(), wanted.h_max).xx;
-            const AdaptationReport report = adapt_for_precision(wanted, longest, adapt, [this] {
-                return data_->control_nodes(Neighbourhood::faces).metrics;
-            });
+            const AdaptationReport report = adapt_for_precision(
+                wanted, longest, is_convex(), adapt,
+                [this] { return data_->control_nodes(Neighbourhood::faces).metrics; });
             if (this->recipe()) {
                 Recipe recipe = *this->recipe();
                 recipe.options.voxel = data_->options().voxel;  // a grid may have chosen it
@@ -220,6 +220,11 @@ public:
     void load(const StateReader& state) override { edit().load(state); }
 
 private:
+    static constexpr bool is_convex() {
+        if constexpr (requires { Data::extrapolates; }) return !Data::extrapolates;
+        return true;
+    }
+
     // What they request counts in gradation, whether they change nodes or not.
     InsertionReport insert_and_keep(std::span<const PointSource> sources) {
         if (!this->given()) require_alike_growth(sources);

@@ -38,6 +38,9 @@ class MetricTree : public GrowingTree<Node, Storage> {
     using Base::is_finished_, Base::options_, Base::storage_, Base::topology_;
 
 public:
+    /// Whether weights of nodes reach beyond 0 and 1.
+    static constexpr bool extrapolates = requires { Storage::extrapolates; };
+
     explicit MetricTree(const SpaceOptions& options, bool balanced = false)
         : Base(options, balanced),
           collects_(!options.vertices_in_turn && !options.takes_later_sources) {}
