@@ -160,7 +160,8 @@ public:
     /// some points at a time, so that metrics are on their way while those before them are blended.
     /// `read`, a storage's reader, provides
     ///   prepare(cell) -> hint            a first step to the nodes of a cell
-    ///   find<corners>(cell, hint) -> at  where their metrics are, which it prefetches
+    ///   find<corners>(cell, hint) -> at  where their metrics are, which it prefetches unless it is
+    ///                                    find<corners, false>: they are read at once
     ///   metric(at, corner)               one of them, a Metric or what is stored in its place
     template <class Value, class Reader>
     void sample(std::span<const Point> x, const Reader& read, std::span<Value> out) const {
@@ -193,7 +194,7 @@ public:
             cell[static_cast<std::size_t>(a)] = static_cast<std::int32_t>(i);
             t[a] = in_cells - i;
         }
-        return between<Value>(read, read.template find<corners>(cell, read.prepare(cell)),
+        return between<Value>(read, read.template find<corners, false>(cell, read.prepare(cell)),
                               [&] { return corner_weights(t); });
     }
 

@@ -1,12 +1,13 @@
 #pragma once
 
-#include <openvdb/tree/LeafManager.h>
 #include <openvdb/tree/Tree.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "baselines/lattice/stencil.h"
 #include "controlspace/geometry/point.h"
@@ -38,8 +39,11 @@ void fill_densely(Tree& tree, const Lattice& lattice, ValueOf&& value_of) {
     const auto [nx, ny, nz] = lattice.nodes;
     tree.sparseFill({voxel(0, 0, 0), voxel(nx - 1, ny - 1, nz - 1)}, tree.background());
     tree.voxelizeActiveTiles();
-    openvdb::tree::LeafManager<Tree> leaves(tree);
-    leaves.foreach ([&](typename Tree::LeafNodeType& leaf, std::size_t) {
+    // In place of a LeafManager, which takes long to compile.
+    std::vector<typename Tree::LeafNodeType*> leaves;
+    tree.getNodes(leaves);
+    tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t n) {
+        typename Tree::LeafNodeType& leaf = *leaves[n];
         for (auto value = leaf.beginValueOn(); value; ++value) {
             const openvdb::Coord c = value.getCoord();
             const NodeIndex node =
@@ -81,7 +85,7 @@ public:
         return leaf;
     }
     /// Where the values at the cell's corners are, which it prefetches.
-    template <std::size_t corners>
+    template <std::size_t corners, bool ahead = true>
     auto find(const Cell& cell, const Leaf* leaf) const {
         constexpr auto side = static_cast<std::int32_t>(Leaf::DIM);
         const auto within = [&](std::size_t a) { return cell[a] & (side - 1); };
@@ -99,7 +103,9 @@ public:
                 values[corner] = &value(cell[0] + step.x(), cell[1] + step.y(), cell[2] + step.z());
             }
         }
-        for (const Value* value : values) prefetch(value);
+        if constexpr (ahead) {
+            for (const Value* value : values) prefetch(value);
+        }
         return values;
     }
 

@@ -46,10 +46,10 @@ public:
         Leaves prepare(const Cell& cell) const {
             return {diagonals_.prepare(cell), off_diagonals_.prepare(cell)};
         }
-        template <std::size_t corners>
+        template <std::size_t corners, bool ahead = true>
         auto find(const Cell& cell, const Leaves& leaves) const {
-            return std::pair(diagonals_.find<corners>(cell, leaves.first),
-                             off_diagonals_.find<corners>(cell, leaves.second));
+            return std::pair(diagonals_.find<corners, ahead>(cell, leaves.first),
+                             off_diagonals_.find<corners, ahead>(cell, leaves.second));
         }
         Metric metric(const auto& at, std::size_t corner) const {
             return metric_of(*at.first[corner], *at.second[corner]);

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <openvdb/tree/NodeManager.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <optional>
 #include <type_traits>
+#include <vector>
 
 #include "baselines/openvdb/openvdb_value.h"
 #include "controlspace/metric/intersection.h"
@@ -101,8 +102,15 @@ private:
 template <class Tree, class Read>
 void prune_metrics(Tree& tree, double delta, const Read& read) {
     tree.clearAllAccessors();
-    openvdb::tree::NodeManager<Tree, Tree::DEPTH - 2> nodes(tree);
-    nodes.foreachBottomUp(detail::Prune<Tree, Read>(delta, read));
+    const detail::Prune<Tree, Read> prune(delta, read);
+    using Upper = typename Tree::RootNodeType::ChildNodeType;
+    const auto prune_all = [&]<class Node>(std::vector<Node*> nodes) {
+        tree.getNodes(nodes);
+        tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t i) { prune(*nodes[i]); });
+    };
+    prune_all(std::vector<typename Upper::ChildNodeType*>());
+    prune_all(std::vector<Upper*>());
+    prune(tree.root());
 }
 
 }  // namespace controlspace

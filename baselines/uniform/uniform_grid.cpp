@@ -37,9 +37,11 @@ public:
             return item(static_cast<std::size_t>(cell[0]), static_cast<std::size_t>(cell[1]),
                         static_cast<std::size_t>(cell[2]));
         }
-        template <std::size_t corners>
+        template <std::size_t corners, bool ahead = true>
         const Item* find(const Cell&, const Item* low) const {
-            for (std::size_t corner = 0; corner < corners; ++corner) prefetch(at(low, corner));
+            for (std::size_t corner = 0; ahead && corner < corners; ++corner) {
+                prefetch(at(low, corner));
+            }
             return low;
         }
         decltype(auto) metric(const Item* low, std::size_t corner) const {

@@ -33,7 +33,7 @@ public:
         return accessor_.getValue({static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)});
     }
     const Leaf* prepare(const Cell& cell) const { return accessor_.probeLeaf(coord(cell)); }
-    template <std::size_t corners>
+    template <std::size_t corners, bool ahead = true>
     Values<corners> find(const Cell& cell, const Leaf* leaf) const {
         constexpr auto side = static_cast<int>(Leaf::DIM);
         Values<corners> found;
@@ -48,7 +48,7 @@ public:
             } else {
                 found[corner] = value(*leaf, ijk);
             }
-            prefetch(found[corner]);
+            if constexpr (ahead) prefetch(found[corner]);
         }
         return found;
     }
@@ -128,10 +128,10 @@ public:
         Leaves prepare(const Cell& cell) const {
             return {diagonals_.prepare(cell), off_diagonals_.prepare(cell)};
         }
-        template <std::size_t corners>
+        template <std::size_t corners, bool ahead = true>
         auto find(const Cell& cell, const Leaves& leaves) const {
-            return std::pair(diagonals_.find<corners>(cell, leaves.first),
-                             off_diagonals_.find<corners>(cell, leaves.second));
+            return std::pair(diagonals_.find<corners, ahead>(cell, leaves.first),
+                             off_diagonals_.find<corners, ahead>(cell, leaves.second));
         }
         Metric metric(const auto& at, std::size_t corner) const {
             return metric_of(*at.first[corner], *at.second[corner]);
