@@ -104,7 +104,7 @@ void prune_metrics(Tree& tree, double delta, const Read& read) {
     tree.clearAllAccessors();
     const detail::Prune<Tree, Read> prune(delta, read);
     using Upper = typename Tree::RootNodeType::ChildNodeType;
-    const auto prune_all = [&]<class Node>(std::vector<Node*> nodes) {
+    const auto prune_all = [&](auto nodes) {
         tree.getNodes(nodes);
         tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t i) { prune(*nodes[i]); });
     };

@@ -24,7 +24,7 @@ Vector in_cube(RandomFractions& fraction) {
 /// Uniformly from the unit ball; never its centre.
 Vector in_ball(RandomFractions& fraction) {
     while (true) {
-        const Vector v = in_cube(fraction);
+        Vector v = in_cube(fraction);
         if (v.squaredNorm() <= 1 && v != Vector::Zero()) return v;
     }
 }
@@ -59,6 +59,7 @@ std::vector<Point> places_near(const SourceColumns& sources, const Box& domain, 
 std::vector<Point> places_where_fine(const Probes& probes, int count, const Box& domain,
                                      std::size_t n, std::uint64_t seed) {
     std::vector<double> lengths;
+    lengths.reserve(probes.reference.size());
     for (const Metric& m : probes.reference) lengths.push_back(smallest_length(m));
     std::vector<std::size_t> order(lengths.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

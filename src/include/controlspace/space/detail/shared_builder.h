@@ -179,7 +179,7 @@ public:
         const AdaptationGoal wanted = bounded(goal);
         if constexpr (has_nodes) {
             const double longest = largest_metric(domain(), wanted.h_max).xx;
-            const AdaptationReport report = adapt_for_precision(
+            AdaptationReport report = adapt_for_precision(
                 wanted, longest, is_convex(), adapt,
                 [this] { return data_->control_nodes(Neighbourhood::faces).metrics; });
             if (this->recipe()) {
