@@ -36,6 +36,10 @@ double half_step(const ControlSpace& space) {
 bool is_linear(const CatalogueEntry& structure) {
     return has_compact_form(structure) && structure.order < 2;
 }
+bool is_tree(const CatalogueEntry& structure) {
+    return is_linear(structure) && structure.has<SourceLeaves>();
+}
+bool is_plain_grid(const CatalogueEntry& structure) { return structure.id.starts_with("uniform"); }
 bool is_grid(const CatalogueEntry& structure) {
     return has_compact_form(structure) && structure.has<VoxelSize>();
 }
@@ -68,6 +72,13 @@ STRUCTURE_CASE(is_linear, "doubles give the same bits, floats and codes what the
     const double in_8_bits = largest_factor(*space->compact(Precision::log8), *space, x);
     CHECK(in_8_bits > std::sqrt(std::sqrt(half_step(*space))));
     CHECK(in_8_bits <= half_step(*space) * (1 + 1e-12));
+    // Both ends are exact.
+    const auto ends = [](const ControlSpace& s) {
+        const auto nodes = control_nodes(s, Neighbourhood::faces).value().metrics;
+        const auto [shortest, longest] = std::ranges::minmax(nodes, {}, &Metric::xx);
+        return std::pair(shortest.xx, longest.xx);
+    };
+    CHECK(ends(*space->compact(Precision::log8)) == ends(*space));
 }
 
 STRUCTURE_CASE(is_grid,
@@ -169,7 +180,7 @@ STRUCTURE_CASE(is_quadratic, "codes make room for weights beyond 1, too") {
     CHECK(worst <= target);
 }
 
-STRUCTURE_CASE(is_linear, "codes that take more than a third of what a target allows are refused") {
+STRUCTURE_CASE(is_tree, "codes that take more than a third of what a target allows are refused") {
     const Work work = oblong_box();
     const auto adapt = [&](double target, Precision precision) {
         return editable(structure.make(work.options()))
@@ -213,7 +224,7 @@ STRUCTURE_CASE(is_grid, "voxels chosen for a target keep it, and much larger one
     CHECK(recipe_of(space->built())->options.voxel > 1.2 * voxel);
 }
 
-STRUCTURE_CASE(is_grid, "of tensors voxels are chosen by probes") {
+STRUCTURE_CASE(is_plain_grid, "of tensors voxels are chosen by probes") {
     const Work work = anisotropic_sphere();
     constexpr double target = 0.5;
     const auto space = editable(structure.make(work.options()));
