@@ -1,3 +1,5 @@
+#include <tbb/global_control.h>
+
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
@@ -364,6 +366,24 @@ TEST_CASE("on the paper's sphere sizes are 63 % too large over faces, 11 % with 
     CHECK(all_most == Approx(0.106).margin(0.005));
     CHECK(all_most < std::sqrt(9 - 2 * std::sqrt(2) - 2 * std::sqrt(6)) - 1);
     CHECK(std::abs(all_mean) < 0.1 * faces_mean);
+}
+
+TEST_CASE("voxels are chosen for a target alike on any number of threads", "[threads]") {
+    const auto sources = sample_sphere({.h = 0.08, .rho = 3});
+    for (const CatalogueEntry& entry : grids()) {
+        CAPTURE(entry.id);
+        const auto adapted = [&](std::size_t threads) {
+            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+            auto space = editable(
+                entry.make({.domain = {Point(-1, -1, -1), Point(1, 1, 1)}, .finest_length = 0.1}));
+            CHECK(space->adapt({.sources = sources, .continuous = nullptr, .target = 0.3}).met);
+            return space;
+        };
+        const auto one = adapted(1), four = adapted(4);
+        CHECK(one->footprint().cells == four->footprint().cells);
+        CHECK(one->control_nodes(Neighbourhood::faces).metrics ==
+              four->control_nodes(Neighbourhood::faces).metrics);
+    }
 }
 
 }  // namespace controlspace::grids_test
