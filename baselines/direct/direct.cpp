@@ -55,7 +55,8 @@ public:
     }
     AdaptationReport adapt(const AdaptationGoal& goal);
 
-    static std::unique_ptr<ControlSpace> finished(std::shared_ptr<const Sources> sources);
+    static std::unique_ptr<ControlSpace> finished(std::shared_ptr<const Sources> sources,
+                                                  std::optional<Precision> precision);
 
     ControlNodes control_nodes(Neighbourhood) const {
         ControlNodes nodes;
@@ -181,7 +182,9 @@ private:
     const ConeField& cones_;
 };
 
-std::unique_ptr<ControlSpace> Sources::finished(std::shared_ptr<const Sources> sources) {
+std::unique_ptr<ControlSpace> Sources::finished(std::shared_ptr<const Sources> sources,
+                                                std::optional<Precision> precision) {
+    if (precision) refuse_precision();
     return std::make_unique<Direct>(std::move(sources));
 }
 

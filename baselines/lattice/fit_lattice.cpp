@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "baselines/lattice/stencil.h"
-#include "controlspace/geometry/detail/place_sequence.h"
 #include "controlspace/metric/nonconformity.h"
+#include "controlspace/space/detail/until_late.h"
 #include "controlspace/space/sample_parallel.h"
 #include "controlspace/trees/detail/nearby_field.h"
 
@@ -20,15 +20,19 @@ namespace controlspace {
 
 namespace {
 
-// Calls check(first, end) for parts of so many, on all threads, until one answers false; returns
-// whether none did.
+// Whether check(first, end) holds for all parts of so many, which are checked on all threads. A
+// trial leaves out the others where one fails, and throws GrowthStopped beyond its limit.
 template <class Check>
-bool all_of_parts(std::size_t count, const Check& check) {
+bool all_of_parts(std::size_t count, const GrowthLimit* trial, const Check& check) {
     constexpr std::size_t grain = 256;
     std::atomic<bool> holds = true;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                       [&](const tbb::blocked_range<std::size_t>& part) {
-                          if (holds && !check(part.begin(), part.end())) holds = false;
+                          if (trial != nullptr) {
+                              if (!holds) return;
+                              require_in_time(*trial);
+                          }
+                          if (!check(part.begin(), part.end())) holds = false;
                       });
     return holds;
 }
@@ -53,53 +57,41 @@ LatticeFit::LatticeFit(const GoalField& field, const AdaptationGoal& goal, const
         suspects_.push_back(sources[i].position);
     }
     if (field.has_ranges()) return;
-    constexpr std::uint64_t everywhere = 100'000, near_sources = 100'000;
-    std::vector<Point> x;
+    std::vector<Point> x = field.probes(domain);
     for (const PointSource& source : sources) x.push_back(source.position);
     for (const Point& place : goal.places) x.push_back(nearest_in(domain, place));
-    for (std::uint64_t k = 0; k < everywhere; ++k) x.push_back(place_in(domain, k));
-    for (std::uint64_t k = 0; k < near_sources && !sources.empty(); ++k) {
-        const PointSource& source = sources[k * sources.size() / near_sources];
-        const Vector reach = Vector::Constant(mean_length(source.metric));
-        const Box around{source.position - reach, source.position + reach};
-        x.push_back(nearest_in(domain, place_in(around, k)));
-    }
     at_probes_ = sample_parallel(field, x);
     probes_ = std::move(x);
 }
 
 template <Interpolation interpolation>
-FittedLattice LatticeFit::fitted(const Voxels& voxels, bool only_if_met) const {
+FittedLattice LatticeFit::fitted(const Voxels& voxels, const GrowthLimit* trial) const {
     const Stencil<interpolation> stencil(domain_, voxels.cells);
     const Lattice lattice = stencil.lattice();
     FittedLattice fit{.voxels = voxels, .nodes = {}};
-    const auto kept = [&](const Metric& m) {
-        return kind_.stored != nullptr ? kind_.stored(m) : m;
-    };
     const auto at_nodes = [&](auto i, auto j, auto k) -> const Metric& {
         return fit.nodes[lattice.index(i, j, k)];
     };
     const auto set_to_field = [&] {
-        fit.nodes = sample_parallel(field_, positions(lattice));
-        if (kind_.stored != nullptr) std::ranges::transform(fit.nodes, fit.nodes.begin(), kept);
+        const UntilLate field(field_, trial != nullptr ? *trial : GrowthLimit{});
+        fit.nodes = sample_parallel(field, positions(lattice));
+        kind_.keep(fit.nodes);
     };
     const double target = field_.target();
 
     if (!field_.has_ranges()) {
-        if (only_if_met && !may_keep_probes(stencil)) return fit;
+        if (trial != nullptr && !may_keep_probes(stencil, *trial)) return fit;
         set_to_field();
         std::vector<double> worst(probes_.size());
-        fit.met = all_of_parts(worst.size(), [&](std::size_t first, std::size_t end) {
-            bool holds = true;
+        fit.met = all_of_parts(worst.size(), trial, [&](std::size_t first, std::size_t end) {
             for (std::size_t i = first; i < end; ++i) {
                 worst[i] =
                     directional_nonconformity(stencil.value(probes_[i], at_nodes), at_probes_[i]);
-                holds = holds && worst[i] <= target;
             }
-            return holds || !only_if_met;
+            return std::ranges::all_of(std::span(worst).subspan(first, end - first),
+                                       [&](double delta) { return delta <= target; });
         });
         fit.reached = *std::ranges::max_element(worst);
-        fit.met = fit.reached <= target;
         return fit;
     }
 
@@ -107,7 +99,7 @@ FittedLattice LatticeFit::fitted(const Voxels& voxels, bool only_if_met) const {
     const auto constant_in = [&](const Box& cell, NearbyField& nearby) {
         nearby.enter(with_margin(cell, domain_), false);
         const auto [least, most] = nearby.range();
-        const Metric middle = kept(Metric::isotropic(std::sqrt(least * most)));
+        const Metric middle = kind_.kept(Metric::isotropic(std::sqrt(least * most)));
         return std::pair(middle, std::max(nonconformity(middle, Metric::isotropic(most)),
                                           nonconformity(middle, Metric::isotropic(least))));
     };
@@ -116,39 +108,27 @@ FittedLattice LatticeFit::fitted(const Voxels& voxels, bool only_if_met) const {
         nearby.enter(cell, true);
         return !nearby.doubt_of(corners);
     };
-    const auto cell_with = [&](const Cell& cell) {
-        const Vector edges = domain_.edges().cwiseQuotient(voxels.cells);
-        Box box;
-        for (Axis a = 0; a < 3; ++a) {
-            const auto i = static_cast<double>(cell[static_cast<std::size_t>(a)]);
-            box.low[a] = domain_.low[a] + i * edges[a];
-            box.high[a] = domain_.low[a] + (i + 1) * edges[a];
-        }
-        return box;
-    };
-
     // Cells of sources first: those are what most lattices fail by, and few.
-    const bool may_be_met =
-        !only_if_met || all_of_parts(suspects_.size(), [&](std::size_t first, std::size_t end) {
-            NearbyField nearby(field_);
-            for (std::size_t i = first; i < end; ++i) {
-                const Box cell = stencil.cell_at(suspects_[i]);
-                if constexpr (interpolation == Interpolation::nearest) {
-                    if (constant_in(cell, nearby).second > target) return false;
-                } else {
-                    std::array<Point, 8> x;
-                    std::array<Metric, 8> m;
-                    std::array<double, 8> corners;
-                    for (int c = 0; c < 8; ++c) x[static_cast<std::size_t>(c)] = corner(cell, c);
-                    field_.sample(x, m);
-                    std::ranges::transform(m, corners.begin(),
-                                           [&](const Metric& f) { return kept(f).xx; });
-                    if (!is_kept_between(cell, corners, nearby)) return false;
-                }
+    const auto may_be_met = [&](std::size_t first, std::size_t end) {
+        NearbyField nearby(field_);
+        for (std::size_t i = first; i < end; ++i) {
+            const Box cell = stencil.cell_at(suspects_[i]);
+            if constexpr (interpolation == Interpolation::nearest) {
+                if (constant_in(cell, nearby).second > target) return false;
+            } else {
+                std::array<Point, 8> x;
+                std::array<Metric, 8> m;
+                std::array<double, 8> corners;
+                for (int c = 0; c < 8; ++c) x[static_cast<std::size_t>(c)] = corner(cell, c);
+                field_.sample(x, m);
+                std::ranges::transform(m, corners.begin(),
+                                       [&](const Metric& f) { return kind_.kept(f).xx; });
+                if (!is_kept_between(cell, corners, nearby)) return false;
             }
-            return true;
-        });
-    if (!may_be_met) return fit;
+        }
+        return true;
+    };
+    if (trial != nullptr && !all_of_parts(suspects_.size(), trial, may_be_met)) return fit;
 
     const auto nx = static_cast<std::size_t>(voxels.cells.x()),
                ny = static_cast<std::size_t>(voxels.cells.y());
@@ -159,38 +139,32 @@ FittedLattice LatticeFit::fitted(const Voxels& voxels, bool only_if_met) const {
         set_to_field();
     }
     std::vector<double> of_cell(interpolation == Interpolation::nearest ? count : 0);
-    std::atomic<bool> is_shown = true;
-    fit.met =
-        all_of_parts(count,
-                     [&](std::size_t first, std::size_t end) {
-                         NearbyField nearby(field_);
-                         bool holds = true;
-                         for (std::size_t n = first; n < end; ++n) {
-                             const Cell cell{static_cast<std::int32_t>(n % nx),
-                                             static_cast<std::int32_t>(n / nx % ny),
-                                             static_cast<std::int32_t>(n / nx / ny)};
-                             if constexpr (interpolation == Interpolation::nearest) {
-                                 std::tie(fit.nodes[n], of_cell[n]) =
-                                     constant_in(cell_with(cell), nearby);
-                                 holds = holds && of_cell[n] <= target;
-                             } else {
-                                 std::array<double, 8> corners;
-                                 for (std::size_t c = 0; c < 8; ++c) {
-                                     corners[c] = stencil.at_corner(cell, c, at_nodes).xx;
-                                 }
-                                 holds = holds && is_kept_between(cell_with(cell), corners, nearby);
-                             }
-                             if (!holds && only_if_met) return false;
-                         }
-                         if (!holds) is_shown = false;
-                         return true;
-                     }) &&
-        is_shown;
+    fit.met = all_of_parts(count, trial, [&](std::size_t first, std::size_t end) {
+        NearbyField nearby(field_);
+        bool holds = true;
+        for (std::size_t n = first; n < end && (holds || trial == nullptr); ++n) {
+            const Cell cell{static_cast<std::int32_t>(n % nx),
+                            static_cast<std::int32_t>(n / nx % ny),
+                            static_cast<std::int32_t>(n / nx / ny)};
+            const Box box = stencil.box_of(cell);
+            if constexpr (interpolation == Interpolation::nearest) {
+                std::tie(fit.nodes[n], of_cell[n]) = constant_in(box, nearby);
+                holds = holds && of_cell[n] <= target;
+            } else {
+                std::array<double, 8> corners;
+                for (std::size_t c = 0; c < 8; ++c) {
+                    corners[c] = stencil.at_corner(cell, c, at_nodes).xx;
+                }
+                holds = holds && is_kept_between(box, corners, nearby);
+            }
+        }
+        return holds;
+    });
     fit.is_bound = fit.met;
     fit.reached = interpolation == Interpolation::nearest && !of_cell.empty()
                       ? *std::ranges::max_element(of_cell)
                       : target;
-    if (!fit.met && !only_if_met && interpolation == Interpolation::trilinear) {
+    if (!fit.met && trial == nullptr && interpolation == Interpolation::trilinear) {
         fit.reached = field_.largest_departure(domain_, [&](auto x, auto metrics) {
             for (std::size_t i = 0; i < x.size(); ++i) metrics[i] = stencil.value(x[i], at_nodes);
         });
@@ -201,18 +175,18 @@ FittedLattice LatticeFit::fitted(const Voxels& voxels, bool only_if_met) const {
 
 // Nodes around some hundreds of probes show most lattices that are too coarse.
 template <class Stencil>
-bool LatticeFit::may_keep_probes(const Stencil& stencil) const {
+bool LatticeFit::may_keep_probes(const Stencil& stencil, const GrowthLimit& limit) const {
     constexpr std::size_t few = 512;
     const Lattice lattice = stencil.lattice();
     const std::size_t step = probes_.size() / few + 1;
-    return all_of_parts(probes_.size() / step, [&](std::size_t first, std::size_t end) {
+    return all_of_parts(probes_.size() / step, &limit, [&](std::size_t first, std::size_t end) {
         for (std::size_t n = first; n < end; ++n) {
             const std::size_t i = n * step;
             const Metric own = stencil.value(probes_[i], [&](auto... ijk) {
                 Metric m;
                 const Point x = lattice.position(lattice.index(ijk...));
                 field_.sample({&x, 1}, {&m, 1});
-                return kind_.stored != nullptr ? kind_.stored(m) : m;
+                return kind_.kept(m);
             });
             if (directional_nonconformity(own, at_probes_[i]) > field_.target()) return false;
         }
@@ -220,16 +194,17 @@ bool LatticeFit::may_keep_probes(const Stencil& stencil) const {
     });
 }
 
-FittedLattice LatticeFit::fitted(const Voxels& voxels, bool only_if_met) const {
+FittedLattice LatticeFit::fitted(const Voxels& voxels, const GrowthLimit* trial) const {
     return kind_.interpolation == Interpolation::nearest
-               ? fitted<Interpolation::nearest>(voxels, only_if_met)
-               : fitted<Interpolation::trilinear>(voxels, only_if_met);
+               ? fitted<Interpolation::nearest>(voxels, trial)
+               : fitted<Interpolation::trilinear>(voxels, trial);
 }
 
-FittedLattice LatticeFit::at(const Voxels& voxels) const { return fitted(voxels, false); }
+FittedLattice LatticeFit::at(const Voxels& voxels) const { return fitted(voxels, nullptr); }
 
 FittedLattice LatticeFit::coarsest(
-    const std::function<std::optional<Voxels>(double edge)>& voxels_of) const {
+    const std::function<std::optional<Voxels>(double edge)>& voxels_of,
+    const GrowthLimit& limit) const {
     const double longest = domain_.edges().maxCoeff();
     const auto with = [&](std::int64_t n) -> std::optional<Voxels> {
         auto voxels = voxels_of(longest / static_cast<double>(n));
@@ -241,11 +216,12 @@ FittedLattice LatticeFit::coarsest(
     // Cells along the longest edge that are too few, and those that will do or outgrow a limit.
     std::int64_t refused = 0, most = 1;
     std::optional<FittedLattice> best;
+    bool is_stopped = false;
     Voxels finest = *with(1);
     const auto is_enough = [&](std::int64_t n) {
         auto voxels = with(n);
         if (!voxels) return true;
-        FittedLattice fit = fitted(*voxels, true);
+        FittedLattice fit = fitted(*voxels, &limit);
         if (!fit.met) {
             finest = std::move(*voxels);
             return false;
@@ -253,17 +229,22 @@ FittedLattice LatticeFit::coarsest(
         best = std::move(fit);
         return true;
     };
-    while (!is_enough(most)) {
-        refused = most;
-        most *= 2;
+    try {
+        while (!is_enough(most)) {
+            refused = most;
+            most *= 2;
+        }
+        // To about a hundredth: larger voxels that are no multiple may do by chance.
+        while (most - refused > 1 + refused / 100) {
+            const std::int64_t middle = refused + (most - refused) / 2;
+            (is_enough(middle) ? most : refused) = middle;
+        }
+    } catch (const GrowthStopped&) {
+        is_stopped = true;
     }
-    // To about a hundredth: larger voxels that are no multiple may do by chance.
-    while (most - refused > 1 + refused / 100) {
-        const std::int64_t middle = refused + (most - refused) / 2;
-        (is_enough(middle) ? most : refused) = middle;
-    }
-    if (best) return std::move(*best);
-    return at(finest);
+    if (!best) best = at(finest);
+    best->is_stopped = is_stopped;
+    return std::move(*best);
 }
 
 }  // namespace controlspace

@@ -18,6 +18,7 @@ struct FittedLattice {
         0;  ///< a δ that is kept everywhere if `is_bound`, else the largest that was found
     bool is_bound = false;  ///< shown by bounds
     bool met = false;
+    bool is_stopped = false;  ///< the search, by its limit
 };
 
 /// Fits the nodes of lattices over a domain to a field, with what a grid of `kind` makes of them:
@@ -35,19 +36,20 @@ public:
 
     /// With these voxels.
     FittedLattice at(const Voxels& voxels) const;
-    /// With about the largest that keep the field's target, found by halving, then bisection;
-    /// `voxels_of(edge)` are those with such edges, none where they would outgrow the memory, or
-    /// the search is to end; not for one cell along the longest edge. Where none keep it, with the
-    /// finest.
-    FittedLattice coarsest(
-        const std::function<std::optional<Voxels>(double edge)>& voxels_of) const;
+    /// With about the largest that keep the field's target, found by halving, then bisection, until
+    /// the limit's deadline; `voxels_of(edge)` are those with such edges, none where they would
+    /// outgrow the memory, but for one cell along the longest edge. Where none keep it, with the
+    /// finest that was tried to its end.
+    FittedLattice coarsest(const std::function<std::optional<Voxels>(double edge)>& voxels_of,
+                           const GrowthLimit& limit) const;
 
 private:
     template <class Stencil>
-    bool may_keep_probes(const Stencil& stencil) const;
+    bool may_keep_probes(const Stencil& stencil, const GrowthLimit& limit) const;
+    /// A `trial` ends, not met, as soon as it is known to miss the target.
     template <Interpolation interpolation>
-    FittedLattice fitted(const Voxels& voxels, bool only_if_met) const;
-    FittedLattice fitted(const Voxels& voxels, bool only_if_met) const;
+    FittedLattice fitted(const Voxels& voxels, const GrowthLimit* trial) const;
+    FittedLattice fitted(const Voxels& voxels, const GrowthLimit* trial) const;
 
     const GoalField& field_;
     Box domain_;

@@ -15,7 +15,6 @@
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/detail/saved.h"
 #include "controlspace/space/detail/shared_builder.h"
-#include "refuse.h"
 
 namespace controlspace {
 
@@ -164,7 +163,7 @@ struct OwnPrecision {
     template <Interpolation interpolation>
     static std::unique_ptr<ControlSpace> finish(const std::shared_ptr<const LatticeData>& data,
                                                 std::optional<Precision> precision) {
-        if (precision) refuse("this grid has a precision of its own: choose none");
+        if (precision) refuse_precision();
         if (!std::is_same_v<Storage, Lengths> && std::ranges::all_of(data->field(), is_isotropic)) {
             return grid_of<Lengths, interpolation>(data);
         }

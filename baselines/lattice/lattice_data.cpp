@@ -77,8 +77,7 @@ InsertionReport LatticeData::insert_between(std::span<const PointSource> sources
     field();
     std::vector<Metric>& requested = later_.requested.empty() ? field_ : later_.requested;
     const auto lower = [this](Metric& metric, const Metric& by) {
-        metric = intersection(metric, by);
-        if (kind_.stored != nullptr) metric = kind_.stored(metric);
+        metric = kind_.kept(intersection(metric, by));
     };
     InsertionReport report;
     for (const PointSource& source : sources) {
@@ -118,7 +117,7 @@ GradationReport LatticeData::grade(const NodeGradation& gradation) {
         const Lattice nodes = lattice(neighbourhood_of(options));
         report = gradation.field ? grade_to(*gradation.field, positions(nodes), field_)
                                  : controlspace::grade(nodes, field_, options);
-        round(field_);
+        kind_.keep(field_);
     }
     later_.lowered.clear();
     later_.past = {options, report.largest_ratio_left};
@@ -161,14 +160,13 @@ AdaptationReport LatticeData::adapt(const AdaptationGoal& goal) {
         SpaceOptions options = options_;
         options.voxel = voxel;
         Voxels voxels = voxels_of(options);
-        const bool is_first = voxel == domain().edges().maxCoeff();
-        if (!is_first && options_.growth.is_late()) stop = GrowthStop::time;
         if (!voxels.remark.empty()) stop = GrowthStop::memory;
         if (stop != GrowthStop::none) return std::nullopt;
         return voxels;
     };
-    FittedLattice fitted = chooses_voxels_ ? fit.coarsest(next) : fit.at(voxels_);
+    FittedLattice fitted = chooses_voxels_ ? fit.coarsest(next, options_.growth) : fit.at(voxels_);
     if (chooses_voxels_) {
+        if (fitted.is_stopped) stop = GrowthStop::time;
         voxels_ = std::move(fitted.voxels);
         options_.voxel = domain().edges().cwiseQuotient(voxels_.cells).maxCoeff();
     }
@@ -209,7 +207,7 @@ ControlNodes LatticeData::control_nodes(Neighbourhood neighbourhood) const {
 void LatticeData::assign(std::span<const Metric> metrics) {
     require_one_each(metrics.size(), lattice().size());
     field_.assign(metrics.begin(), metrics.end());
-    round(field_);
+    kind_.keep(field_);
     later_ = {};
     later_.requests_isotropic = std::all_of(metrics.begin(), metrics.end(), is_isotropic);
 }
@@ -246,15 +244,10 @@ Lattice LatticeData::lattice(Neighbourhood neighbourhood) const {
     return lattice;
 }
 
-void LatticeData::round(std::vector<Metric>& metrics) const {
-    if (kind_.stored == nullptr) return;
-    for (Metric& metric : metrics) metric = kind_.stored(metric);
-}
-
 const std::vector<Metric>& LatticeData::field() const {
     if (field_.empty()) {
         field_ = large_array<Metric>(lattice().size(), largest_metric(options()));
-        round(field_);
+        kind_.keep(field_);
     }
     return field_;
 }

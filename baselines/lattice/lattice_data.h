@@ -38,6 +38,12 @@ struct GridKind {
     /// What the grid makes of a metric, if it does not keep all bits. Throws InputError for one
     /// that it cannot keep.
     Metric (*stored)(const Metric&) = nullptr;
+
+    Metric kept(const Metric& m) const { return stored == nullptr ? m : stored(m); }
+    void keep(std::vector<Metric>& metrics) const {
+        if (stored == nullptr) return;
+        for (Metric& metric : metrics) metric = stored(metric);
+    }
 };
 
 /// Writes what LatticeData::load reads.
@@ -61,13 +67,14 @@ public:
     ControlNodes control_nodes(Neighbourhood neighbourhood) const;
     void assign(std::span<const Metric> metrics);
     static std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const LatticeData>& data,
-                                                  std::optional<Precision> precision = {});
+                                                  std::optional<Precision> precision);
 
     void save(StateWriter& state) const { save_lattice(field(), later_, state); }
     void load(const StateReader& state);
 
     const Box& domain() const { return options_.domain; }
     const SpaceOptions& options() const { return options_; }
+    static constexpr int order = 1;  // of interpolation, at most
     const Vector& cells() const { return voxels_.cells; }
     Lattice lattice(Neighbourhood neighbourhood = Neighbourhood::faces) const;
     /// What the memory cap has cost, see Footprint::remark.
@@ -81,7 +88,6 @@ private:
     InsertionReport insert_between(std::span<const PointSource> sources);
     Voxels voxels_of(const SpaceOptions& options) const;
     GradationReport regrade();
-    void round(std::vector<Metric>& metrics) const;
 
     SpaceOptions options_;  // with the voxel that was chosen, if one was
     GridKind kind_;

@@ -44,16 +44,24 @@ public:
     const Box& domain() const { return domain_; }
     const Vector& cells() const { return cells_; }
 
-    /// The cell that answers for `x`; holds the place, whichever way its bounds are rounded.
-    Box cell_at(const Point& x) const {
-        Box cell;
+    Box box_of(const Cell& cell) const {
+        Box box;
         const Vector edges = domain_.edges().cwiseQuotient(cells_);
         for (Axis a = 0; a < 3; ++a) {
-            const std::uint32_t i = cell_of(in_cells(x, a), a);
-            cell.low[a] = domain_.low[a] + i * edges[a];
-            cell.high[a] = domain_.low[a] + (i + 1) * edges[a];
+            const std::int32_t i = cell[static_cast<std::size_t>(a)];
+            box.low[a] = domain_.low[a] + i * edges[a];
+            box.high[a] = domain_.low[a] + (i + 1) * edges[a];
         }
-        return widened(cell, x);
+        return box;
+    }
+    /// The cell that answers for `x`; holds the place, whichever way its bounds are rounded.
+    Box cell_at(const Point& x) const {
+        Cell cell;
+        for (Axis a = 0; a < 3; ++a) {
+            cell[static_cast<std::size_t>(a)] =
+                static_cast<std::int32_t>(cell_of(in_cells(x, a), a));
+        }
+        return widened(box_of(cell), x);
     }
 
     /// The cells of at most CellBatch::most points.

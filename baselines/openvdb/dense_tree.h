@@ -57,7 +57,7 @@ void fill_densely(Tree& tree, const Lattice& lattice, ValueOf&& value_of) {
 /// Reads the voxels of a tree, one by one or those of many cells side by side (Stencil::sample).
 ///
 /// It descends from the only node below the root itself, with whole numbers in place of a Coord:
-/// faster at random places than a ValueAccessor (bench/peers_overhead.cpp), with nothing to
+/// faster at random places than a ValueAccessor (bench/results/overhead), with nothing to
 /// register or to keep for each thread. Where there are several such nodes, beyond 4096 voxels
 /// along an axis, it asks the root.
 template <class Tree>

@@ -28,7 +28,7 @@ public:
     }
     AdaptationReport adapt(const AdaptationGoal& goal) override { return ours_->adapt(goal); }
     std::unique_ptr<ControlSpace> build(const BuildOptions& options) override {
-        if (options.precision) refuse("a foreign system has a precision of its own: choose none");
+        if (options.precision) refuse_precision();
         return std::make_unique<Space>(*ours_->build());
     }
     Box domain() const override { return ours_->domain(); }

@@ -69,7 +69,7 @@ public:
         return report;
     }
     std::unique_ptr<ControlSpace> build(const BuildOptions& options) override {
-        if (options.precision) refuse("a foreign system has a precision of its own: choose none");
+        if (options.precision) refuse_precision();
         return make_(input_);
     }
     Box domain() const override { return input_.options.domain; }

@@ -11,7 +11,7 @@
 namespace controlspace {
 
 AdaptationReport adapt_for_precision(
-    const AdaptationGoal& goal, double longest, bool is_convex,
+    const AdaptationGoal& goal, double longest, int order,
     const std::function<AdaptationReport(const AdaptationGoal&)>& adapt,
     const std::function<std::vector<Metric>()>& held) {
     if (goal.precision == Precision::doubles) return adapt(goal);
@@ -36,7 +36,7 @@ AdaptationReport adapt_for_precision(
     const bool depends_on_range = goal.precision == Precision::log8;
     const auto rounding_for = [&](double least, double most) {
         const double rounding = rounding_of(goal.precision, are_lengths, least, most);
-        return is_convex ? rounding : rounding * rounding;
+        return order < 2 ? rounding : rounding * rounding;
     };
     double expected = rounding_for(shortest, longest);
     if (!depends_on_range) require_fine(expected);

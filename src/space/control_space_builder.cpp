@@ -80,6 +80,10 @@ bool is_valid(const PointSource& source, const Box& domain) {
     return is_metric && is_source_growth(source.growth) && domain.contains(source.position);
 }
 
+void refuse_precision() {
+    throw InputError("this structure has no choice of precision: build it as it is made");
+}
+
 void require_one_each(std::size_t metrics, std::size_t control_nodes) {
     if (metrics == control_nodes) return;
     throw InputError(

@@ -78,7 +78,7 @@ std::vector<Metric> GoalField::continuous_at(std::span<const Point> x) const {
 
 void GoalField::forget_if_full() const { cache_->forget_if_full(); }
 
-double GoalField::largest_departure(const Box& domain, const Sample& sample_space) const {
+std::vector<Point> GoalField::probes(const Box& domain) const {
     constexpr std::uint64_t everywhere = 100000, near_sources = 100000;
     std::vector<Point> x;
     x.reserve(everywhere + near_sources);
@@ -89,6 +89,11 @@ double GoalField::largest_departure(const Box& domain, const Sample& sample_spac
         const Box around{source.position - reach, source.position + reach};
         x.push_back(nearest_in(domain, place_in(around, k)));
     }
+    return x;
+}
+
+double GoalField::largest_departure(const Box& domain, const Sample& sample_space) const {
+    const std::vector<Point> x = probes(domain);
     std::vector<Metric> own(x.size());
     std::vector<Metric> exact(x.size());
     sample_space(x, own);

@@ -163,32 +163,22 @@ Topic topic_of(const CaseParameter& row) {
 
 }  // namespace
 
+// All forms but as-made.
+static constexpr std::pair<StoredIn, Precision> precisions[] = {
+    {StoredIn::doubles, Precision::doubles},
+    {StoredIn::floats, Precision::floats},
+    {StoredIn::log16, Precision::log16},
+    {StoredIn::log8, Precision::log8}};
+
 StoredIn stored_in(Precision precision) {
-    switch (precision) {
-        case Precision::floats:
-            return StoredIn::floats;
-        case Precision::log16:
-            return StoredIn::log16;
-        case Precision::log8:
-            return StoredIn::log8;
-        default:
-            return StoredIn::doubles;
-    }
+    return std::ranges::find(precisions, precision, [](const auto& p) { return p.second; })->first;
 }
 
 std::optional<Precision> precision_of(std::optional<StoredIn> form) {
-    switch (form.value_or(StoredIn::as_made)) {
-        case StoredIn::doubles:
-            return Precision::doubles;
-        case StoredIn::floats:
-            return Precision::floats;
-        case StoredIn::log16:
-            return Precision::log16;
-        case StoredIn::log8:
-            return Precision::log8;
-        default:
-            return {};
+    for (const auto& [stored, precision] : precisions) {
+        if (form == stored) return precision;
     }
+    return std::nullopt;
 }
 
 std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* const> references) {
@@ -241,9 +231,9 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
             word<Case>(&Case::interpolation), {"corrected"}, unless_default("{} interpolation"),
             has<QuadraticLeaves>),
         row(structure, "target_delta", "",
-            "Non-conformity to the exact field that structures are adapted to, in place of "
-            "insertion and "
-            "gradation: trees by their leaves, grids by their voxels; 0: not adapted",
+            "Non-conformity to the exact field that structures are adapted to, trees by their "
+            "leaves, "
+            "grids by their voxels, in place of insertion and gradation; 0: not adapted",
             target(), {0}, {"δ <= {:.4g}"}, is_adapted_to),
         row(structure, "within", "",
             "The same as the largest factor by which a length may differ from the exact field in "

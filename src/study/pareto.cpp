@@ -23,13 +23,12 @@ double bound(const Row& row, const std::string& cost, const char* quartile) {
 void mark_front(ParetoPlot& plot, std::span<const Row> rows) {
     for (ParetoPoint& p : plot.points) {
         const double low = bound(rows[p.row], plot.cost, "_q1");
-        p.on_front = rows[p.row].is_ranked();
-        p.on_front =
-            p.on_front && std::ranges::none_of(plot.points, [&](const ParetoPoint& q) {
-                if (!rows[q.row].is_ranked()) return false;
-                return (q.error <= p.error && bound(rows[q.row], plot.cost, "_q3") < low) ||
-                       (q.error < p.error && q.cost == p.cost);
-            });
+        const auto is_better = [&](const ParetoPoint& q) {
+            return rows[q.row].is_ranked() &&
+                   ((q.error <= p.error && bound(rows[q.row], plot.cost, "_q3") < low) ||
+                    (q.error < p.error && q.cost == p.cost));
+        };
+        p.on_front = rows[p.row].is_ranked() && std::ranges::none_of(plot.points, is_better);
     }
 }
 

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "controlspace/space/control_space_file.h"
+#include "controlspace/space/detail/until_late.h"
 #include "controlspace/space/sample_parallel.h"
 #include "measure/stopwatch.h"
 #include "refuse.h"
@@ -77,7 +78,7 @@ public:
     }
 
 private:
-    /// Of lengths, or of metrics beside them: random, grid, near, single and walk.
+    /// Random, grid, near, single and walk; of lengths random and single of metrics, too.
     static constexpr double kinds_of_access = 7;
     /// An interrupted run loses no more.
     static constexpr double longest_batch_s = 600;
@@ -134,6 +135,17 @@ private:
         member.row.seconds = time.seconds();
     }
 
+    /// max_seconds from now.
+    GrowthLimit limit_of_time(double least_s = 0) const {
+        GrowthLimit limit;
+        if (study_.max_seconds > 0) {
+            const std::chrono::duration<double> most(std::clamp(study_.max_seconds, least_s, 1e9));
+            limit.deadline = GrowthLimit::Clock::now() +
+                             std::chrono::duration_cast<GrowthLimit::Clock::duration>(most);
+        }
+        return limit;
+    }
+
     /// Of case `i`, whose time begins now.
     RowLimits limits_of(std::size_t i) {
         constexpr double least_bytes = 4.0 * 1024 * 1024;  // a grid of OpenVDB takes 1.8 MB
@@ -141,12 +153,8 @@ private:
             smallest_ = std::numeric_limits<double>::infinity();
         }
         RowLimits limits;
-        if (study_.max_seconds > 0) {
-            const std::chrono::duration<double> most(std::min(study_.max_seconds, 1e9));
-            limits.growth.deadline = GrowthLimit::Clock::now() +
-                                     std::chrono::duration_cast<GrowthLimit::Clock::duration>(most);
-            limits.time = fmt::format("{:.4g} s", study_.max_seconds);
-        }
+        limits.growth = limit_of_time();
+        if (study_.max_seconds > 0) limits.time = fmt::format("{:.4g} s", study_.max_seconds);
         const double wanted_bytes = study_.max_memory_ratio * smallest_;
         const double bytes = std::max(wanted_bytes, least_bytes);
         if (study_.max_memory_ratio > 0 && bytes < most_bytes_of_all()) {
@@ -219,11 +227,16 @@ private:
                                          *member.space, std::move(creation),
                                          member.space->footprint()});
         Finished& finished = *member.finished;
-        finished.accuracy = accuracy(*member.space, probes.coarse);
-        finished.accuracy_fine = accuracy(*member.space, probes.fine);
-        const std::vector<PointSource> sources = workload.sources.all();
-        finished.source_accuracy = source_accuracy(*member.space, sources);
-        finished.steepness = steepness(*member.space, workload.domain, sources, study_.seed);
+        try {
+            const UntilLate space(*member.space, limit_of_time(1));  // as long again
+            finished.accuracy = accuracy(space, probes.coarse);
+            finished.accuracy_fine = accuracy(space, probes.fine);
+            const std::vector<PointSource> sources = workload.sources.all();
+            finished.source_accuracy = source_accuracy(space, sources);
+            finished.steepness = steepness(space, workload.domain, sources, study_.seed);
+        } catch (const GrowthStopped&) {
+            refuse("stopped at {} of measuring its accuracy", limits.time);
+        }
         finished.access_batch = finished_before_ + i + 1 - batch_.size();
     }
 

@@ -193,8 +193,10 @@ std::vector<Parameter<Study>> table() {
          making, always, performance},
         {"max_seconds", "s",
          "Time after which the making of a row's structure is stopped: trees keep the leaves made "
-         "so far, a search for voxels the best grid so far, and neither is ranked. Repeats that "
-         "would exceed it are left out, of access times too, one sample at least; 0: no limit. "
+         "so far, a search for voxels the best grid so far, and neither is ranked. Its accuracy is "
+         "measured for as long again, a second at least. Repeats that would exceed it are left "
+         "out, of access times too, one sample at least; a gradation is not interrupted. 0: no "
+         "limit. "
          "Left out, for an input that is no study: 60",
          number<Study>(&Study::max_seconds, at_least(0), Zero::is_none), Use::timing, always,
          performance},

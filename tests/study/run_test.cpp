@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <set>
+#include <thread>
 
 #include "cli/paper_reference.h"
 #include "controlspace/baselines/catalogue.h"
@@ -433,6 +435,50 @@ TEST_CASE("a row whose making a limit of time ends says how far it came, and is 
         CHECK(rows[i].text("checksum") == free[i].text("checksum"));
         CHECK(samples(rows[i], "t_insert_s_samples").size() == 2);
     }
+}
+
+namespace {
+
+/// Takes longer than a limit of time allows for the probes of its accuracy, once.
+struct SlowOnce final : ControlSpace {
+    static constexpr std::size_t probes = 512;  // of small_study
+
+    void sample(std::span<const Point> x, std::span<Metric> out) const override {
+        if (x.size() == probes) std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+        std::ranges::fill(out, Metric::isotropic(1));
+    }
+    Box domain() const override { return box; }
+
+    explicit SlowOnce(const Box& domain) : box(domain) {}
+    Box box;
+};
+
+struct SlowOnceBuilder final : ControlSpaceBuilder {
+    using ControlSpaceBuilder::insert;
+    InsertionReport insert(std::span<const PointSource>) override { return {}; }
+    GradationReport grade(const GradationOptions&) override { return {}; }
+    AdaptationReport adapt(const AdaptationGoal&) override { return {}; }
+    std::unique_ptr<ControlSpace> build(const BuildOptions&) override {
+        return std::make_unique<SlowOnce>(box);
+    }
+    Box domain() const override { return box; }
+
+    explicit SlowOnceBuilder(const Box& domain) : box(domain) {}
+    Box box;
+};
+
+}  // namespace
+
+TEST_CASE("a row whose accuracy takes too long is stopped") {
+    CatalogueEntry slow{.id = "slow", .description = ""};
+    slow.construct = [](const SpaceOptions& options) -> std::unique_ptr<ControlSpaceBuilder> {
+        return std::make_unique<SlowOnceBuilder>(options.domain);
+    };
+    Study study = small_study({"slow"});
+    const std::vector<CatalogueEntry> catalogue{slow};
+    CHECK(run(study, catalogue)[0].error.empty());
+    study.max_seconds = 0.1;
+    CHECK(run(study, catalogue)[0].error == "stopped at 0.1 s of measuring its accuracy");
 }
 
 TEST_CASE("a row far larger than the smallest before it is stopped, and is not ranked") {

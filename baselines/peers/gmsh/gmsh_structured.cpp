@@ -73,7 +73,7 @@ void write(const LatticeData& data, const std::string& path) {
 /// The nodes of `uniform-trilinear` as Gmsh's field Structured, which reads a file.
 std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const LatticeData>& data,
                                        std::optional<Precision> precision) {
-    if (precision) refuse("Gmsh has a precision of its own: choose none");
+    if (precision) refuse_precision();
     const ScratchFile file;  // it is read before the constructor ends
     write(*data, file.path());
     Footprint counts;

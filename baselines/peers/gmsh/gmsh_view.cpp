@@ -44,7 +44,9 @@ GmshSpace::Made made_view(const BackgroundTets& tets, bool has_tensors) {
 
 struct ViewedTets : BackgroundTets {
     explicit ViewedTets(const SpaceOptions& options) : BackgroundTets(options, TetBlend::view) {}
-    static std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const ViewedTets>& tets) {
+    static std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const ViewedTets>& tets,
+                                                  std::optional<Precision> precision) {
+        if (precision) refuse_precision();
         const bool has_tensors =
             !std::ranges::all_of(tets->mesh().finite_vertex_handles(),
                                  [&](auto vertex) { return is_isotropic(tets->metric(vertex)); });

@@ -37,6 +37,7 @@ public:
     GradationReport grade(const NodeGradation& gradation);
     /// adapt.cpp
     AdaptationReport adapt(const AdaptationGoal& goal);
+    static constexpr int order = 1;  // of interpolation
     void assign(std::span<const Metric> metrics);
     ControlNodes control_nodes(Neighbourhood) const;
 

@@ -32,7 +32,7 @@ private:
     std::size_t bytes_;
 };
 
-/// What ended the growth of a tree before it was finished.
+/// What ended the growth of a tree, or the search for the voxels of a grid, before its end.
 enum class GrowthStop { none, leaves, time, memory };
 
 /// A tree reached its SpaceOptions::growth limit of time or memory before it was finished.

@@ -23,7 +23,6 @@ namespace controlspace {
 /// are, and divides δ_S by up to 20.
 class QuadraticValues : public LeafMetrics {
 public:
-    static constexpr bool extrapolates = true;
     static constexpr int order = 2;
     static constexpr CutBy cut_by = CutBy::faces;
     static constexpr bool follows_neighbours = true;

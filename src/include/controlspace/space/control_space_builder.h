@@ -92,6 +92,8 @@ void require_valid(const PointSource& source, std::size_t index, const std::stri
 void require_valid(const SourceColumns& sources, const Box& domain);
 /// Whether it does not.
 bool is_valid(const PointSource& source, const Box& domain);
+/// Throws InputError: a precision was requested of a structure that has no choice.
+[[noreturn]] void refuse_precision();
 /// Throws InputError unless there is one metric for each control node.
 void require_one_each(std::size_t metrics, std::size_t control_nodes);
 

@@ -40,8 +40,10 @@ public:
 
     /// Answers metrics at places.
     using Sample = std::function<void(std::span<const Point>, std::span<Metric>)>;
+    /// Places all over the domain and near to sources, 100 000 of each.
+    std::vector<Point> probes(const Box& domain) const;
     /// Largest δ (`directional_nonconformity`) between what `sample` answers and the field, at
-    /// places all over the domain and near to sources.
+    /// these probes.
     double largest_departure(const Box& domain, const Sample& sample) const;
 
     /// What is kept from leaf to leaf.

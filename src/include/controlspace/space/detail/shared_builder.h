@@ -98,9 +98,10 @@ concept HoldsMetrics = requires(Data& data, std::span<const Metric> metrics) {
 /// A builder around `Data`, which can be copied, read and changed: sample, domain, footprint,
 /// cell_at, control_nodes, save, for single places metric_at, and, with has_lengths(),
 /// sample_lengths, length_at and length_cursor; insert(sources), grade(options), adapt, load; for a
-/// NodeBuilder assign, options and grade(NodeGradation), and it may leave out adapt. With
+/// NodeBuilder the order of its interpolation, assign, options and grade(NodeGradation), and it may
+/// leave out adapt. With
 /// pack(precision) it has compact forms; finish() is called before it is built. With
-/// finished(shared data) it is built in another form than SharedSpace; with a precision there, too.
+/// finished(shared data, precision) it is built in other forms than SharedSpace.
 ///
 /// What it builds shares the data, which are copied before the next change as long as they are
 /// shared.
@@ -180,7 +181,7 @@ public:
         if constexpr (has_nodes) {
             const double longest = largest_metric(domain(), wanted.h_max).xx;
             AdaptationReport report = adapt_for_precision(
-                wanted, longest, is_convex(), adapt,
+                wanted, longest, Data::order, adapt,
                 [this] { return data_->control_nodes(Neighbourhood::faces).metrics; });
             if (this->recipe()) {
                 Recipe recipe = *this->recipe();
@@ -193,13 +194,13 @@ public:
         }
     }
     std::unique_ptr<ControlSpace> build(const BuildOptions& options) override {
-        if (options.precision) return pack(*options.precision);
-        if constexpr (requires(Data & data) { data.finish(); }) {
-            if (!data_->is_finished()) edit().finish();
-        }
-        if constexpr (requires { Data::finished(data_); }) {
-            return described(Data::finished(data_));
+        if constexpr (requires { Data::finished(data_, options.precision); }) {
+            return described(Data::finished(data_, options.precision), options.precision);
         } else {
+            if (options.precision) return pack(*options.precision);
+            if constexpr (requires(Data & data) { data.finish(); }) {
+                if (!data_->is_finished()) edit().finish();
+            }
             return described(std::make_unique<SharedSpace<Data>>(data_));
         }
     }
@@ -220,11 +221,6 @@ public:
     void load(const StateReader& state) override { edit().load(state); }
 
 private:
-    static constexpr bool is_convex() {
-        if constexpr (requires { Data::extrapolates; }) return !Data::extrapolates;
-        return true;
-    }
-
     // What they request counts in gradation, whether they change nodes or not.
     InsertionReport insert_and_keep(std::span<const PointSource> sources) {
         if (!this->given()) require_alike_growth(sources);
@@ -285,12 +281,10 @@ private:
     }
 
     std::unique_ptr<ControlSpace> pack(Precision precision) {
-        if constexpr (requires { Data::finished(data_, precision); }) {
-            return described(Data::finished(data_, precision), precision);
-        } else if constexpr (requires(const Data& data) { data.pack(precision); }) {
+        if constexpr (requires(const Data& data) { data.pack(precision); }) {
             return described(data_->pack(precision), precision);
         } else {
-            throw InputError("this structure has no choice of precision: build it as it is made");
+            refuse_precision();
         }
     }
 

@@ -38,8 +38,7 @@ class MetricTree : public GrowingTree<Node, Storage> {
     using Base::is_finished_, Base::options_, Base::storage_, Base::topology_;
 
 public:
-    /// Whether weights of nodes reach beyond 0 and 1.
-    static constexpr bool extrapolates = requires { Storage::extrapolates; };
+    static constexpr int order = Storage::order;
 
     explicit MetricTree(const SpaceOptions& options, bool balanced = false)
         : Base(options, balanced),
