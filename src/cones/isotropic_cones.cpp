@@ -78,10 +78,11 @@ double IsotropicCones::smallest_length(const Point& p, const Nearby& nearby, Hin
 
 // With c the centre of the box and R half its diagonal, a source Q is no nearer to any place in it
 // than |c - Q| - R, and its farthest place is the corner opposite, at sqrt(|c - Q|^2 + R^2) at
-// least: with the half edges e, the sum of (|c - Q|_a + e_a)^2.
+// least: with the half edges e, the sum of (|c - Q|_a + e_a)^2. The centre is rounded: the half
+// edges reach from there to both faces, which counts where a box is a few doubles wide.
 IsotropicCones::Range IsotropicCones::range_in(const Box& box, Hint& hint) const {
     const Point centre = box.centre();
-    const Vector half = 0.5 * box.edges();
+    const Vector half = (box.high - centre).cwiseMax(centre - box.low);
     const double radius = half.norm();
     using Numbers = LanesOf<leaf_size>;
     // The smallest length below `cap` at distances made by of_node from those between the nodes and

@@ -57,7 +57,7 @@ void adapt(Filled& filled, const Case& c, const Workload& workload,
     if (c.within && is_along) goal.target = nonconformity_along(*c.within);
     const auto factor_of = is_along ? largest_factor_along : largest_factor_within;
     const AdaptationReport report = filled.builder->adapt(goal);
-    filled.creation.stopped = limits.place_of(report.stop, c);
+    filled.creation.stopped = limits.place_of(report.stop, c.max_leaves.value_or(0));
     if (c.target_delta) {
         const double reached = factor_of(report.reached);
         add_remark(filled.creation, outcome_of(report, reached));
@@ -102,7 +102,7 @@ void remark_on_all(Creation& creation, const Study& study, const Case& c, const 
 void note_coarser(Creation& creation, const CatalogueEntry& entry, const ControlSpace& space,
                   const RowLimits& limits) {
     if (!entry.has<VoxelSize>() || space.footprint().remark.empty()) return;
-    creation.stopped = limits.place_of(GrowthStop::memory, {});
+    creation.stopped = limits.place_of(GrowthStop::memory);
 }
 
 // Whether the leaf of a source has an edge longer than tau in its metric.
@@ -117,12 +117,12 @@ bool has_long_leaf(const ControlSpace& space, const SourceColumns& sources, doub
 
 }  // namespace
 
-std::string RowLimits::place_of(GrowthStop stop, const Case& c) const {
+std::string RowLimits::place_of(GrowthStop stop, std::size_t max_leaves) const {
     switch (stop) {
         case GrowthStop::none:
             break;
         case GrowthStop::leaves:
-            return fmt::format("at {} leaves", c.max_leaves.value_or(0));
+            return fmt::format("at {} leaves", max_leaves);
         case GrowthStop::time:
             return "at " + time;
         case GrowthStop::memory:

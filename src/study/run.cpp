@@ -120,7 +120,7 @@ private:
             }
         } catch (const GrowthStopped& stopped) {
             member.row.error = fmt::format("stopped {}, {} leaves",
-                                           limits.place_of(stopped.stop(), c), stopped.leaves());
+                                           limits.place_of(stopped.stop()), stopped.leaves());
         } catch (const std::bad_alloc&) {
             member.row.error = "out of memory: lower max_memory, or raise tau";
         } catch (const std::exception& error) {

@@ -429,6 +429,40 @@ TEST_CASE("a target out of reach is told, with what was reached") {
     CHECK_THROWS_AS(small->adapt({sources, nullptr, g, 0.01}), InputError);
 }
 
+TEST_CASE("what is guaranteed holds where leaves come near the spacing of doubles") {
+    const double spacing = std::nextafter(1000.0, 2000.0) - 1000;
+    const double edge = 1e-6;
+    const Box far{Point::Constant(1000), Point::Constant(1000 + edge)};
+    constexpr double steep = 10;
+    for (const char* id : {"K_L", "K_oL"}) {
+        for (const double in_spacings : {1000.0, 10.0, 1.0, 1e-3}) {
+            const auto places = random_points(far, 4, 7);
+            int bounded = 0;
+            for (const Point& q : places) {
+                CAPTURE(id, in_spacings, q);
+                const PointSource source{q, Metric::isotropic(in_spacings * spacing)};
+                const auto space = editable(
+                    tree_named(id).make({.domain = far, .kd_depth = 200, .octree_depth = 60}));
+                const AdaptationReport report = space->adapt({{&source, 1}, nullptr, steep, 1});
+                if (!report.is_bound) continue;
+                ++bounded;
+                double worst = 0;
+                for (const int reach : {3, 30, 3000}) {
+                    const double r = reach * spacing;
+                    const Box around{q - Vector::Constant(r), q + Vector::Constant(r)};
+                    for (const Point& x : random_points(around, 2000, 3)) {
+                        const double exact = source.metric.xx + (steep - 1) * (x - q).norm();
+                        worst = std::max(worst, nonconformity(sample_at(*space, x),
+                                                              Metric::isotropic(exact)));
+                    }
+                }
+                CHECK(worst <= report.reached * (1 + 1e-9));
+            }
+            if (in_spacings > 50) CHECK(bounded == 4);
+        }
+    }
+}
+
 CASE_OF_EACH(entry, all_trees(),
              "a tree at its limit of time or memory says so, and answers with what it has") {
     const std::vector<PointSource> sources = sample_sphere({.h = 0.06});

@@ -80,8 +80,8 @@ struct RowLimits {
     /// "60 s", "20 times the memory of the smallest row", for texts.
     std::string time, memory;
 
-    /// "at 60 s".
-    std::string place_of(GrowthStop stop, const Case& c) const;
+    /// "at 60 s"; `max_leaves`: of the goal, where these stopped it.
+    std::string place_of(GrowthStop stop, std::size_t max_leaves = 0) const;
 };
 
 /// A builder with the sources of a case inserted, graded or adapted, and what it has built, in the
