@@ -20,7 +20,7 @@ constexpr std::pair<std::string_view, double SpaceOptions::*> numbers[] = {
     {"h_max", &SpaceOptions::h_max},
     {"g_r", &SpaceOptions::ratio}};
 
-constexpr std::pair<std::string_view, int SpaceOptions::*> counts[] = {
+constexpr std::pair<std::string_view, std::optional<int> SpaceOptions::*> counts[] = {
     {"kd_depth", &SpaceOptions::kd_depth}, {"octree_depth", &SpaceOptions::octree_depth}};
 
 /// The value of the row named `name`; null where there is none.

@@ -77,13 +77,13 @@ FilledSpace made_or_loaded(const std::filesystem::path& input, const std::filesy
     filled.threads = limit_threads(study.threads);
     Case c = only_case(study);
     Workload workload = make_workload(study, c.sources, file_readers());
-    const bool is_by_default = DefaultTarget(input, given).set(c, workload);
+    DefaultTarget(input, given).set(c, workload);
     const bool is_exact_field = c.structure == "direct";
     Filled made = make_and_fill(study, c, program_rows(), workload, observer);
     filled.space = std::move(made.space);
     filled.structure = c.structure;
     filled.remark = remark_on(made.creation, filled.space->footprint());
-    filled.missed_target = !is_by_default && !made.creation.shortfall.empty();
+    filled.missed_target = !made.creation.shortfall.empty();
     filled.origin = Origin{std::move(study), c, std::move(workload)};
     if (!c.target_delta && !has_field(c.sources) && !is_exact_field) {
         if (observer.phase_started) observer.phase_started("comparing");

@@ -80,7 +80,8 @@ std::string options_text(const CatalogueEntry& entry, const SpaceOptions& o) {
     if (entry.has<SplitRules>()) add("split", name_of(o.split));
     if (is_tree || o.voxel == 0) add("tau", o.l_min);
     add("epsilon", o.tolerance);
-    if (is_tree) add("maximum depth", entry.has<SplitRules>() ? o.kd_depth : o.octree_depth);
+    const auto depth = entry.has<SplitRules>() ? o.kd_depth : o.octree_depth;
+    if (is_tree && depth) add("maximum depth", *depth);
     if (entry.has<QuadraticLeaves>()) add("interpolation", name_of(o.quadratic_form));
     if (entry.has<KeptSources>()) {
         add("intersection", name_of(o.intersection));

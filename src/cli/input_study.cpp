@@ -108,17 +108,17 @@ double default_within_of(const Workload& workload) {
     return has_tensors(workload) ? default_within_of_tensors : default_within;
 }
 
-bool DefaultTarget::set(Case& c, const Workload& workload) const {
+void DefaultTarget::set(Case& c, const Workload& workload) const {
     const bool follows_field = has_field(c.sources);  // by default, as expand sets it
     if (follows_field ? !is_free_ || !c.target_delta
                       : !applies_ || c.structure != "K_oV" || workload.sources.empty()) {
-        return false;
+        return;
     }
     c.within = default_within_of(workload);
     c.target_delta = nonconformity_of_factor(*c.within);
-    c.max_leaves = max_leaves_.value_or(has_tensors(workload) ? default_max_leaves : 0);
+    c.max_leaves = max_leaves_.value_or(has_tensors(workload) ? default_max_leaves_of_tensors
+                                                              : default_max_leaves);
     if (c.max_leaves == 0) c.max_leaves.reset();
-    return true;
 }
 
 Case only_case(const Study& study) {

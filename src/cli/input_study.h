@@ -37,12 +37,11 @@ double default_within_of(const Workload& workload);
 
 /// The target of K_oV, and of what follows primitives or another field, where neither a study file
 /// nor a setting says how it is made: lengths within 1.1x of the exact field's; with tensors 1.2x,
-/// or as near as 50000 leaves come.
+/// or as near as 50000 leaves come, which is a target missed.
 class DefaultTarget {
 public:
     DefaultTarget(const std::filesystem::path& input, const GivenSettings& given);
-    /// Sets it, and returns whether it was set.
-    bool set(Case& c, const Workload& workload) const;
+    void set(Case& c, const Workload& workload) const;
 
 private:
     bool is_free_;  ///< whether no target is given

@@ -43,22 +43,15 @@ Reference make_shared_reference(const Study& study, const Case& c, Mesher reques
     return reference;
 }
 
-/// Meshes the structure of a case. A default target that is missed is no failure: a remark says how
-/// far the structure is from the field.
-void mesh_case(const Study& study, const Case& c, bool is_by_default, const Reference& reference,
-               MeshFolder& folder) {
+/// Meshes the structure of a case.
+void mesh_case(const Study& study, const Case& c, const Reference& reference, MeshFolder& folder) {
     const MeshRow row{.setting = c, .mesher = reference.mesher};
     std::unique_ptr<ControlSpace> space;
     const auto make = [&](MeshRow& made) -> const ControlSpace& {
         start_library_of(c.structure);
         Filled filled = make_and_fill(study, c, program_rows(), reference.workload);
         space = std::move(filled.space);
-        if (is_by_default && !filled.creation.shortfall.empty()) {
-            const std::string remark = remark_on(filled.creation, space->footprint());
-            print_error(fmt::format("{}: {}\n", mesh_label(row), remark));
-        } else {
-            made.shortfall = filled.creation.shortfall;
-        }
+        made.shortfall = filled.creation.shortfall;
         made.creation_s = filled.creation.insert_s.front() + filled.creation.gradation_s.front();
         made.delta_r = accuracy(*space, reference.probes);
         return *space;
@@ -86,12 +79,12 @@ void mesh_study(const Study& study, const DefaultTarget& target, MeshFolder& fol
             reference = make_shared_reference(study, c, settings.mesher);
             is_new_field = true;
         }
-        const bool is_by_default = target.set(c, reference->workload);
+        target.set(c, reference->workload);
         if (settings.exact && std::exchange(is_new_field, false)) {
             folder.add({.setting = c, .exact = true, .mesher = reference->mesher},
                        reference->workload.domain, *reference->field);
         }
-        mesh_case(study, c, is_by_default, *reference, folder);
+        mesh_case(study, c, *reference, folder);
     }
     folder.end();
 }

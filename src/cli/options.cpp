@@ -188,8 +188,7 @@ Run one_structure() { return {{structures_key, {"K_oV"}}, {"splits", {"s_L"}}}; 
 void add_making_options(Options& options, Job& job, std::string_view another) {
     options.set_note(
         "Without tau, epsilon, law, schedule or a target, K_oV is adapted until lengths are within "
-        "1.1x of the exact field's, with tensors 1.2x or as near as 50000 leaves come "
-        "(--max-leaves); "
+        "1.1x of the exact field's, with tensors 1.2x, in 50000 leaves at most (--max-leaves); "
         "--target-delta 0: inserted and graded.");
     options.add_settings(one_structure(), Study{}, job.given, {Use::making, Use::reading}, another);
     add_quiet(options, job.quiet);

@@ -56,7 +56,8 @@ void require_possible(const Case& c) {
     if (c.law != GradationLaw::cone || c.schedule != GradationSchedule::sources) {
         refuse("ranks grade by the sources: leave out --law and --schedule");
     }
-    if (c.max_leaves) refuse("ranks have no limit of leaves: leave out --max-leaves");
+    if (c.max_leaves && *c.max_leaves != default_max_leaves)
+        refuse("ranks have no limit of leaves: leave out --max-leaves");
     if (c.precision && *c.precision != StoredIn::doubles && *c.precision != StoredIn::as_made) {
         refuse("ranks build trees in doubles: leave out --precision");
     }

@@ -68,7 +68,7 @@ public:
                 return false;
             }
             if (this->split_across(box, along, cut)) return true;
-            report.shortfall = depth_shortfall(this->cuts().max_depth());
+            report.shortfall = depth_shortfall(this->max_depth());
             return false;
         });
         report.met = report.shortfall.empty();

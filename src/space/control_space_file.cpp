@@ -54,14 +54,25 @@ void require_little_endian() {
     }
 }
 
+// A level below that of the root stands for none.
+template <class Depth, class State>
+void exchange_depth(const char* name, Depth& depth, State& state) {
+    int level = depth.value_or(-1);
+    state(name, level);
+    if constexpr (!std::is_const_v<Depth>) {
+        if (level < 0) depth.reset();
+        if (level >= 0) depth = level;
+    }
+}
+
 template <class Self, class State>
 void exchange(Self& options, State& state) {
     state("options.domain", options.domain);
     state("options.split", options.split, SplitRule::exact_golden);
     state("options.l_min", options.l_min);
     state("options.tolerance", options.tolerance);
-    state("options.kd_depth", options.kd_depth);
-    state("options.octree_depth", options.octree_depth);
+    exchange_depth("options.kd_depth", options.kd_depth, state);
+    exchange_depth("options.octree_depth", options.octree_depth, state);
     state("options.finest_length", options.finest_length);
     state("options.voxel", options.voxel);
     state("options.prune_delta", options.prune_delta);

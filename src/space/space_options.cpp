@@ -9,7 +9,6 @@
 #include "controlspace/gradation/grade.h"
 #include "controlspace/sources/point_source.h"
 #include "gradation/require_known.h"
-#include "space/depth_limits.h"
 
 namespace controlspace {
 
@@ -27,9 +26,9 @@ void require_not_negative(const char* name, double value) {
     }
 }
 
-void require_depth(const char* name, int depth, int deepest) {
-    if (depth < 0 || depth > deepest) {
-        throw InputError(fmt::format("{} is {}: give a value from 0 to {}", name, depth, deepest));
+void require_depth(const char* name, std::optional<int> depth, int deepest) {
+    if (depth && (*depth < 0 || *depth > deepest)) {
+        throw InputError(fmt::format("{} is {}: give a value from 0 to {}", name, *depth, deepest));
     }
 }
 

@@ -10,7 +10,6 @@
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/study/parameter.h"
 #include "refuse.h"
-#include "space/depth_limits.h"
 #include "study/member_of.h"
 
 namespace controlspace {
@@ -49,10 +48,10 @@ bool is_cut_by_rule(const CatalogueEntry& entry, const Case& c) {
     return entry.has<SplitRules>() && !c.target_delta;
 }
 
-/// The deepest level of trees of one kind.
+/// The deepest level of trees of one kind. Both stand under one key in results, so that the range
+/// is that of both; SpaceOptions has those of each.
 Access<Case> depth_if(bool with_split) {
-    Access<Case> depth = number<Case>(
-        &Case::max_depth, within(0, with_split ? deepest_kd_level : deepest_octree_level));
+    Access<Case> depth = number<Case>(&Case::max_depth, within(0, deepest_kd_level), Zero::is_none);
     depth.get = [get = depth.get, with_split](const Case& c) {
         return c.split.has_value() == with_split ? get(c) : Values{};
     };
@@ -223,10 +222,16 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
             {"tau {}"}, is_sized_by_tau),
         row(structure, "splits", "", "Where kd-trees cut", word<Case>(&Case::split),
             {"s_L", "s_G", "s_M"}, {}, is_cut_by_rule, "split"),
-        row(structure, "kd_depth", "", "Deepest level of kd-trees, the root being 0",
-            depth_if(true), {42}, {}, has<SplitRules>, "max_depth"),
-        row(structure, "octree_depth", "", "Deepest level of octrees, the root being 0",
-            depth_if(false), {14}, {}, is_octree, "max_depth"),
+        row(structure, "kd_depth", "",
+            "Deepest level of kd-trees, the root being level 0; 0: 42 as in the paper, or what "
+            "doubles "
+            "allow where they are adapted",
+            depth_if(true), {0}, {}, has<SplitRules>, "max_depth"),
+        row(structure, "octree_depth", "",
+            "Deepest level of octrees, the root being level 0; 0: 14 as in the paper, or what "
+            "doubles "
+            "allow where they are adapted",
+            depth_if(false), {0}, {}, is_octree, "max_depth"),
         row(structure, "interpolation", "", "Interpolation in quadratic leaves (K_Li, K_oLi)",
             word<Case>(&Case::interpolation), {"corrected"}, unless_default("{} interpolation"),
             has<QuadraticLeaves>),
@@ -242,8 +247,8 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
         row(structure, "max_leaves", "",
             "Leaves at which the adaptation of trees stops, though it misses its target; 0: no "
             "limit",
-            number<Case>(&Case::max_leaves, at_least(1), Zero::is_none), {0}, {"to {} leaves"},
-            is_adapted_tree),
+            number<Case>(&Case::max_leaves, at_least(1), Zero::is_none), {default_max_leaves},
+            unless_default("to {} leaves"), is_adapted_tree),
         row(structure, "equal_delta", "",
             "Largest delta_R, at all probes, for which voxels are chosen (and prune_delta, where "
             "that saves memory); 0: not chosen. For trees see target_delta",

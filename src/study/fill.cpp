@@ -217,11 +217,12 @@ Filled make_and_fill(const Study& study, const Case& c, const StudyRows& rows,
     if (c.schedule == GradationSchedule::sources && entry.has<MetricNodes>()) {
         add_largest_ratio(creation.gradation, space, c.law, c.neighbourhood);
     }
-    if (c.max_depth && space.footprint().depth >= *c.max_depth &&
+    const int deepest = c.max_depth.value_or(c.split ? usual_kd_level : usual_octree_level);
+    if (entry.has<SourceLeaves>() && space.footprint().depth >= deepest &&
         has_long_leaf(space, sources, c.tau)) {
         add_remark(creation, fmt::format("leaves of sources are longer than tau where level {} is "
                                          "the deepest allowed",
-                                         *c.max_depth));
+                                         deepest));
     }
     remark_on_all(creation, study, c, rows);
     return filled;

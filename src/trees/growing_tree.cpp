@@ -20,7 +20,7 @@ void fail_too_large(std::size_t bytes, std::size_t max_bytes) {
 }
 
 std::string depth_shortfall(int max_depth) {
-    return fmt::format("leaves of level {} are not cut: raise target_delta (within) or the depth",
+    return fmt::format("leaves of level {} are not cut: raise the depth, or target_delta (within)",
                        max_depth);
 }
 

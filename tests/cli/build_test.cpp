@@ -79,7 +79,7 @@ TEST_CASE("a target that is missed is reported, with status 3, and what was made
         CHECK(outcome.status == 3);
         CHECK(lines(outcome.err) == 1);
         CHECK_THAT(outcome.err, Catch::Matchers::StartsWith("controlspace: warning: K_oL") &&
-                                    Contains(reason) && Contains("raise target_delta"));
+                                    Contains(reason) && Contains("raise the depth"));
         CHECK_FALSE(outcome.out.empty());
     };
     check_missed("build s.csv -o f.ctrl" + missed);
@@ -112,6 +112,17 @@ TEST_CASE("a target that is missed is reported, with status 3, and what was made
     check_refused(box.run("query s.csv places.csv --within 1.1 --target-delta 0.1"), "--within");
 }
 
+TEST_CASE("a small source in a large domain is followed by default") {
+    const Sandbox box("build-small-in-large");
+    box.write("valve.csv", "x,y,z,h\n0,0,0,5\n100000,0,0,5\n20000,0,0,0.05\n");
+    box.write("places.csv", "x,y,z\n20000,0,0\n20001,0,0\n20000,2,1\n");
+    const Outcome outcome = box.run("query valve.csv places.csv");
+    CHECK(outcome.status == 0);
+    CHECK_THAT(outcome.err, Contains("everywhere: lengths within 1.1x"));
+    // A limit that is asked for is kept, though the promise is missed by it.
+    CHECK(box.run("query valve.csv places.csv --octree-depth 14").status == 3);
+}
+
 TEST_CASE("adaptation stops at so many leaves as a setting allows") {
     const Sandbox box("build-max-leaves");
     box.write("s.csv", sources_csv);
@@ -120,7 +131,7 @@ TEST_CASE("adaptation stops at so many leaves as a setting allows") {
     CHECK(asked.status == 3);
     CHECK_THAT(asked.err, Contains("missed: more than 20 leaves"));
     const Outcome by_default = box.run(build + "20");
-    CHECK(by_default.status == 0);
+    CHECK(by_default.status == 3);  // what is promised unasked is missed all the same
     CHECK_THAT(by_default.err, Contains("missed: more than 20 leaves"));
     CHECK_THAT(box.run(build + "20 --tau 1").err, Contains("without effect: max_leaves"));
     check_refused(box.run(build + "-1"), "--max-leaves");
@@ -167,9 +178,8 @@ TEST_CASE("how far a structure is from the exact field is told, and what to do")
     CHECK(fine.status == 0);
     CHECK_THAT(fine.err, Contains("everywhere: lengths within 1.1x") && !Contains("8000"));
     CHECK(box.run("build s.csv -o f.ctrl").err == fine.err);
-    // Out of reach at this depth: nobody asked for it.
     const Outcome shallow = box.run("build s.csv -o f.ctrl --octree-depth 3");
-    CHECK(shallow.status == 0);
+    CHECK(shallow.status == 3);
     CHECK_THAT(shallow.err, Contains("target 0.01575 (lengths within 1.1x) missed"));
     box.write("t.csv",
               "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n0,0,0,0.1,0.2,0.1,0,0,0\n"

@@ -287,7 +287,7 @@ TEST_CASE("an interrupted study goes on where it was") {
     const Sandbox box("resume");
     const std::string study =
         "compare --h 0.3 --structures K_L,K_oL,K_oV --splits s_L --law cone --access-points 100 "
-        "--access-repeats 1 --fine-probe-grid 9 ";
+        "--access-repeats 1 --fine-probe-grid 9 --kd-depth 100 ";
     REQUIRE(box.run(study + "--output out").status == 0);
     const auto results = [&] { return nlohmann::json::parse(file_text(box / "out/results.json")); };
     const auto whole = results();

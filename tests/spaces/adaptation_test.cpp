@@ -414,8 +414,7 @@ TEST_CASE("a target out of reach is told, with what was reached") {
         const AdaptationReport report = space->adapt({sources, nullptr, g, 0.1});
         CHECK_FALSE(report.met);
         CHECK(report.reached > 0.1);
-        CHECK(report.shortfall.find("raise target_delta (within) or the depth") !=
-              std::string::npos);
+        CHECK(report.shortfall.find("raise the depth, or target_delta") != std::string::npos);
         CHECK(space->footprint().cells == 64);
     }
     for (const CatalogueEntry& entry : structures()) {
@@ -452,8 +451,8 @@ TEST_CASE("what is guaranteed holds where leaves come near the spacing of double
                     const Box around{q - Vector::Constant(r), q + Vector::Constant(r)};
                     for (const Point& x : random_points(around, 2000, 3)) {
                         const double exact = source.metric.xx + (steep - 1) * (x - q).norm();
-                        worst = std::max(worst, nonconformity(sample_at(*space, x),
-                                                              Metric::isotropic(exact)));
+                        worst = std::max(
+                            worst, nonconformity(sample_at(*space, x), Metric::isotropic(exact)));
                     }
                 }
                 CHECK(worst <= report.reached * (1 + 1e-9));

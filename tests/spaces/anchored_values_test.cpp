@@ -79,6 +79,26 @@ CASE_OF_EACH(entry, anchored_catalogue(), "more sources than anchors at one plac
     }
 }
 
+CASE_OF_EACH(entry, anchored_catalogue(),
+             "a steep cone just beyond the face of a leaf that is not cut is not missed") {
+    const std::vector<PointSource> sources{
+        {Point(-0.42567976, 0.75695719, 0.82612610), Metric::isotropic(0.0552594), 10},
+        {Point(-0.75242710, -0.11953831, -0.97706003), Metric::isotropic(0.187095), 10}};
+    const auto space = editable(entry.make({.domain = domain, .l_min = 2, .tolerance = 1}));
+    space->insert(sources);
+    space->grade({});
+    // Both are cones of slope 9; the other is 2.5 away and more.
+    for (const double step : {0.002, 0.004, 0.0077, 0.01, 0.02, 0.04}) {
+        for (const Vector& way : {Vector(0.23, -0.95, 0.17), Vector(0, -1, 0), Vector(1, 0, 0),
+                                  Vector(-1, 0, 0), Vector(0, 0, -1), Vector(0, 0, 1)}) {
+            const Point x = sources[0].position + step * way.normalized();
+            const double exact = 0.0552594 + 9 * step;
+            CAPTURE(step, way);
+            CHECK(sample_at(*space, x).xx <= 1.5 * exact);
+        }
+    }
+}
+
 TEST_CASE("sources of one metric share it, and idle ones go") {
     SourceTable table;
     const Metric m = Metric::isotropic(0.1);

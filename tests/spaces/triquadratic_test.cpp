@@ -139,6 +139,26 @@ TEST_CASE("never longer than the growth that is allowed, and the interpolation w
     CHECK(limited > 100);
 }
 
+TEST_CASE("a limited growth makes no jump") {
+    Draw draw(7);
+    for (int i = 0; i < 300; ++i) {
+        const double anisotropy = i % 2 == 0 ? 3 : 30;
+        const Metric own = draw.metric(0.1, anisotropy);
+        const Across across = draw_across(draw, 0.2, anisotropy);
+        const Vector t(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
+        const Metric free = triquadratic(own, across, t, unlimited);
+        const double reached = growth(free, own);
+        // A hair below what the interpolated metric reaches along one direction, and above.
+        const Metric below = triquadratic(own, across, t, reached * (1 - 1e-9));
+        CHECK(length_difference(below, free) < 1e-6);
+        CHECK(triquadratic(own, across, t, reached * (1 + 1e-9)) == free);
+        // The others keep what they have.
+        if (reached < 1.3) continue;
+        const Metric half = triquadratic(own, across, t, std::sqrt(reached));
+        CHECK(growth(free, half) <= std::sqrt(reached) * (1 + 1e-6));
+    }
+}
+
 TEST_CASE("lengths are interpolated as the isotropic metrics are, to the bit") {
     Draw draw(6);
     int deepened = 0, limited = 0, free = 0;

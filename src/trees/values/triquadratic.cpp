@@ -4,7 +4,6 @@
 
 #include "controlspace/metric/blend.h"
 #include "controlspace/metric/intersection.h"
-#include "metric/decompose.h"
 
 namespace controlspace {
 
@@ -38,15 +37,6 @@ double admissible_share(double own, double departure) {
     return deepest >= -0.5 ? 1 : -0.5 / deepest;
 }
 
-// The largest length along any direction that `departure` adds to `own`, in those of `own`. It
-// bounds growth(own + s departure, own) by 1 + s times it.
-double largest_departure(const Metric& own, const Metric& departure) {
-    if (is_axis_aligned(own) && is_axis_aligned(departure)) {
-        return std::max({departure.xx / own.xx, departure.yy / own.yy, departure.zz / own.zz});
-    }
-    return left_svd(Cholesky(own).solve(departure.matrix())).s[0];
-}
-
 }  // namespace
 
 Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, const Vector& t,
@@ -58,9 +48,7 @@ Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, cons
     const Metric departure = difference(sum, own);
     const double share = admissible_share(own, departure);
     const Metric deep_enough = share >= 1 ? sum : moved(own, share, departure);
-    if (is_within(deep_enough, largest_growth, own)) return deep_enough;
-    const Metric left = difference(deep_enough, own);
-    return moved(own, (largest_growth - 1) / largest_departure(own, left), left);
+    return intersection(deep_enough, largest_growth * own);
 }
 
 // With k in [-1, 1]: the right value, with one corner's own face in place of the opposite one, plus
@@ -98,8 +86,7 @@ double limited_length(double own, double sum, const Vector& v, double slope) {
     const double share = admissible_share(own, departure);
     if (share < 1) return own + share * departure;
     const double growth = 1 + slope * Vector(v / own).norm();
-    if (is_within(Metric::isotropic(sum), growth, Metric::isotropic(own))) return sum;
-    return own + (growth - 1) / (departure / own) * departure;
+    return std::min(sum, growth * own);
 }
 
 }  // namespace controlspace

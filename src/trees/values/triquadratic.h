@@ -21,9 +21,10 @@ namespace controlspace {
 /// its departure from `own` is scaled down until it does not. So it is always positive definite.
 ///
 /// A leaf's face gets the mean of two leaves, far coarser than `own` beside a large neighbour, as
-/// beside a source at a cut plane. Where the result would exceed `largest_growth` times `own` along
-/// any direction, its departure is scaled down too; at least 1. (Cut off at the coarsest of the
-/// seven metrics instead, it is as often coarser than requested, and less accurate.)
+/// beside a source at a cut plane. So the result is intersected with `largest_growth` times `own`,
+/// which is at least 1: along each direction by itself, and without a jump where it begins. (Cut
+/// off at the coarsest of the seven metrics instead, it is as often coarser than requested, and
+/// less accurate.)
 Metric triquadratic(const Metric& own, const std::array<Metric, 6>& across, const Vector& t,
                     double largest_growth);
 

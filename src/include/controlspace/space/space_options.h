@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <limits>
+#include <optional>
 
 #include "controlspace/geometry/box.h"
 #include "controlspace/metric/intersection.h"
@@ -11,6 +12,15 @@
 #include "controlspace/space/split_rule.h"
 
 namespace controlspace {
+
+/// The deepest levels that trees may be given, the root being 0: past them a double has no number
+/// left between the faces of any box.
+inline constexpr int deepest_kd_level = 200;
+inline constexpr int deepest_octree_level = 60;
+
+/// The deepest levels of leaves that are cut for sources, unless told otherwise (paper §5.1).
+inline constexpr int usual_kd_level = 42;
+inline constexpr int usual_octree_level = 14;
 
 /// How trees with quadratic leaves (K_Li, K_oLi) interpolate.
 enum class QuadraticForm {
@@ -36,10 +46,12 @@ struct GrowthLimit {
 struct SpaceOptions {
     Box domain;
     SplitRule split = SplitRule::middle;  ///< kd-trees only
-    double l_min = 1;          ///< longest edge of a source's leaf, in the source's metric (τ)
-    double tolerance = 0.2;    ///< ε_δ of insertion
-    int kd_depth = 42;         ///< deepest level of a kd-tree, the root being 0
-    int octree_depth = 14;     ///< deepest level of an octree, the root being 0
+    double l_min = 1;        ///< longest edge of a source's leaf, in the source's metric (τ)
+    double tolerance = 0.2;  ///< ε_δ of insertion
+    /// Deepest levels of kd-trees and octrees, the root being 0. None: the usual ones where leaves
+    /// are cut for sources, the deepest where they follow a field.
+    std::optional<int> kd_depth = {};
+    std::optional<int> octree_depth = {};
     double finest_length = 0;  ///< smallest length any source requests; grids size voxels by it
     double voxel = 0;          ///< longest edge of a grid's voxels; 0: l_min * finest_length
     double h_max = largest_magnitude;  ///< bounds M_max; K_Li and K_oLi overshoot it a little

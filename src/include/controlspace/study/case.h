@@ -39,6 +39,15 @@ StoredIn stored_in(Precision precision);
 /// None of what is built as it was made, or has no choice.
 std::optional<Precision> precision_of(std::optional<StoredIn> form);
 
+/// Trees that are to follow a continuous field, or isotropic sources, without a target: the largest
+/// factor between their lengths and those of the exact field.
+inline constexpr double default_within = 1.1;
+/// The same of sources with tensors, where it takes longer and stops at this many leaves.
+inline constexpr double default_within_of_tensors = 1.2;
+inline constexpr int default_max_leaves_of_tensors = 50'000;
+/// Leaves at which adapted trees stop, unless told otherwise: some 0.6 GB while they are made.
+inline constexpr int default_max_leaves = 2'000'000;
+
 /// One structure under one setting, which gives one row of results. Its members are set by the rows
 /// of case_parameters(). What does not apply to the structure is none, or has its default.
 struct Case {

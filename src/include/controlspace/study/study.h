@@ -57,13 +57,6 @@ private:
     std::map<std::string, Values> lists_;
 };
 
-/// Trees that are to follow a continuous field, or isotropic sources, without a target: the largest
-/// factor between their lengths and those of the exact field.
-inline constexpr double default_within = 1.1;
-/// The same of sources with tensors, where it takes longer and stops at this many leaves.
-inline constexpr double default_within_of_tensors = 1.2;
-inline constexpr std::size_t default_max_leaves = 50'000;
-
 /// A comparison: one kind of sources, one domain, one way to measure, and the runs.
 struct Study {
     std::string name = "study";

@@ -107,6 +107,7 @@ private:
         return requires(Storage & s) { s.learn(LeafIndex{}, std::vector<std::uint32_t>()); };
     }
     static constexpr double share_where_learned = 0.7;
+    static constexpr double far_off = 10;
 
     // Samples the leaves that are not settled, and settles, fits or cuts them. Returns
     // whether some have to be sampled again.
@@ -148,6 +149,20 @@ private:
             cut.clear();
             const bool is_cut = split(l.box, departure.along, cut);
             changes = is_cut || changes;
+            if constexpr (learns()) {
+                // What is too short to be cut, and far off beside a steep cone.
+                if (!proved && !is_cut && departure.worst > far_off * aim_) {
+                    NearbyField nearby(field_);
+                    nearby.enter(l.box, true);
+                    const auto lesson = storage_.lesson(l.leaf, departure.where, nearby, field_);
+                    if (!lesson.empty()) {
+                        storage_.learn(l.leaf, lesson);
+                        states_[l.leaf] = LeafState::changed;
+                        changes = true;
+                        continue;
+                    }
+                }
+            }
             if (!is_cut && departure.is_unknown() && !limit_.is_late()) {
                 const Departure found = at_some_places(l);
                 if (found.worst > field_.target()) departure = found;

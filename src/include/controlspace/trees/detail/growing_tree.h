@@ -99,7 +99,7 @@ protected:
             report.shortfall = stop == GrowthStop::leaves ? leaves_shortfall(goal.max_leaves)
                                                           : limit_shortfall(stop);
         } else if (too_deep) {
-            report.shortfall = depth_shortfall(cuts().max_depth());
+            report.shortfall = depth_shortfall(max_depth());
         } else if (too_short) {
             report.shortfall =
                 "the field is steep: leaves far shorter than an element are not cut: raise "
@@ -118,6 +118,12 @@ protected:
         return place;
     }
 
+    /// The deepest level of leaves that are cut for anything but a source.
+    int max_depth() const {
+        return Node::is_octant ? options_.octree_depth.value_or(deepest_octree_level)
+                               : options_.kd_depth.value_or(deepest_kd_level);
+    }
+
     /// Cuts the leaf with this box where something varies by `along` the axes, unless it is among
     /// the smallest allowed.
     bool split_across(const Box& box, const std::array<double, 3>& along,
@@ -125,7 +131,7 @@ protected:
         const LeafPlace place = topology_.locate(box.centre());
         const Subdivision subdivision =
             Node::subdivision_across(domain(), place.level, place.box, along);
-        if (place.level >= cuts().max_depth() || !subdivision.is_proper()) return false;
+        if (place.level >= max_depth() || !subdivision.is_proper()) return false;
         split(place, subdivision, &cut);
         return true;
     }

@@ -26,7 +26,10 @@ public:
         return subdivision;
     }
 
-    int max_depth() const { return Node::is_octant ? options_.octree_depth : options_.kd_depth; }
+    int max_depth() const {
+        return Node::is_octant ? options_.octree_depth.value_or(usual_octree_level)
+                               : options_.kd_depth.value_or(usual_kd_level);
+    }
 
     /// Whether any edge of `box` is longer than l_min in the metric.
     bool is_too_long(const Metric& metric, const Box& box) const {
