@@ -26,6 +26,54 @@ std::vector<PointSource> within(const std::vector<PointSource>& sources,
 
 double along(const Metric& m, const Vector& direction) { return 1 / metric_length(m, direction); }
 
+/// Isotropic lengths at a place, growing by 0.25 a unit of distance from every source: brute force.
+double length_at(const std::vector<PointSource>& sources, const Point& p) {
+    double length = 1e300;
+    for (const PointSource& s : sources) {
+        length = std::min(length, s.metric.xx + 0.25 * (p - s.position).norm());
+    }
+    return length;
+}
+
+/// A box from the origin whose top and bottom are fans around a vertex above and below `inside`.
+Surface box_with_fans(const Vector& edges, const Point& inside) {
+    Surface s;
+    for (const double z : {0., edges.z()}) {
+        const double x = edges.x(), y = edges.y();
+        for (const Point& p : {Point(0, 0, z), Point(x, 0, z), Point(x, y, z), Point(0, y, z),
+                               Point(inside.x(), inside.y(), z)}) {
+            s.vertices.push_back(p);
+        }
+    }
+    for (const std::size_t i : {0, 1, 2, 3}) {
+        const std::size_t j = (i + 1) % 4;
+        s.triangles.push_back({j, i, 4});
+        s.triangles.push_back({i + 5, j + 5, 9});
+        s.triangles.push_back({i, j, j + 5});
+        s.triangles.push_back({i, j + 5, i + 5});
+    }
+    return s;
+}
+
+/// The same where the flat triangle at y = 0 has flat ones at its other sides, too.
+Surface box_with_chains(const Vector& edges, const Point& inside) {
+    Surface s = box_with_fans(edges, inside);
+    for (const std::size_t base : {0, 5}) {
+        for (const auto& [end, far] : {std::pair(0, 3), {1, 2}}) {
+            const std::size_t a = base + std::size_t(end), b = base + 4, c = base + std::size_t(far);
+            std::erase_if(s.triangles, [&](const auto& t) {
+                return std::ranges::is_permutation(t, std::array{a, b, c});
+            });
+            const std::size_t middle = s.vertices.size();
+            s.vertices.push_back((s.vertices[a] + s.vertices[b]) / 2 +
+                                 Vector(0, inside.y() / 20, 0));
+            s.triangles.insert(s.triangles.end(),
+                               {{a, b, middle}, {b, c, middle}, {c, a, middle}});
+        }
+    }
+    return s;
+}
+
 /// A plate with a fin of thickness 0.004 on it.
 Surface plate_with_fin(std::size_t n) {
     Surface surface = box({0, 0, 0}, {1, 1, 0.2}, n);
@@ -94,6 +142,30 @@ TEST_CASE("a shell of two spheres has its thickness, and follows both curvatures
         const double around = along(metric, Vector(-p.y(), p.x(), 0).normalized());
         CHECK(around == Approx(chord(15) * p.norm()).epsilon(0.05));
     }
+}
+
+TEST_CASE("a plate has its thickness along its edges, where flat triangles meet its rim") {
+    // Down to an angle of 179.98 degrees, which rounding of floats tilts by a degree.
+    const double height = GENERATE(30., 8.5, 1., 0.01, 0.0005);
+    CAPTURE(height);
+    const auto make = GENERATE(box_with_fans, box_with_chains);
+    const Surface plate = make({100, 60, 2}, {50, height, 0});
+    const Eigen::Affine3d map = somewhere(GENERATE(1., 10.));
+    const double scale = map.linear().col(0).norm();
+    auto turned = transformed(plate, map);
+    if (GENERATE(false, true)) {  // as binary .stl has them
+        for (Point& p : turned.vertices) p = p.cast<float>().cast<double>();
+    }
+    const auto sources = sources_of(turned, {.isotropic = true});
+    double longest = 0;
+    for (double x = 0; x <= 100; x += 2.5) {
+        for (const double z : {0, 2}) {
+            for (const double y : {0., 0.5, 2., 30., 60.}) {
+                longest = std::max(longest, length_at(sources, map * Point(x, y, z)) / scale);
+            }
+        }
+    }
+    CHECK(longest < 1.35);  // two lengths between sources, along which they grow
 }
 
 TEST_CASE("walls that touch, and surfaces at an angle to each other, are no gaps") {

@@ -43,6 +43,7 @@ public:
     Corner partner(Corner side) const { return partner_[side]; }
     std::uint32_t vertex(Corner c) const { return mesh_.triangles[c / 3][c % 3]; }
     const Point& point(Corner c) const { return mesh_.vertices[vertex(c)]; }
+    const SurfaceMesh& mesh() const { return mesh_; }
     double length(Corner side) const { return (point(next(side)) - point(side)).norm(); }
 
     /// Whether the triangles on both sides turn the same way.
@@ -69,27 +70,57 @@ double doubled_area(const Sides& sides, Corner c) {
     return (sides.point(next(c)) - a).cross(sides.point(next(next(c))) - a).norm();
 }
 
-/// The longest side of a triangle with an angle of more than 150 degrees, or none.
-Corner side_of_cap(const Sides& sides, std::uint32_t t) {
+/// By how much round-off of the vertices may tilt a triangle.
+double tilt_by_rounding(const Sides& sides, std::uint32_t t) {
+    const Corner c = 3 * t;
+    const double longest =
+        std::max({sides.length(c), sides.length(c + 1), sides.length(c + 2)});
+    return rounding(sides.mesh()) * longest / doubled_area(sides, c);
+}
+
+/// Whether a triangle has an angle of more than 150 degrees.
+bool is_cap(const Sides& sides, std::uint32_t t) {
     static const double widest = -std::cos(std::numbers::pi / 6);
     for (Corner c = 3 * t; c < 3 * t + 3; ++c) {
         const Vector a = sides.point(next(c)) - sides.point(c);
         const Vector b = sides.point(next(next(c))) - sides.point(c);
-        if (a.dot(b) < widest * a.norm() * b.norm()) return next(c);
+        if (a.dot(b) < widest * a.norm() * b.norm()) return true;
     }
-    return none;
+    return false;
 }
 
-/// Normals, of which those of caps are their neighbours': three vertices nearly on a line hardly
-/// say how the surface is tilted, and would make creases of smooth edges.
-std::vector<Vector> without_caps(const Sides& sides, const std::vector<Vector>& normals) {
+/// Normals, of which those of caps are a neighbour's: three vertices nearly on a line hardly say
+/// how the surface is tilted, and would make creases of smooth edges. Of the neighbours the one
+/// that turns least is taken: the longest side is often an edge of the part. Caps in the plane of
+/// other caps keep their own, and so do those that turn away from neighbours that are apart, too.
+std::vector<Vector> without_caps(const Sides& sides, const std::vector<Vector>& normals,
+                                 double crease) {
+    constexpr double least = 1e-3;
+    std::vector<char> caps(normals.size());
+    for (std::uint32_t t = 0; t < caps.size(); ++t) caps[t] = is_cap(sides, t);
     std::vector<Vector> result = normals;
     for (std::uint32_t t = 0; t < normals.size(); ++t) {
-        const Corner side = side_of_cap(sides, t);
-        if (side == none || sides.partner(side) == none) continue;
-        const std::uint32_t other = sides.partner(side) / 3;
-        if (side_of_cap(sides, other) != none) continue;
-        result[t] = (sides.agree(side) ? 1 : -1) * normals[other];
+        if (!caps[t]) continue;
+        bool is_plane = false;
+        std::vector<std::pair<double, Vector>> around;  // turns and normals of neighbours
+        for (Corner side = 3 * t; side < 3 * t + 3; ++side) {
+            if (sides.partner(side) == none) continue;
+            const std::uint32_t other = sides.partner(side) / 3;
+            const double turn = sides.turn(side);
+            if (caps[other]) {
+                is_plane |= turn < least + 4 * (tilt_by_rounding(sides, t) +
+                                                tilt_by_rounding(sides, other));
+            } else {
+                around.emplace_back(turn, (sides.agree(side) ? 1 : -1) * normals[other]);
+            }
+        }
+        if (around.empty() || is_plane) continue;
+        const auto& [turn, nearest] = *std::ranges::min_element(
+            around, {}, [](const auto& neighbour) { return neighbour.first; });
+        const auto goes_on = std::ranges::count_if(around, [&](const auto& neighbour) {
+            return neighbour.second.dot(nearest) >= std::cos(crease);
+        });
+        if (turn <= crease || around.size() == 1 || goes_on > 1) result[t] = nearest;
     }
     return result;
 }
@@ -197,7 +228,7 @@ SmoothPatches smooth_patches(const SurfaceMesh& mesh, double crease) {
     }
     patches.fan_of.resize(mesh.triangles.size());
     Sides sides(mesh, patches.normals);
-    patches.normals = without_caps(sides, patches.normals);
+    patches.normals = without_caps(sides, patches.normals, crease);
     patches.bends = separate_at_creases(sides, crease);
     orient(sides, patches.normals);
     add_fans(sides, crease, patches);
