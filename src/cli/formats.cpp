@@ -118,6 +118,14 @@ bool is_part(const std::filesystem::path& file) {
     return format != nullptr && format->read_mesh != nullptr;
 }
 
+std::vector<WallRequest> wall_requests_of(const std::filesystem::path& file,
+                                          const CurvatureSizes& sizes, std::size_t rays) {
+    constexpr std::uint64_t seed = 1;
+    const SurfaceMesh surface = checked_part(file).read_mesh(file);
+    load_module("cgal");
+    return wall_requests(surface, sizes, rays, seed, file);
+}
+
 Part read_part(const std::filesystem::path& file, double crease) {
     const SourceFormat& format = checked_part(file);
     if (has_ending(cad_endings, lower_case_extension(file))) return {.cad = file};

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "controlspace/mesh/part.h"
 #include "controlspace/study/workload.h"
+#include "io/surface/surface_sources.h"
 
 namespace controlspace {
 
@@ -14,6 +16,11 @@ FileReaders file_readers();
 
 /// Whether a file holds a surface or a solid, by its ending.
 bool is_part(const std::filesystem::path& file);
+
+/// What walls and gaps of a part ask for at places among `rays` random ones, the same for the same
+/// file (see io/surface/surface_sources.h); `sizes` are those that its sources were made by.
+std::vector<WallRequest> wall_requests_of(const std::filesystem::path& file,
+                                          const CurvatureSizes& sizes, std::size_t rays);
 
 /// A part to be meshed; `crease` as of Part. Throws InputError.
 Part read_part(const std::filesystem::path& file, double crease);

@@ -29,6 +29,11 @@ SurfaceSources surface_sources(const SurfaceMesh& mesh, const CurvatureSizes& si
     return module_table<CgalModule>("cgal").surface_sources(mesh, sizes, file);
 }
 
+std::vector<WallRequest> wall_requests(const SurfaceMesh& mesh, const CurvatureSizes& sizes,
+                                       std::size_t rays, std::uint64_t seed, const fs::path& file) {
+    return module_table<CgalModule>("cgal").wall_requests(mesh, sizes, rays, seed, file);
+}
+
 DistanceField surface_distance(const SurfaceMesh& mesh) {
     return module_table<CgalModule>("cgal").surface_distance(mesh);
 }

@@ -7,6 +7,7 @@ CONTROLSPACE_MODULE {
         .version = controlspace::version(),
         .read_surface_mesh = controlspace::read_surface_mesh,
         .surface_sources = controlspace::surface_sources,
+        .wall_requests = controlspace::wall_requests,
         .surface_distance = controlspace::surface_distance};
     return &table;
 }

@@ -4,6 +4,8 @@
 
 #include "controlspace/io/read_surface_sources.h"
 #include "export/surfaces.h"
+#include "io/surface/surface_mesh.h"
+#include "io/surface/surface_sources.h"
 #include "sources/files.h"
 
 namespace controlspace::surface_walls_test {
@@ -60,15 +62,15 @@ Surface box_with_chains(const Vector& edges, const Point& inside) {
     Surface s = box_with_fans(edges, inside);
     for (const std::size_t base : {0, 5}) {
         for (const auto& [end, far] : {std::pair(0, 3), {1, 2}}) {
-            const std::size_t a = base + std::size_t(end), b = base + 4, c = base + std::size_t(far);
+            const std::size_t a = base + std::size_t(end), b = base + 4,
+                              c = base + std::size_t(far);
             std::erase_if(s.triangles, [&](const auto& t) {
                 return std::ranges::is_permutation(t, std::array{a, b, c});
             });
             const std::size_t middle = s.vertices.size();
             s.vertices.push_back((s.vertices[a] + s.vertices[b]) / 2 +
                                  Vector(0, inside.y() / 20, 0));
-            s.triangles.insert(s.triangles.end(),
-                               {{a, b, middle}, {b, c, middle}, {c, a, middle}});
+            s.triangles.insert(s.triangles.end(), {{a, b, middle}, {b, c, middle}, {c, a, middle}});
         }
     }
     return s;
@@ -166,6 +168,45 @@ TEST_CASE("a plate has its thickness along its edges, where flat triangles meet 
         }
     }
     CHECK(longest < 1.35);  // two lengths between sources, along which they grow
+}
+
+TEST_CASE("random rays from a plate ask for its thickness, whatever its sources") {
+    const double scale = GENERATE(1., 10.);
+    const Eigen::Affine3d map = somewhere(scale);
+    const ScratchDirectory scratch;
+    const auto path =
+        scratch.file("p.off", off_text(transformed(box_with_fans({100, 60, 2}, {50, 9, 0}), map)));
+    const SurfaceMesh mesh = read_surface_mesh(path);
+    constexpr std::size_t rays = 4000;
+    const auto requests = wall_requests(mesh, {.elements_across = 2}, rays, 1, path);
+    double across = 0;
+    Point sum = Point::Zero();
+    for (const WallRequest& wall : requests) {
+        const Vector normal = map.linear().inverse() * wall.normal * scale;
+        const Point place = map.inverse() * wall.place;
+        if (std::abs(normal.z()) < 0.5) {
+            CHECK(wall.length == Approx(0.1 * mesh.diagonal));  // through the plate's plane
+            continue;
+        }
+        CHECK(std::abs(normal.z()) == Approx(1));
+        CHECK(std::min(std::abs(place.z()), std::abs(place.z() - 2)) < 1e-6);
+        CHECK(wall.length == Approx(scale));
+        sum += place;
+        ++across;
+    }
+    // By area, within four standard deviations; all others go through the plate's plane.
+    CHECK(requests.size() == rays);
+    CHECK(across / rays == Approx(12000. / 12640).margin(0.014));
+    CHECK(sum.x() / across == Approx(50).margin(4 * 100 / std::sqrt(12 * across)));
+    CHECK(sum.y() / across == Approx(30).margin(4 * 60 / std::sqrt(12 * across)));
+    const auto again = wall_requests(mesh, {.elements_across = 2}, rays, 1, path);
+    CHECK(again.back().place == requests.back().place);
+    // Raised to h_min, and none where nothing is opposite.
+    CHECK(wall_requests(mesh, {.h_min = 3 * scale}, 100, 2, path).front().length ==
+          Approx(3 * scale));
+    const auto sheet = scratch.file(
+        "s.off", off_text(patch({2, 2}, [](double u, double v) { return Point(u, v, 0); })));
+    CHECK(wall_requests(read_surface_mesh(sheet), {}, 100, 1, sheet).empty());
 }
 
 TEST_CASE("walls that touch, and surfaces at an angle to each other, are no gaps") {

@@ -12,8 +12,10 @@
 #include "controlspace/metric/blend.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/order_free_intersection.h"
+#include "geometry/random_fractions.h"
 #include "io/surface/curvature.h"
 #include "io/surface/facing_walls.h"
+#include "io/surface/surface_sources.h"
 #include "refuse.h"
 
 namespace controlspace {
@@ -47,6 +49,8 @@ Bounds bounds_of(const std::filesystem::path& path, const CurvatureSizes& sizes,
     }
     return bounds;
 }
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 double shortest(const Metric& m) { return eigen_frame(m).lengths[0]; }
 
@@ -110,8 +114,6 @@ public:
     }
 
 private:
-    static double radians(double degrees) { return degrees * std::numbers::pi / 180; }
-
     double length(double curvature) const {
         return std::clamp(chord_ / curvature, bounds_.h_min, bounds_.h_max);
     }
@@ -253,6 +255,39 @@ SurfaceSources surface_sources(const SurfaceMesh& mesh, const CurvatureSizes& si
                                const std::filesystem::path& file) {
     require_valid(sizes);
     return Sizing(mesh, sizes, bounds_of(file, sizes, mesh.diagonal)).sources();
+}
+
+std::vector<WallRequest> wall_requests(const SurfaceMesh& mesh, const CurvatureSizes& sizes,
+                                       std::size_t rays, std::uint64_t seed,
+                                       const std::filesystem::path& file) {
+    require_valid(sizes);
+    const Bounds bounds = bounds_of(file, sizes, mesh.diagonal);
+    SmoothPatches patches = smooth_patches(mesh, radians(sizes.crease));
+    patches.normals = triangle_normals(mesh);
+    const FacingWalls walls(mesh, patches);
+    std::vector<double> area_up_to;
+    double area = 0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Point& p = mesh.vertices[a];
+        area_up_to.push_back(area += (mesh.vertices[b] - p).cross(mesh.vertices[c] - p).norm());
+    }
+    RandomFractions random(seed);
+    std::vector<WallRequest> requests;
+    for (std::size_t i = 0; i < rays; ++i) {
+        const auto found =
+            std::upper_bound(area_up_to.begin(), area_up_to.end() - 1, random() * area);
+        const auto t = static_cast<std::uint32_t>(found - area_up_to.begin());
+        const auto& [a, b, c] = mesh.triangles[t];
+        const double u = std::sqrt(random()), v = random();
+        const Point place =
+            (1 - u) * mesh.vertices[a] + u * (1 - v) * mesh.vertices[b] + u * v * mesh.vertices[c];
+        const double thickness = walls.distance(place, t);
+        if (thickness == infinity) continue;
+        requests.push_back(
+            {place, patches.normals[t],
+             std::clamp(thickness / sizes.elements_across, bounds.h_min, bounds.h_max)});
+    }
+    return requests;
 }
 
 SurfaceSources read_surface_sources(const std::filesystem::path& path,

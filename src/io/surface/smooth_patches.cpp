@@ -73,8 +73,7 @@ double doubled_area(const Sides& sides, Corner c) {
 /// By how much round-off of the vertices may tilt a triangle.
 double tilt_by_rounding(const Sides& sides, std::uint32_t t) {
     const Corner c = 3 * t;
-    const double longest =
-        std::max({sides.length(c), sides.length(c + 1), sides.length(c + 2)});
+    const double longest = std::max({sides.length(c), sides.length(c + 1), sides.length(c + 2)});
     return rounding(sides.mesh()) * longest / doubled_area(sides, c);
 }
 
@@ -219,13 +218,18 @@ void add_fans(const Sides& sides, double crease, SmoothPatches& patches) {
 
 }  // namespace
 
-SmoothPatches smooth_patches(const SurfaceMesh& mesh, double crease) {
-    SmoothPatches patches;
+std::vector<Vector> triangle_normals(const SurfaceMesh& mesh) {
+    std::vector<Vector> normals;
     for (const auto& [a, b, c] : mesh.triangles) {
         const Point& p = mesh.vertices[a];
-        patches.normals.push_back(
-            (mesh.vertices[b] - p).cross(mesh.vertices[c] - p).stableNormalized());
+        normals.push_back((mesh.vertices[b] - p).cross(mesh.vertices[c] - p).stableNormalized());
     }
+    return normals;
+}
+
+SmoothPatches smooth_patches(const SurfaceMesh& mesh, double crease) {
+    SmoothPatches patches;
+    patches.normals = triangle_normals(mesh);
     patches.fan_of.resize(mesh.triangles.size());
     Sides sides(mesh, patches.normals);
     patches.normals = without_caps(sides, patches.normals, crease);

@@ -31,6 +31,9 @@ struct SmoothPatches {
     std::vector<std::array<std::uint32_t, 3>> fan_of;  ///< of the corners of triangles
 };
 
+/// Unit normals of triangles, each by its own vertices alone.
+std::vector<Vector> triangle_normals(const SurfaceMesh& mesh);
+
 /// `crease` in radians.
 SmoothPatches smooth_patches(const SurfaceMesh& mesh, double crease);
 
