@@ -53,6 +53,13 @@ Sources read_surface(const std::filesystem::path& file, const SourcesChoice& cho
         spdlog::warn("{}: {} vertices are skipped: no triangle there has an area", file.string(),
                      found.skipped);
     }
+    const SurfaceEdges edges = surface_edges(surface);
+    if (edges.open.size() > 2 * surface.triangles.size()) {
+        spdlog::warn(
+            "{}: {} of {} edges are open: corners of its triangles differ by more than round-off, "
+            "and curvature is not seen across edges; join its vertices",
+            file.string(), edges.open.size(), edges.count);
+    }
     if (found.fitted > 0 && !surface.curvatures.empty()) {
         spdlog::warn(
             "{}: at {} of {} vertices the CAD file gives no curvature: "
@@ -111,6 +118,24 @@ const SourceFormat& checked_part(const std::filesystem::path& file) {
     return format;
 }
 
+void require_closed(const SurfaceMesh& surface, const std::filesystem::path& file) {
+    const SurfaceEdges edges = surface_edges(surface);
+    if (edges.open.empty()) return;
+    constexpr std::size_t shown = 3;
+    std::vector<std::string> ends;
+    for (const auto& [a, b] : std::span(edges.open).first(std::min(shown, edges.open.size()))) {
+        const Point &p = surface.vertices[a], &q = surface.vertices[b];
+        ends.push_back(fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", p.x(),
+                                   p.y(), p.z(), q.x(), q.y(), q.z()));
+    }
+    refuse_at(
+        file,
+        "{} of {} edges are open, with one triangle or an odd number of them: {}{}; close the "
+        "surface",
+        edges.open.size(), edges.count, fmt::join(ends, "; "),
+        edges.open.size() > shown ? "; ..." : "");
+}
+
 }  // namespace
 
 bool is_part(const std::filesystem::path& file) {
@@ -118,18 +143,20 @@ bool is_part(const std::filesystem::path& file) {
     return format != nullptr && format->read_mesh != nullptr;
 }
 
-std::vector<WallRequest> wall_requests_of(const std::filesystem::path& file,
-                                          const CurvatureSizes& sizes, std::size_t rays) {
+PartFacts facts_of_part(const std::filesystem::path& file, const CurvatureSizes& sizes,
+                        std::size_t rays) {
     constexpr std::uint64_t seed = 1;
     const SurfaceMesh surface = checked_part(file).read_mesh(file);
     load_module("cgal");
-    return wall_requests(surface, sizes, rays, seed, file);
+    return {surface.triangles.size(), surface_edges(surface),
+            wall_requests(surface, sizes, rays, seed, file)};
 }
 
 Part read_part(const std::filesystem::path& file, double crease) {
     const SourceFormat& format = checked_part(file);
     if (has_ending(cad_endings, lower_case_extension(file))) return {.cad = file};
     SurfaceMesh surface = format.read_mesh(file);
+    require_closed(surface, file);
     return {std::move(surface.vertices), std::move(surface.triangles), crease};
 }
 

@@ -6,6 +6,7 @@
 
 #include "controlspace/mesh/part.h"
 #include "controlspace/study/workload.h"
+#include "io/surface/surface_mesh.h"
 #include "io/surface/surface_sources.h"
 
 namespace controlspace {
@@ -17,10 +18,16 @@ FileReaders file_readers();
 /// Whether a file holds a surface or a solid, by its ending.
 bool is_part(const std::filesystem::path& file);
 
-/// What walls and gaps of a part ask for at places among `rays` random ones, the same for the same
-/// file (see io/surface/surface_sources.h); `sizes` are those that its sources were made by.
-std::vector<WallRequest> wall_requests_of(const std::filesystem::path& file,
-                                          const CurvatureSizes& sizes, std::size_t rays);
+/// The surface of a part.
+struct PartFacts {
+    std::size_t triangles;
+    SurfaceEdges edges;
+    std::vector<WallRequest> walls;  ///< by rays from random places, the same for the same file
+};
+
+/// `sizes` are those that its sources were made by. Throws InputError.
+PartFacts facts_of_part(const std::filesystem::path& file, const CurvatureSizes& sizes,
+                        std::size_t rays);
 
 /// A part to be meshed; `crease` as of Part. Throws InputError.
 Part read_part(const std::filesystem::path& file, double crease);

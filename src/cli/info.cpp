@@ -71,7 +71,7 @@ std::vector<double> wall_factors(const std::vector<PointSource>& sources,
 }
 
 /// Of files that are parts.
-std::string walls_info(const std::filesystem::path& input, const GivenSettings& settings,
+std::string parts_info(const std::filesystem::path& input, const GivenSettings& settings,
                        const std::vector<PointSource>& sources) {
     constexpr std::size_t rays = 10000;
     constexpr double far = 1.5;  // beyond what gradation adds between sources
@@ -80,7 +80,12 @@ std::string walls_info(const std::filesystem::path& input, const GivenSettings& 
     std::string text;
     for (const std::filesystem::path& file : files_named(input)) {
         if (!is_part(file)) continue;
-        const auto walls = wall_requests_of(file, study.sources.in_file.curvature, rays);
+        const auto [triangles, edges, walls] =
+            facts_of_part(file, study.sources.in_file.curvature, rays);
+        text += fmt::format("  surface      {} triangles, {}\n", triangles,
+                            edges.open.empty() ? "closed"
+                                               : fmt::format("{} of {} edges open",
+                                                             edges.open.size(), edges.count));
         text += fmt::format("  walls        behind {} of {} random places of the faces",
                             walls.size(), rays);
         if (!walls.empty()) {
@@ -189,7 +194,7 @@ std::string info_text(const std::filesystem::path& input, const GivenSettings& s
     }
     try {
         const std::vector<PointSource> sources = sources_of_input(input, settings);
-        return sources_info(summarise(sources)) + walls_info(input, settings, sources);
+        return sources_info(summarise(sources)) + parts_info(input, settings, sources);
     } catch (const IndefiniteTensors& tensors) {
         return indefinite_info(tensors);
     }

@@ -24,6 +24,10 @@ SurfaceMesh read_surface_mesh(const fs::path& path) {
     return module_table<CgalModule>("cgal").read_surface_mesh(path);
 }
 
+SurfaceEdges surface_edges(const SurfaceMesh& mesh) {
+    return module_table<CgalModule>("cgal").surface_edges(mesh);
+}
+
 SurfaceSources surface_sources(const SurfaceMesh& mesh, const CurvatureSizes& sizes,
                                const fs::path& file) {
     return module_table<CgalModule>("cgal").surface_sources(mesh, sizes, file);

@@ -44,6 +44,7 @@ struct NetcdfModule {
 struct CgalModule {
     std::string_view version;
     decltype(&controlspace::read_surface_mesh) read_surface_mesh;
+    decltype(&controlspace::surface_edges) surface_edges;
     decltype(&controlspace::surface_sources) surface_sources;
     decltype(&controlspace::wall_requests) wall_requests;
     decltype(&controlspace::surface_distance) surface_distance;

@@ -161,7 +161,7 @@ TEST_CASE("corners that differ by round-off are one vertex") {
     const SurfaceMesh mesh = read_surface_mesh(path);
     CHECK(mesh.vertices.size() == whole.vertices.size());
     CHECK(mesh.triangles.size() == whole.triangles.size());
-    const SurfaceEdges edges = edges_of(mesh);
+    const SurfaceEdges edges = surface_edges(mesh);
     CHECK(edges.count == 24 * 9 + 24 * 8 * 2);
     CHECK(edges.open.size() == 2 * 24);  // the circles at both ends
     for (const auto& [p, metric, own_growth] : read_surface_sources(path).sources) {
@@ -180,7 +180,7 @@ TEST_CASE("vertices that are apart stay apart, however small the triangles") {
     text += "f 1 2 3\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 5 6 7\nf 5 6 8\nf 6 7 8\nf 7 5 8\n";
     const SurfaceMesh mesh = read_surface_mesh(scratch.file("t.obj", text));
     CHECK(mesh.vertices.size() == 8);
-    CHECK(edges_of(mesh).open.empty());
+    CHECK(surface_edges(mesh).open.empty());
 }
 
 TEST_CASE("a .stl is read as programs write it: a mark, capitals, several solids") {

@@ -128,7 +128,7 @@ SurfaceMesh read_surface_mesh(const std::filesystem::path& path) {
     return mesh;
 }
 
-SurfaceEdges edges_of(const SurfaceMesh& mesh) {
+SurfaceEdges surface_edges(const SurfaceMesh& mesh) {
     std::vector<std::array<std::uint32_t, 2>> sides;
     for (const auto& [a, b, c] : mesh.triangles) {
         for (const auto& [p, q] : {std::pair(a, b), {b, c}, {c, a}}) {

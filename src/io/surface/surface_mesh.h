@@ -47,6 +47,6 @@ struct SurfaceEdges {
     /// Those of an odd number of triangles, by their ends: none where the surface is closed.
     std::vector<std::array<std::uint32_t, 2>> open = {};
 };
-SurfaceEdges edges_of(const SurfaceMesh& mesh);
+SurfaceEdges surface_edges(const SurfaceMesh& mesh);
 
 }  // namespace controlspace
