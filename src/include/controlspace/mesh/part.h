@@ -8,7 +8,8 @@
 
 namespace controlspace {
 
-/// A body that is filled with tetrahedra: inside a closed surface of triangles, or of a CAD file.
+/// What is filled with tetrahedra: the bodies inside of a closed surface of triangles, which may be
+/// hollow, or the solids of a CAD file, which share faces where they touch.
 struct Part {
     std::vector<Point> vertices = {};
     std::vector<Triangle> triangles = {};
