@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <set>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "io/surface/surface_distance.h"
 #include "io/surface/surface_mesh.h"
 #include "io/surface/surface_sources.h"
+#include "io/text/cad_unit.h"
 #include "modules/load.h"
 #include "refuse.h"
 #include "study/file_endings.h"
@@ -39,14 +41,37 @@ struct SourceFormat {
 };
 
 Sources read_vdb(const std::filesystem::path& file, const SourcesChoice& choice) {
-    return read_vdb_sources(file, choice.surface);
+    VdbSurface surface = choice.surface;
+    surface.h /= choice.in_file.scale;  // what is read is scaled
+    return read_vdb_sources(file, surface);
 }
 Sources read_vtk(const std::filesystem::path& file, const SourcesChoice& choice) {
     return read_vtk_sources(file, choice.in_file.array);
 }
+
+/// From the numbers of a part as they are read, for which CAD files are in millimetres, to those of
+/// the field.
+double factor_of(const std::filesystem::path& file, const FileSources& choice) {
+    const bool has_unit = has_ending(cad_endings, lower_case_extension(file)) &&
+                          lower_case_extension(file) != ".brep";
+    return choice.scale / (has_unit ? millimetres(choice.unit.value_or(LengthUnit::mm)) : 1);
+}
+
+/// Once for each file, whether it is read for sources, as a part or both.
+void report_other_unit(const std::filesystem::path& file, const FileSources& choice) {
+    static std::set<std::filesystem::path> reported;
+    const std::string unit = cad_unit(file);
+    if (choice.unit || unit.empty() || unit == name_of(LengthUnit::mm)) return;
+    if (!reported.insert(file).second) return;
+    spdlog::warn("{} is in {}, and is converted into millimetres: give the unit of the field{}",
+                 file.string(), unit,
+                 from_name<LengthUnit>(unit) ? fmt::format(" (--unit {})", unit) : " (--unit)");
+}
+
 template <SurfaceMesh (*read_mesh)(const std::filesystem::path&)>
 Sources read_surface(const std::filesystem::path& file, const SourcesChoice& choice) {
-    const SurfaceMesh surface = read_mesh(file);
+    report_other_unit(file, choice.in_file);
+    const SurfaceMesh surface = scaled(read_mesh(file), factor_of(file, choice.in_file));
     load_module("cgal");
     SurfaceSources found = surface_sources(surface, choice.in_file.curvature, file);
     if (found.skipped > 0) {
@@ -143,19 +168,23 @@ bool is_part(const std::filesystem::path& file) {
     return format != nullptr && format->read_mesh != nullptr;
 }
 
-PartFacts facts_of_part(const std::filesystem::path& file, const CurvatureSizes& sizes,
+PartFacts facts_of_part(const std::filesystem::path& file, const FileSources& choice,
                         std::size_t rays) {
     constexpr std::uint64_t seed = 1;
-    const SurfaceMesh surface = checked_part(file).read_mesh(file);
+    const SurfaceMesh surface = scaled(checked_part(file).read_mesh(file), factor_of(file, choice));
     load_module("cgal");
-    return {surface.triangles.size(), surface_edges(surface),
-            wall_requests(surface, sizes, rays, seed, file)};
+    return {surface.triangles.size(), surface_edges(surface), cad_unit(file),
+            wall_requests(surface, choice.curvature, rays, seed, file)};
 }
 
-Part read_part(const std::filesystem::path& file, double crease) {
+Part read_part(const std::filesystem::path& file, double crease, const FileSources& choice) {
     const SourceFormat& format = checked_part(file);
-    if (has_ending(cad_endings, lower_case_extension(file))) return {.cad = file};
-    SurfaceMesh surface = format.read_mesh(file);
+    const double factor = factor_of(file, choice);
+    if (has_ending(cad_endings, lower_case_extension(file))) {
+        report_other_unit(file, choice);
+        return {.cad = file, .scale = factor};
+    }
+    SurfaceMesh surface = scaled(format.read_mesh(file), factor);
     require_closed(surface, file);
     return {std::move(surface.vertices), std::move(surface.triangles), crease};
 }
@@ -185,8 +214,10 @@ FileReaders file_readers() {
         require_readable(choice.file, read);
         return read();
     };
-    readers.surface_distance = [](const std::filesystem::path& file) {
-        const SurfaceMesh mesh = checked_part(file).read_mesh(file);
+    readers.surface_distance = [](const std::filesystem::path& file, const FileSources& choice) {
+        report_other_unit(file, choice);
+        const SurfaceMesh mesh =
+            scaled(checked_part(file).read_mesh(file), factor_of(file, choice));
         load_module("cgal");
         return surface_distance(mesh);
     };

@@ -22,15 +22,16 @@ bool is_part(const std::filesystem::path& file);
 struct PartFacts {
     std::size_t triangles;
     SurfaceEdges edges;
+    std::string unit;                ///< of a CAD file, as cad_unit has it
     std::vector<WallRequest> walls;  ///< by rays from random places, the same for the same file
 };
 
-/// `sizes` are those that its sources were made by. Throws InputError.
-PartFacts facts_of_part(const std::filesystem::path& file, const CurvatureSizes& sizes,
+/// `choice` is that which its sources were made by. Throws InputError.
+PartFacts facts_of_part(const std::filesystem::path& file, const FileSources& choice,
                         std::size_t rays);
 
-/// A part to be meshed; `crease` as of Part. Throws InputError.
-Part read_part(const std::filesystem::path& file, double crease);
+/// A part to be meshed, in the units of the field; `crease` as of Part. Throws InputError.
+Part read_part(const std::filesystem::path& file, double crease, const FileSources& choice);
 
 /// The formats of sources, for help texts.
 std::string source_formats_help();

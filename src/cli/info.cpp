@@ -80,8 +80,12 @@ std::string parts_info(const std::filesystem::path& input, const GivenSettings& 
     std::string text;
     for (const std::filesystem::path& file : files_named(input)) {
         if (!is_part(file)) continue;
-        const auto [triangles, edges, walls] =
-            facts_of_part(file, study.sources.in_file.curvature, rays);
+        const auto [triangles, edges, unit, walls] =
+            facts_of_part(file, study.sources.in_file, rays);
+        if (!unit.empty()) {
+            text += fmt::format("  unit         {} in the file, {} here\n", unit,
+                                name_of(study.sources.in_file.unit.value_or(LengthUnit::mm)));
+        }
         text += fmt::format("  surface      {} triangles, {}\n", triangles,
                             edges.open.empty() ? "closed"
                                                : fmt::format("{} of {} edges open",

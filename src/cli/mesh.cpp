@@ -116,7 +116,7 @@ GivenSettings without_settings_of_meshing(const GivenSettings& given) {
     GivenSettings left = given;
     std::erase_if(left, [&](const auto& setting) {
         const auto is_it = [&](const auto& p) { return p.key == setting.first; };
-        return setting.first == "threads" || std::ranges::any_of(mesh_parameters(), is_it) ||
+        return setting.first == "threads" || setting.first == "unit" || std::ranges::any_of(mesh_parameters(), is_it) ||
                std::ranges::any_of(study_parameters(), [&](const Parameter<Study>& p) {
                    return is_it(p) && (p.use == Use::results || p.use == Use::accuracy);
                });
@@ -139,7 +139,7 @@ std::shared_ptr<const Part> part_of(const MeshSettings& settings,
     }
     if (file.empty()) file = "box";
     if (file == "box") return nullptr;
-    return std::make_shared<const Part>(read_part(file, settings.part_crease));
+    return std::make_shared<const Part>(read_part(file, settings.part_crease, study.sources.in_file));
 }
 
 int mesh(const Job& job, const std::string& command_line) {

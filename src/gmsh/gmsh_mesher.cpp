@@ -155,7 +155,7 @@ void add_surface(const Part& part, const UnitFrame& frame) {
 }
 
 void add_cad(const Part& part, const UnitFrame& frame) {
-    gmsh::option::setNumber("Geometry.OCCScaling", 1 / frame.scale);
+    gmsh::option::setNumber("Geometry.OCCScaling", part.scale / frame.scale);
     const Entities shapes = import_shapes(part.cad);
     const Vector low = frame.domain.low / frame.scale;
     gmsh::model::occ::translate(shapes, -low.x(), -low.y(), -low.z());

@@ -42,6 +42,16 @@ inline double rounding(const SurfaceMesh& mesh) { return 0x1p-23 * mesh.diagonal
 /// has an area.
 SurfaceMesh read_surface_mesh(const std::filesystem::path& path);
 
+/// The same surface in other units.
+inline SurfaceMesh scaled(SurfaceMesh mesh, double factor) {
+    for (Point& vertex : mesh.vertices) vertex *= factor;
+    mesh.diagonal *= factor;
+    for (Curvature& curvature : mesh.curvatures) {
+        for (double& along : curvature.along) along /= factor;
+    }
+    return mesh;
+}
+
 struct SurfaceEdges {
     std::size_t count = 0;
     /// Those of an odd number of triangles, by their ends: none where the surface is closed.

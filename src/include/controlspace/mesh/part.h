@@ -17,6 +17,7 @@ struct Part {
     double crease = 30;
     /// In place of triangles: a .step, .stp, .iges, .igs or .brep.
     std::filesystem::path cad = {};
+    double scale = 1;  ///< of millimetres, in which Gmsh reads CAD files, in units of the field
 };
 
 }  // namespace controlspace
