@@ -14,6 +14,7 @@
 #include "controlspace/io/read_vdb.h"
 #include "controlspace/io/read_vtk_sources.h"
 #include "controlspace/io/require_readable.h"
+#include "geometry/extent_of.h"
 #include "gmsh/cad_surface.h"
 #include "io/surface/surface_distance.h"
 #include "io/surface/surface_mesh.h"
@@ -77,6 +78,14 @@ Sources read_surface(const std::filesystem::path& file, const SourcesChoice& cho
     if (found.skipped > 0) {
         spdlog::warn("{}: {} vertices are skipped: no triangle there has an area", file.string(),
                      found.skipped);
+    }
+    if (found.raised > 0) {
+        spdlog::warn(
+            "{}: at {} of {} places curvature or walls ask for less than {:.4g}{}, to which "
+            "lengths "
+            "are raised (--surface-h-min)",
+            file.string(), found.raised, found.sources.size(), found.h_min,
+            choice.in_file.curvature.h_min == 0 ? ", a thousandth of its diagonal" : "");
     }
     const SurfaceEdges edges = surface_edges(surface);
     if (edges.open.size() > 2 * surface.triangles.size()) {
@@ -182,11 +191,16 @@ Part read_part(const std::filesystem::path& file, double crease, const FileSourc
     const double factor = factor_of(file, choice);
     if (has_ending(cad_endings, lower_case_extension(file))) {
         report_other_unit(file, choice);
-        return {.cad = file, .scale = factor};
+        const Box box = cad_box(file);
+        return {.cad = file, .box = {factor * box.low, factor * box.high}, .scale = factor};
     }
     SurfaceMesh surface = scaled(format.read_mesh(file), factor);
     require_closed(surface, file);
-    return {std::move(surface.vertices), std::move(surface.triangles), crease};
+    const Box box = extent_of(surface.vertices);
+    return {.vertices = std::move(surface.vertices),
+            .triangles = std::move(surface.triangles),
+            .crease = crease,
+            .box = box};
 }
 
 FileReaders file_readers() {

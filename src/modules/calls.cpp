@@ -46,6 +46,8 @@ SurfaceMesh read_cad_surface(const fs::path& path) {
     return module_table<GmshModule>("gmsh").read_cad_surface(path);
 }
 
+Box cad_box(const fs::path& path) { return module_table<GmshModule>("gmsh").cad_box(path); }
+
 MeshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshOptions& options) {
     return module_table<GmshModule>("gmsh").mesh_with_gmsh(domain, field, options);
 }

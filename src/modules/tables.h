@@ -55,6 +55,7 @@ struct GmshModule {
     std::string_view version;
     decltype(&controlspace::mesh_with_gmsh) mesh_with_gmsh;
     decltype(&controlspace::read_cad_surface) read_cad_surface;
+    decltype(&controlspace::cad_box) cad_box;
 };
 
 }  // namespace controlspace

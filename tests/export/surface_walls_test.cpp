@@ -170,6 +170,38 @@ TEST_CASE("a plate has its thickness along its edges, where flat triangles meet 
     CHECK(longest < 1.35);  // two lengths between sources, along which they grow
 }
 
+TEST_CASE("no length is below h_min where walls at an angle meet, and those raised are counted") {
+    // A bar whose sides are 45 degrees from each other, thinner than two lengths.
+    Eigen::Affine3d shear = Eigen::Affine3d::Identity();
+    shear.linear()(0, 1) = GENERATE(1., 0.3, -1.5);
+    const std::size_t n = GENERATE(1, 4);
+    const Surface bar = transformed(box({0, 0, 0}, {0.1, 0.1, 4}, n), somewhere(1) * shear);
+    const bool isotropic = GENERATE(false, true);
+    const ScratchDirectory scratch;
+    const auto path = scratch.file("b.off", off_text(bar));
+    const CurvatureSizes sizes{.isotropic = isotropic, .h_min = 0.1, .h_max = 1};
+    const SurfaceSources found = read_surface_sources(path, sizes);
+    double finest = 1e300;
+    for (const PointSource& s : found.sources) {
+        finest = std::min(finest, eigen_frame(s.metric).lengths[0]);
+    }
+    CHECK(finest >= 0.1 * (1 - 1e-12));
+    CHECK(finest <= 0.1 * (1 + 1e-12));
+    CHECK(found.h_min == 0.1);
+    // All of them: the ends, 4 apart, have the sides' walls at their rim, and are flat inside.
+    CHECK(found.raised > 0);
+    CHECK(found.raised <= found.sources.size());
+    CHECK(read_surface_sources(path, {.h_min = 0.01, .h_max = 1}).raised == 0);
+}
+
+TEST_CASE("lengths of fillets and holes that are raised to h_min are counted") {
+    const ScratchDirectory scratch;
+    const auto path = scratch.file("c.off", off_text(cone(1, 1, 4, 40, 20)));
+    const SurfaceSources found = read_surface_sources(path, {.h_min = 0.4, .h_max = 5});
+    CHECK(found.raised == found.sources.size());
+    CHECK(read_surface_sources(path, {.h_min = 0.2, .h_max = 5}).raised == 0);
+}
+
 TEST_CASE("random rays from a plate ask for its thickness, whatever its sources") {
     const double scale = GENERATE(1., 10.);
     const Eigen::Affine3d map = somewhere(scale);

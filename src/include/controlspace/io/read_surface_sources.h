@@ -31,6 +31,8 @@ struct SurfaceSources {
     std::vector<PointSource> sources;
     std::size_t skipped = 0;  ///< vertices without a source: no triangle there has an area
     std::size_t fitted = 0;   ///< vertices whose curvature is fitted to the triangles
+    std::size_t raised = 0;   ///< sources that would have a length below h_min
+    double h_min = 0;         ///< that holds, in the units of the file
 };
 
 /// Sources at the vertices of a surface of polygons (.stl, .obj, .ply, .off), each vertex once, and

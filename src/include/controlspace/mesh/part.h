@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "controlspace/geometry/box.h"
 #include "controlspace/geometry/point.h"
 #include "controlspace/mesh/tet_mesh.h"
 
@@ -17,6 +18,7 @@ struct Part {
     double crease = 30;
     /// In place of triangles: a .step, .stp, .iges, .igs or .brep.
     std::filesystem::path cad = {};
+    Box box = {};      ///< around it
     double scale = 1;  ///< of millimetres, in which Gmsh reads CAD files, in units of the field
 };
 
