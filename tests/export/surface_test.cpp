@@ -251,6 +251,16 @@ TEST_CASE("a .obj is read whatever stands beside its faces") {
                Contains("e.obj: polygon 1 has a corner that is none of the 4"));
 }
 
+TEST_CASE("a byte order mark is passed over in all texts of surfaces") {
+    const ScratchDirectory scratch;
+    const auto [name, text] = GENERATE(table<std::string, std::string (*)(const Surface&)>(
+        {{"t.off", off_text}, {"t.obj", obj_text}, {"t.ply", ply_text}, {"t.stl", stl_text}}));
+    CAPTURE(name);
+    const Surface surface = torus(6);
+    CHECK(read_surface_mesh(scratch.file(name, "\xEF\xBB\xBF" + text(surface))).triangles.size() ==
+          surface.triangles.size());
+}
+
 TEST_CASE("copies of a triangle and triangles without an area are left out") {
     const ScratchDirectory scratch;
     const auto path = scratch.file("t.obj",

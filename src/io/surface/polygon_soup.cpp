@@ -133,6 +133,10 @@ PolygonSoup read_obj(std::string_view text, const std::filesystem::path& path) {
             Point& p = soup.points.emplace_back();
             for (double& x : p) {
                 const std::string_view word = words.word();
+                if (word.empty()) {
+                    refuse_at(where, "vertex {} has fewer than three coordinates",
+                              soup.points.size());
+                }
                 if (!parse_number(word, x)) {
                     refuse_at(where, "vertex {}: {} is not a number", soup.points.size(),
                               quote(word));
