@@ -202,6 +202,53 @@ TEST_CASE("lengths of fillets and holes that are raised to h_min are counted") {
     CHECK(read_surface_sources(path, {.h_min = 0.2, .h_max = 5}).raised == 0);
 }
 
+TEST_CASE(
+    "flanks of a sharp edge are a wall where it is slender, those of a flat one up to 30 degrees") {
+    struct Tooth {
+        double angle, land;
+        bool is_wall;
+    };
+    const auto [angle, land, is_wall] = GENERATE(values<Tooth>({{4, 0, true},
+                                                                {18, 0, true},
+                                                                {22, 0, false},
+                                                                {28, 0, false},
+                                                                {4, 0.1, true},
+                                                                {22, 0.1, true},
+                                                                {28, 0.1, true},
+                                                                {32, 0.1, false}}));
+    const std::size_t n = GENERATE(1, 12);
+    CAPTURE(angle, land, n);
+    // A prism along y, 1 high; z = 1 is the tip.
+    const double foot = land / 2 + std::tan(angle / 2 * pi / 180);
+    Surface tooth;
+    for (const double side : {-1., 1.}) {
+        tooth += patch({n, n}, [&](double u, double v) {
+            return Point(side * (foot + u * (land / 2 - foot)), 2 * v, u);
+        });
+    }
+    if (land > 0) {
+        tooth +=
+            patch({1, n}, [&](double u, double v) { return Point(land * (u - 0.5), 2 * v, 1); });
+    }
+    const auto sources = sources_of(transformed(tooth, somewhere(1)),
+                                    {.isotropic = true, .h_min = 1e-2, .h_max = 5});
+    const Eigen::Affine3d back = somewhere(1).inverse();
+    double finest = 1e300;
+    for (const PointSource& s : sources) {
+        const double z = (back * s.position).z();
+        if (z > 0.45 && z < 0.55) finest = std::min(finest, eigen_frame(s.metric).lengths[0]);
+    }
+    if (!is_wall) {
+        CHECK(finest > 4.9);
+    } else {
+        // Along the normal of one flank to the other one, half of it.
+        const double z = 0.5, x = land / 2 + (1 - z) * std::tan(angle / 2 * pi / 180);
+        const double thickness =
+            2 * x * std::cos(angle / 2 * pi / 180) / std::cos(angle * pi / 180);
+        CHECK(finest == Approx(thickness / 2).epsilon(0.15));
+    }
+}
+
 TEST_CASE("random rays from a plate ask for its thickness, whatever its sources") {
     const double scale = GENERATE(1., 10.);
     const Eigen::Affine3d map = somewhere(scale);

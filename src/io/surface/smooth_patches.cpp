@@ -124,14 +124,17 @@ std::vector<Vector> without_caps(const Sides& sides, const std::vector<Vector>& 
     return result;
 }
 
-/// Separates triangles at creases; what the others say of their triangles.
-std::vector<double> separate_at_creases(Sides& sides, double crease) {
+/// Separates triangles at creases, whose triangles are added to `creases`; what the others say of
+/// their triangles.
+std::vector<double> separate_at_creases(Sides& sides, double crease,
+                                        std::vector<std::array<std::uint32_t, 2>>& creases) {
     constexpr double rounding = 1e-6;
     std::vector<double> bends(sides.size() / 3, 0.0);
     for (Corner side = 0; side < sides.size(); ++side) {
         if (sides.partner(side) == none) continue;
         const double turn = sides.turn(side);
         if (turn > crease + rounding) {
+            creases.push_back({side / 3, sides.partner(side) / 3});
             sides.separate(side);
         } else {
             double& bend = bends[side / 3];
@@ -141,9 +144,11 @@ std::vector<double> separate_at_creases(Sides& sides, double crease) {
     return bends;
 }
 
-/// Turns normals so that those on both sides of a smooth edge are on the same side of the surface.
-void orient(const Sides& sides, std::vector<Vector>& normals) {
+/// Turns normals so that those on both sides of a smooth edge are on the same side of the surface;
+/// the patch of each triangle, by its first one.
+std::vector<std::uint32_t> orient(const Sides& sides, std::vector<Vector>& normals) {
     std::vector<double> sign(normals.size(), 0);
+    std::vector<std::uint32_t> patch_of(normals.size());
     std::vector<std::uint32_t> reached;
     for (std::uint32_t seed = 0; seed < normals.size(); ++seed) {
         if (sign[seed] != 0) continue;
@@ -152,6 +157,7 @@ void orient(const Sides& sides, std::vector<Vector>& normals) {
         while (!reached.empty()) {
             const std::uint32_t t = reached.back();
             reached.pop_back();
+            patch_of[t] = seed;
             for (Corner side = 3 * t; side < 3 * t + 3; ++side) {
                 if (sides.partner(side) == none) continue;
                 const std::uint32_t other = sides.partner(side) / 3;
@@ -162,6 +168,11 @@ void orient(const Sides& sides, std::vector<Vector>& normals) {
         }
     }
     for (std::size_t t = 0; t < normals.size(); ++t) normals[t] *= sign[t];
+    return patch_of;
+}
+
+std::array<std::uint32_t, 2> in_order(std::uint32_t a, std::uint32_t b) {
+    return {std::min(a, b), std::max(a, b)};
 }
 
 /// For each corner the first of its fan.
@@ -227,14 +238,23 @@ std::vector<Vector> triangle_normals(const SurfaceMesh& mesh) {
     return normals;
 }
 
+bool SmoothPatches::meet(std::size_t t, std::size_t other) const {
+    return std::ranges::binary_search(meeting, in_order(patch_of[t], patch_of[other]));
+}
+
 SmoothPatches smooth_patches(const SurfaceMesh& mesh, double crease) {
     SmoothPatches patches;
     patches.normals = triangle_normals(mesh);
     patches.fan_of.resize(mesh.triangles.size());
     Sides sides(mesh, patches.normals);
     patches.normals = without_caps(sides, patches.normals, crease);
-    patches.bends = separate_at_creases(sides, crease);
-    orient(sides, patches.normals);
+    patches.bends = separate_at_creases(sides, crease, patches.meeting);
+    patches.patch_of = orient(sides, patches.normals);
+    for (auto& crease_of : patches.meeting) {
+        const auto& [t, other] = crease_of;
+        crease_of = in_order(patches.patch_of[t], patches.patch_of[other]);
+    }
+    std::ranges::sort(patches.meeting);
     add_fans(sides, crease, patches);
     return patches;
 }

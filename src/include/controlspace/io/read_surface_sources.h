@@ -40,9 +40,8 @@ struct SurfaceSources {
 /// the intersection of their metrics. An apex, without a tangent plane, has h_min.
 ///
 /// The distance across a wall or gap is measured along the normal, to surfaces that are parallel
-/// within 30 degrees. Flanks that meet at an edge are walls up to this angle, too, with lengths
-/// down to h_min at the edge: further apart, thickness / 2 grows faster than a gradation ratio of
-/// 1.25 lets lengths grow, and the edge alone would decide on all lengths beside it.
+/// within 30 degrees; of flanks that meet at a sharp edge within 20, with lengths down to h_min at
+/// the edge: wider angles are filled with good elements in one layer.
 ///
 /// Throws InputError that names the file for what cannot be read, where no triangle has an area,
 /// and for angles, elements or bounds out of range.
