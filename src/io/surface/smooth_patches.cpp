@@ -254,6 +254,7 @@ SmoothPatches smooth_patches(const SurfaceMesh& mesh, double crease) {
         const auto& [t, other] = crease_of;
         crease_of = in_order(patches.patch_of[t], patches.patch_of[other]);
     }
+    std::erase_if(patches.meeting, [](const auto& pair) { return pair[0] == pair[1]; });
     std::ranges::sort(patches.meeting);
     add_fans(sides, crease, patches);
     return patches;

@@ -30,10 +30,10 @@ struct SmoothPatches {
     std::vector<Fan> fans;
     std::vector<std::array<std::uint32_t, 3>> fan_of;  ///< of the corners of triangles
     std::vector<std::uint32_t> patch_of;               ///< of triangles
-    /// Patches with a crease in common, in ascending order.
+    /// Different patches with a crease in common, in ascending order.
     std::vector<std::array<std::uint32_t, 2>> meeting;
 
-    /// Whether the patches of two triangles have a crease in common.
+    /// Whether two triangles are of different patches that have a crease in common.
     bool meet(std::size_t t, std::size_t other) const;
 };
 
