@@ -64,7 +64,7 @@ void report_other_unit(const std::filesystem::path& file, const FileSources& cho
     const std::string unit = cad_unit(file);
     if (choice.unit || unit.empty() || unit == name_of(LengthUnit::mm)) return;
     if (!reported.insert(file).second) return;
-    spdlog::warn("{} is in {}, and is converted into millimetres: give the unit of the field{}",
+    spdlog::warn("{} has the unit {}, and is converted into mm: give that of the field{}",
                  file.string(), unit,
                  from_name<LengthUnit>(unit) ? fmt::format(" (--unit {})", unit) : " (--unit)");
 }

@@ -92,7 +92,8 @@ TEST_CASE("a part is meshed, by its own field or another's") {
     // A domain that nobody chose grows to the part.
     const Outcome grown = box.run("mesh far.csv --part brick.off --output grown " + quick);
     CHECK(grown.status == 0);
-    CHECK_THAT(grown.err, Contains("grows to the part: [0, 6.05] x [0, 6.05] x [0, 6.05] (--domain"));
+    CHECK_THAT(grown.err,
+               Contains("grows to the part: [0, 6.05] x [0, 6.05] x [0, 6.05] (--domain"));
     CHECK(is_brick("grown"));
     box.write("open.off", "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 1 2 3\n");
     check_refused(box.run("mesh open.off --isotropic --output open"),
@@ -116,8 +117,8 @@ TEST_CASE("a CAD file in metres says so, and is converted into the unit of the f
     };
     // A cylinder of radius 5 m and height 20 m.
     CHECK_THAT(extent("",
-                      "c.step is in m, and is converted into millimetres: give the unit of the "
-                      "field (--unit m)"),
+                      "c.step has the unit m, and is converted into mm: give that of the field "
+                      "(--unit m)"),
                Contains("[-5000, 5000] x [-5000, 5000] x [0, 20000]") &&
                    Contains("m in the file, mm here"));
     CHECK_THAT(extent("--unit m", ""),
