@@ -202,8 +202,26 @@ TEST_CASE("lengths of fillets and holes that are raised to h_min are counted") {
     CHECK(read_surface_sources(path, {.h_min = 0.2, .h_max = 5}).raised == 0);
 }
 
-TEST_CASE(
-    "flanks of a sharp edge are a wall where it is slender, those of a flat one up to 30 degrees") {
+TEST_CASE("a flat triangle of a plate has the plate's normal beside a flat chamfer, too") {
+    // Within the angle of a crease of the top, which goes on smoothly over its rim.
+    Surface plate = box_with_fans({100, 60, 2}, {50, 8.5, 0});
+    const double out = 2 / std::tan(25 * pi / 180);
+    for (const std::size_t i : {0, 1, 2, 3}) {
+        Point& p = plate.vertices[i];
+        p += out * Vector(p.x() > 0 ? 1 : -1, p.y() > 0 ? 1 : -1, 0);
+    }
+    std::size_t seen = 0;
+    for (const PointSource& s : sources_of(plate, {.isotropic = true})) {
+        const Point& p = s.position;
+        const double beside = std::min(p.x(), 100 - p.x());
+        if (p.z() != 2 || p.y() < 0.1 || p.y() > 8.4 * beside / 50) continue;
+        ++seen;
+        CHECK(s.metric.xx == Approx(1).epsilon(0.01));
+    }
+    CHECK(seen > 100);
+}
+
+TEST_CASE("flanks of a sharp edge are a wall within 20 degrees, others within 30") {
     struct Tooth {
         double angle, land;
         bool is_wall;
