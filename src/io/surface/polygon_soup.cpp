@@ -27,7 +27,8 @@ Point read_point(Scanner& file, const Part& vertex) {
     return p;
 }
 
-/// The bits of an address in a binary .stl are not aligned: numbers are copied one by one.
+/// A head of 80 bytes, the number of triangles, and 50 bytes for each: a normal, three vertices,
+/// and two bytes of attributes.
 PolygonSoup read_binary_stl(std::string_view bytes, const std::filesystem::path& path) {
     Scanner file(bytes, path);
     file.set_binary(true);
