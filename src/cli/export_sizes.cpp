@@ -61,12 +61,29 @@ std::filesystem::path background_base(const std::filesystem::path& output) {
               base.string(), output.extension().string());
 }
 
+/// Of the input that goes with the background mesh NAME.b, if it is there already.
+std::vector<Point> tetgen_points(std::filesystem::path base) {
+    base.replace_extension();
+    for (const char* ending : {".poly", ".smesh", ".node"}) {
+        std::filesystem::path file = base;
+        if (!std::filesystem::is_regular_file(file += ending)) continue;
+        try {
+            std::vector<Point> points = read_tetgen_points(file);
+            if (!points.empty()) return points;  // a .poly may leave them to its .node
+        } catch (const InputError& error) {
+            spdlog::warn("{}: not compared with the domain of the field", error.what());
+        }
+    }
+    return {};
+}
+
 std::string write_tetgen(const Export& e) {
     const std::filesystem::path base = background_base(e.output);
     for (const char* ending : {".node", ".ele", ".mtr"}) {
         std::filesystem::path file = base;
         e.progress.writes(file += ending);
     }
+    report_outside(tetgen_points(base), "points of TetGen's input", e.filled.space->domain());
     return report(e, write_tetgen_background(base, *e.filled.space),
                   "nodes of a background mesh for TetGen (-m), in three files",
                   "lengths are off by more than 1.25x, as they jump in this structure: write one "

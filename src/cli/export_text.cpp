@@ -20,6 +20,7 @@ namespace {
 std::string write_solution(const Export& e, const std::filesystem::path& mesh) {
     const std::vector<Point> vertices = read_medit_vertices(mesh);
     write_medit_solution(e.output, sample_parallel(*e.filled.space, vertices));
+    report_outside(vertices, "vertices", e.filled.space->domain());
     return written(e,
                    fmt::format("metrics at the {} vertices of {}", vertices.size(), mesh.string()));
 }

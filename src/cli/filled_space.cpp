@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "cli/command.h"
@@ -15,6 +16,7 @@
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/space/control_space_file.h"
 #include "controlspace/trees/octree_pieces.h"
+#include "geometry/extent_of.h"
 #include "modules/load.h"
 #include "refuse.h"
 
@@ -102,6 +104,16 @@ FilledSpace filled_space(const Job& job, std::string_view step,
     progress.started(step);
     use(filled, progress);
     return filled;
+}
+
+void report_outside(std::span<const Point> points, std::string_view what, const Box& domain) {
+    const auto outside =
+        std::ranges::count_if(points, [&](const Point& p) { return !domain.contains(p); });
+    if (outside == 0) return;
+    print_error(
+        fmt::format("{} of {} {} are outside the domain {}: they have the metric of its nearest "
+                    "point; all are in {} (--domain)\n",
+                    outside, points.size(), what, to_string(domain), to_string(extent_of(points))));
 }
 
 int report_remark(const FilledSpace& filled) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -55,6 +56,10 @@ void start_library_of(const std::string& structure);
 /// InputError, also for a .ctrl with settings, and if the output is one of the files that are read.
 FilledSpace filled_space(const Job& job, std::string_view step,
                          const std::function<void(const FilledSpace&, StepProgress&)>& use);
+/// Writes to standard error how many of the points, which are `what`, are outside of the domain, if
+/// any, and how far they reach.
+void report_outside(std::span<const Point> points, std::string_view what, const Box& domain);
+
 /// Writes the remark on the structure, and how far its lengths are from the exact field's, to
 /// standard error. Returns the exit status: some_failed where the requested target was missed.
 int report_remark(const FilledSpace& filled);

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <set>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -13,10 +14,12 @@
 #include "controlspace/io/read_vdb.h"
 #include "controlspace/io/read_vtk_sources.h"
 #include "controlspace/io/require_readable.h"
+#include "geometry/extent_of.h"
 #include "gmsh/cad_surface.h"
 #include "io/surface/surface_distance.h"
 #include "io/surface/surface_mesh.h"
 #include "io/surface/surface_sources.h"
+#include "io/text/cad_unit.h"
 #include "modules/load.h"
 #include "refuse.h"
 #include "study/file_endings.h"
@@ -39,19 +42,57 @@ struct SourceFormat {
 };
 
 Sources read_vdb(const std::filesystem::path& file, const SourcesChoice& choice) {
-    return read_vdb_sources(file, choice.surface);
+    VdbSurface surface = choice.surface;
+    surface.h /= choice.in_file.scale;  // what is read is scaled
+    return read_vdb_sources(file, surface);
 }
 Sources read_vtk(const std::filesystem::path& file, const SourcesChoice& choice) {
     return read_vtk_sources(file, choice.in_file.array);
 }
+
+/// From the numbers of a part as they are read, for which CAD files are in millimetres, to those of
+/// the field.
+double factor_of(const std::filesystem::path& file, const FileSources& choice) {
+    const bool has_unit = has_ending(cad_endings, lower_case_extension(file)) &&
+                          lower_case_extension(file) != ".brep";
+    return choice.scale / (has_unit ? millimetres(choice.unit.value_or(LengthUnit::mm)) : 1);
+}
+
+/// Once for each file, whether it is read for sources, as a part or both.
+void report_other_unit(const std::filesystem::path& file, const FileSources& choice) {
+    static std::set<std::filesystem::path> reported;
+    const std::string unit = cad_unit(file);
+    if (choice.unit || unit.empty() || unit == name_of(LengthUnit::mm)) return;
+    if (!reported.insert(file).second) return;
+    spdlog::warn("{} has the unit {}, and is converted into mm: give that of the field{}",
+                 file.string(), unit,
+                 from_name<LengthUnit>(unit) ? fmt::format(" (--unit {})", unit) : " (--unit)");
+}
+
 template <SurfaceMesh (*read_mesh)(const std::filesystem::path&)>
 Sources read_surface(const std::filesystem::path& file, const SourcesChoice& choice) {
-    const SurfaceMesh surface = read_mesh(file);
+    report_other_unit(file, choice.in_file);
+    const SurfaceMesh surface = scaled(read_mesh(file), factor_of(file, choice.in_file));
     load_module("cgal");
     SurfaceSources found = surface_sources(surface, choice.in_file.curvature, file);
     if (found.skipped > 0) {
         spdlog::warn("{}: {} vertices are skipped: no triangle there has an area", file.string(),
                      found.skipped);
+    }
+    if (found.raised > 0) {
+        spdlog::warn(
+            "{}: at {} of {} places curvature or walls ask for less than {:.4g}{}, to which "
+            "lengths "
+            "are raised (--surface-h-min)",
+            file.string(), found.raised, found.sources.size(), found.h_min,
+            choice.in_file.curvature.h_min == 0 ? ", a thousandth of its diagonal" : "");
+    }
+    const SurfaceEdges edges = surface_edges(surface);
+    if (edges.open.size() > 2 * surface.triangles.size()) {
+        spdlog::warn(
+            "{}: {} of {} edges are open: corners of its triangles differ by more than round-off, "
+            "and curvature is not seen across edges; join its vertices",
+            file.string(), edges.open.size(), edges.count);
     }
     if (found.fitted > 0 && !surface.curvatures.empty()) {
         spdlog::warn(
@@ -111,6 +152,24 @@ const SourceFormat& checked_part(const std::filesystem::path& file) {
     return format;
 }
 
+void require_closed(const SurfaceMesh& surface, const std::filesystem::path& file) {
+    const SurfaceEdges edges = surface_edges(surface);
+    if (edges.open.empty()) return;
+    constexpr std::size_t shown = 3;
+    std::vector<std::string> ends;
+    for (const auto& [a, b] : std::span(edges.open).first(std::min(shown, edges.open.size()))) {
+        const Point &p = surface.vertices[a], &q = surface.vertices[b];
+        ends.push_back(fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", p.x(),
+                                   p.y(), p.z(), q.x(), q.y(), q.z()));
+    }
+    refuse_at(
+        file,
+        "{} of {} edges are open, with one triangle or an odd number of them: {}{}; close the "
+        "surface",
+        edges.open.size(), edges.count, fmt::join(ends, "; "),
+        edges.open.size() > shown ? "; ..." : "");
+}
+
 }  // namespace
 
 bool is_part(const std::filesystem::path& file) {
@@ -118,11 +177,30 @@ bool is_part(const std::filesystem::path& file) {
     return format != nullptr && format->read_mesh != nullptr;
 }
 
-Part read_part(const std::filesystem::path& file, double crease) {
+PartFacts facts_of_part(const std::filesystem::path& file, const FileSources& choice,
+                        std::size_t rays) {
+    constexpr std::uint64_t seed = 1;
+    const SurfaceMesh surface = scaled(checked_part(file).read_mesh(file), factor_of(file, choice));
+    load_module("cgal");
+    return {surface.triangles.size(), surface_edges(surface), cad_unit(file),
+            wall_requests(surface, choice.curvature, rays, seed, file)};
+}
+
+Part read_part(const std::filesystem::path& file, double crease, const FileSources& choice) {
     const SourceFormat& format = checked_part(file);
-    if (has_ending(cad_endings, lower_case_extension(file))) return {.cad = file};
-    SurfaceMesh surface = format.read_mesh(file);
-    return {std::move(surface.vertices), std::move(surface.triangles), crease};
+    const double factor = factor_of(file, choice);
+    if (has_ending(cad_endings, lower_case_extension(file))) {
+        report_other_unit(file, choice);
+        const Box box = cad_box(file);
+        return {.cad = file, .box = {factor * box.low, factor * box.high}, .scale = factor};
+    }
+    SurfaceMesh surface = scaled(format.read_mesh(file), factor);
+    require_closed(surface, file);
+    const Box box = extent_of(surface.vertices);
+    return {.vertices = std::move(surface.vertices),
+            .triangles = std::move(surface.triangles),
+            .crease = crease,
+            .box = box};
 }
 
 FileReaders file_readers() {
@@ -150,8 +228,10 @@ FileReaders file_readers() {
         require_readable(choice.file, read);
         return read();
     };
-    readers.surface_distance = [](const std::filesystem::path& file) {
-        const SurfaceMesh mesh = checked_part(file).read_mesh(file);
+    readers.surface_distance = [](const std::filesystem::path& file, const FileSources& choice) {
+        report_other_unit(file, choice);
+        const SurfaceMesh mesh =
+            scaled(checked_part(file).read_mesh(file), factor_of(file, choice));
         load_module("cgal");
         return surface_distance(mesh);
     };

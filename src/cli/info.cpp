@@ -15,7 +15,9 @@
 #include "cli/standard_output.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/gradation/grade.h"
+#include "controlspace/measure/reference.h"
 #include "controlspace/space/control_space_file.h"
+#include "controlspace/space/sample_parallel.h"
 #include "controlspace/space/split_words.h"
 #include "controlspace/trees/octree_pieces.h"
 #include "io/text/metric_rows.h"
@@ -48,6 +50,59 @@ std::string sources_info(const SourceSummary& s) {
     if (s.contradictory > 0) {
         text += fmt::format("  conflicts    {} sources share their position with a different one\n",
                             s.contradictory);
+    }
+    return text;
+}
+
+/// By which factors the exact field of sources is longer than walls ask for.
+std::vector<double> wall_factors(const std::vector<PointSource>& sources,
+                                 const std::vector<WallRequest>& walls) {
+    std::vector<Point> positions, places;
+    for (const PointSource& s : sources) positions.push_back(s.position);
+    for (const WallRequest& wall : walls) places.push_back(wall.place);
+    const auto field = exact_reference(columns_of(sources), Case{}.g_r,
+                                       largest_metric(bounding_box(positions, 0)));
+    const std::vector<Metric> metrics = sample_parallel(*field, places);
+    std::vector<double> factors;
+    for (std::size_t i = 0; i < walls.size(); ++i) {
+        factors.push_back(1 / (metric_length(metrics[i], walls[i].normal) * walls[i].length));
+    }
+    return factors;
+}
+
+/// Of files that are parts.
+std::string parts_info(const std::filesystem::path& input, const GivenSettings& settings,
+                       const std::vector<PointSource>& sources) {
+    constexpr std::size_t rays = 10000;
+    constexpr double far = 1.5;  // beyond what gradation adds between sources
+    Study study;
+    apply(settings, study_parameters(), study);
+    std::string text;
+    for (const std::filesystem::path& file : files_named(input)) {
+        if (!is_part(file)) continue;
+        const auto [triangles, edges, unit, walls] =
+            facts_of_part(file, study.sources.in_file, rays);
+        if (!unit.empty()) {
+            text += fmt::format("  unit         {} in the file, {} here\n", unit,
+                                name_of(study.sources.in_file.unit.value_or(LengthUnit::mm)));
+        }
+        text += fmt::format("  surface      {} triangles, {}\n", triangles,
+                            edges.open.empty() ? "closed"
+                                               : fmt::format("{} of {} edges open",
+                                                             edges.open.size(), edges.count));
+        text += fmt::format("  walls        behind {} of {} random places of the faces",
+                            walls.size(), rays);
+        if (!walls.empty()) {
+            const std::vector<double> factors = wall_factors(sources, walls);
+            const auto worst = std::ranges::max_element(factors);
+            const Point& at = walls[static_cast<std::size_t>(worst - factors.begin())].place;
+            text += fmt::format(
+                "; the exact field (g_r {}) is up to {:.3g}x as long as they ask, at ({:.6g}, "
+                "{:.6g}, {:.6g}); more than {}x at {}",
+                Case{}.g_r, *worst, at.x(), at.y(), at.z(), far,
+                std::ranges::count_if(factors, [](double factor) { return factor > far; }));
+        }
+        text += '\n';
     }
     return text;
 }
@@ -143,7 +198,8 @@ std::string info_text(const std::filesystem::path& input, const GivenSettings& s
         return is_in_pieces(input) ? pieces_info(input) : space_info(input);
     }
     try {
-        return sources_info(summarise(sources_of_input(input, settings)));
+        const std::vector<PointSource> sources = sources_of_input(input, settings);
+        return sources_info(summarise(sources)) + parts_info(input, settings, sources);
     } catch (const IndefiniteTensors& tensors) {
         return indefinite_info(tensors);
     }

@@ -34,12 +34,25 @@ struct Reference {
     Mesher mesher = Mesher::delaunay;  ///< the choice for `auto`
 };
 
-Reference make_shared_reference(const Study& study, const Case& c, Mesher requested) {
+/// Lets a domain that nobody chose reach around the part, where the field is defined there.
+void grow_to(const Part& part, const Study& study, Workload& workload) {
+    const auto& continuous = workload.field.field;
+    if (study.domain || (continuous && continuous->domain() != Box::everywhere())) return;
+    Box& domain = workload.domain;
+    const Box grown{domain.low.cwiseMin(part.box.low), domain.high.cwiseMax(part.box.high)};
+    if (grown == domain) return;
+    print_error(fmt::format("the domain {} grows to the part: {} (--domain sets another)\n",
+                            to_string(domain), to_string(grown)));
+    domain = grown;
+}
+
+Reference make_shared_reference(const Study& study, const Case& c, const MeshSettings& settings) {
     Reference reference{c, make_workload(study, c.sources, file_readers()), nullptr, {}};
+    if (settings.gmsh.part) grow_to(*settings.gmsh.part, study, reference.workload);
     reference.field = make_reference(study, c, reference.workload);
     reference.probes =
         make_probes(*reference.field, cell_centres(reference.workload.domain, study.probe_grid));
-    reference.mesher = chosen_mesher(requested, reference.probes.reference);
+    reference.mesher = chosen_mesher(settings.mesher, reference.probes.reference);
     return reference;
 }
 
@@ -64,7 +77,7 @@ void mesh_study(const Study& study, const DefaultTarget& target, MeshFolder& fol
     const MeshSettings& settings = folder.settings();
     const std::vector<Case> cases = expand(study, program_rows());
     for (const Case& c : cases) require_set_voxels(c);
-    std::optional reference = make_shared_reference(study, cases.front(), settings.mesher);
+    std::optional reference = make_shared_reference(study, cases.front(), settings);
     // What is wrong from the start leaves no folder; what is wrong with a later case makes a row.
     if (!settings.gmsh.part) require_volume(reference->workload.domain);
     for (const Case& c : cases) {
@@ -76,7 +89,7 @@ void mesh_study(const Study& study, const DefaultTarget& target, MeshFolder& fol
     for (Case c : cases) {
         if (!share_probes(reference->first, c)) {
             reference.reset();  // its memory first
-            reference = make_shared_reference(study, c, settings.mesher);
+            reference = make_shared_reference(study, c, settings);
             is_new_field = true;
         }
         target.set(c, reference->workload);
@@ -109,7 +122,8 @@ GivenSettings without_settings_of_meshing(const GivenSettings& given) {
     GivenSettings left = given;
     std::erase_if(left, [&](const auto& setting) {
         const auto is_it = [&](const auto& p) { return p.key == setting.first; };
-        return setting.first == "threads" || std::ranges::any_of(mesh_parameters(), is_it) ||
+        return setting.first == "threads" || setting.first == "unit" ||
+               std::ranges::any_of(mesh_parameters(), is_it) ||
                std::ranges::any_of(study_parameters(), [&](const Parameter<Study>& p) {
                    return is_it(p) && (p.use == Use::results || p.use == Use::accuracy);
                });
@@ -132,7 +146,8 @@ std::shared_ptr<const Part> part_of(const MeshSettings& settings,
     }
     if (file.empty()) file = "box";
     if (file == "box") return nullptr;
-    return std::make_shared<const Part>(read_part(file, settings.part_crease));
+    return std::make_shared<const Part>(
+        read_part(file, settings.part_crease, study.sources.in_file));
 }
 
 int mesh(const Job& job, const std::string& command_line) {

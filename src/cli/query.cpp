@@ -118,15 +118,7 @@ int query(const Query& job) {
         sample_parallel(*made.space, points, metrics);
     });
     write_csv_sources(job.output, sources_from(points, metrics));
-    const Box domain = filled.space->domain();
-    const auto outside =
-        std::ranges::count_if(points, [&](const Point& p) { return !domain.contains(p); });
-    if (outside > 0) {
-        print_error(
-            fmt::format("{} of {} points are outside the domain {}: they have the metric of its "
-                        "nearest point\n",
-                        outside, points.size(), to_string(domain)));
-    }
+    report_outside(points, "points", filled.space->domain());
     return report_remark(filled);
 }
 

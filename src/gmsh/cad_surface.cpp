@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -140,22 +141,35 @@ void add_face(int tag, const GmshNodes& nodes, SurfaceMesh& mesh) {
     }
 }
 
-double model_diagonal() {
-    Vector low = Vector::Zero(), high = Vector::Zero();
+Box model_box() {
+    Box box;
+    Point &low = box.low, &high = box.high;
     gmsh::model::getBoundingBox(-1, -1, low[0], low[1], low[2], high[0], high[1], high[2]);
-    return (high - low).norm();
+    return box;
 }
 
-SurfaceMesh mesh_of_shapes(const std::filesystem::path& path) {
+/// In a session of Gmsh; what goes wrong names the file.
+void with_shapes(const std::filesystem::path& path, const std::function<void()>& action) {
+    if (!std::filesystem::is_regular_file(path)) refuse_at(path, "no such file");
+    try {
+        in_gmsh_session(1, [&] {
+            import_shapes(path);
+            gmsh::model::occ::synchronize();
+            action();
+        });
+    } catch (const InputError& error) {
+        refuse_at(path, "{}", error.what());
+    }
+}
+
+SurfaceMesh mesh_of_shapes() {
     constexpr double triangles_around = 36;
     SurfaceMesh mesh;
-    import_shapes(path);
-    gmsh::model::occ::synchronize();
     gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", triangles_around);
     gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
     // Towards the apex of a cone triangles would have no end.
     constexpr double smallest = 1e-4;
-    gmsh::option::setNumber("Mesh.MeshSizeMin", smallest * model_diagonal());
+    gmsh::option::setNumber("Mesh.MeshSizeMin", smallest * model_box().edges().norm());
     gmsh::model::mesh::generate(surface);
     const GmshNodes nodes;
     mesh.vertices = nodes.places();
@@ -169,15 +183,16 @@ SurfaceMesh mesh_of_shapes(const std::filesystem::path& path) {
 }  // namespace
 
 SurfaceMesh read_cad_surface(const std::filesystem::path& path) {
-    if (!std::filesystem::is_regular_file(path)) refuse_at(path, "no such file");
     SurfaceMesh mesh;
-    try {
-        in_gmsh_session(1, [&] { mesh = mesh_of_shapes(path); });
-    } catch (const InputError& error) {
-        refuse_at(path, "{}", error.what());
-    }
+    with_shapes(path, [&] { mesh = mesh_of_shapes(); });
     if (mesh.triangles.empty()) refuse("{} has no surfaces: export a solid", path.string());
     return mesh;
+}
+
+Box cad_box(const std::filesystem::path& path) {
+    Box box;
+    with_shapes(path, [&] { box = model_box(); });
+    return box;
 }
 
 }  // namespace controlspace

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "controlspace/geometry/box.h"
 #include "io/surface/surface_mesh.h"
 
 namespace controlspace {
@@ -12,5 +13,8 @@ namespace controlspace {
 /// GmshSession. Throws InputError that names the file for what Gmsh cannot read, and for one
 /// without surfaces.
 SurfaceMesh read_cad_surface(const std::filesystem::path& path);
+
+/// The box around the shapes of a CAD file, in millimetres. Throws as read_cad_surface does.
+Box cad_box(const std::filesystem::path& path);
 
 }  // namespace controlspace

@@ -2,8 +2,12 @@
 
 #include <gmsh.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -45,7 +49,87 @@ void add_box(const UnitFrame& frame) {
 
 using Entities = std::vector<std::pair<int, int>>;  ///< dimension and tag
 
-/// A volume inside of triangles, which are cut into patches along creases.
+using Corners = std::array<Point, 3>;
+
+/// A connected piece of a surface without rims: the outside of a body, or a hole in one.
+struct Shell {
+    std::vector<int> patches;
+    std::vector<Corners> triangles;
+
+    /// Whether a ray from there crosses it an odd number of times.
+    bool contains(const Point& p) const {
+        const Vector direction(0.5139, 0.7373, 0.4385);  // along no edge of usual parts
+        return std::ranges::count_if(triangles,
+                                     [&](const Corners& t) {
+                                         const Vector a = t[1] - t[0], b = t[2] - t[0];
+                                         const Vector n = direction.cross(b), from = p - t[0];
+                                         const double det = a.dot(n), u = from.dot(n) / det;
+                                         const Vector q = from.cross(a);
+                                         const double v = direction.dot(q) / det;
+                                         return det != 0 && u >= 0 && v >= 0 && u + v <= 1 &&
+                                                b.dot(q) / det > 0;
+                                     }) %
+                   2 !=
+               0;
+    }
+};
+
+/// Patches that share curves are of one shell.
+std::vector<Shell> shells_of(const Entities& patches) {
+    constexpr int surface = 2;
+    const GmshNodes nodes;
+    std::vector<Shell> shells;
+    std::map<int, std::size_t> shell_of_curve;
+    for (const auto& [dimension, tag] : patches) {
+        Shell shell{.patches = {tag}, .triangles = {}};
+        for (const auto& [a, b, c] : nodes.elements<3>(GmshNodes::triangle, tag)) {
+            const auto& x = nodes.places();
+            shell.triangles.push_back({x[a], x[b], x[c]});
+        }
+        std::vector<int> volumes, curves;
+        gmsh::model::getAdjacencies(surface, tag, volumes, curves);
+        const std::size_t number = shells.size();
+        shells.push_back(std::move(shell));
+        for (const int curve : curves) {
+            const auto [known, is_new] = shell_of_curve.emplace(curve, number);
+            const std::size_t other = known->second;
+            if (is_new || other == number) continue;
+            // All of the other one's are this one's now.
+            for (auto& [any, s] : shell_of_curve) s = s == other ? number : s;
+            std::ranges::move(shells[other].patches, std::back_inserter(shells[number].patches));
+            std::ranges::move(shells[other].triangles,
+                              std::back_inserter(shells[number].triangles));
+            shells[other] = {};
+        }
+    }
+    std::erase_if(shells, [](const Shell& shell) { return shell.triangles.empty(); });
+    return shells;
+}
+
+/// A volume for each shell that is inside of an even number of others; the next ones inside of it
+/// are its holes.
+void add_bodies(const std::vector<Shell>& shells) {
+    std::vector<std::vector<char>> inside(shells.size());  // of which others
+    std::vector<std::ptrdiff_t> depth;
+    for (std::size_t i = 0; i < shells.size(); ++i) {
+        const auto& [a, b, c] = shells[i].triangles.front();
+        for (const Shell& other : shells) {
+            inside[i].push_back(&other != &shells[i] && other.contains((a + b + c) / 3));
+        }
+        depth.push_back(std::ranges::count(inside[i], 1));
+    }
+    for (std::size_t i = 0; i < shells.size(); ++i) {
+        if (depth[i] % 2 != 0) continue;
+        std::vector<int> loops{gmsh::model::geo::addSurfaceLoop(shells[i].patches)};
+        for (std::size_t k = 0; k < shells.size(); ++k) {
+            if (inside[k][i] == 0 || depth[k] != depth[i] + 1) continue;
+            loops.push_back(gmsh::model::geo::addSurfaceLoop(shells[k].patches));
+        }
+        gmsh::model::geo::addVolume(loops);
+    }
+}
+
+/// Bodies inside of triangles, which are cut into patches along creases.
 void add_surface(const Part& part, const UnitFrame& frame) {
     constexpr int surface = 2, entity = 1, triangle = 2;
     std::vector<std::size_t> tags, corners;
@@ -66,22 +150,25 @@ void add_surface(const Part& part, const UnitFrame& frame) {
     gmsh::model::mesh::createGeometry();
     Entities patches;
     gmsh::model::getEntities(patches, surface);
-    std::vector<int> all;
-    for (const auto& [dimension, tag] : patches) all.push_back(tag);
-    gmsh::model::geo::addVolume({gmsh::model::geo::addSurfaceLoop(all)});
+    add_bodies(shells_of(patches));
     gmsh::model::geo::synchronize();
 }
 
 void add_cad(const Part& part, const UnitFrame& frame) {
-    gmsh::option::setNumber("Geometry.OCCScaling", 1 / frame.scale);
+    gmsh::option::setNumber("Geometry.OCCScaling", part.scale / frame.scale);
     const Entities shapes = import_shapes(part.cad);
     const Vector low = frame.domain.low / frame.scale;
     gmsh::model::occ::translate(shapes, -low.x(), -low.y(), -low.z());
     gmsh::model::occ::synchronize();
     Entities volumes;
     gmsh::model::getEntities(volumes, 3);
-    if (volumes.size() != 1) {
-        refuse("{} holds {} solids: give one", part.cad.string(), volumes.size());
+    if (volumes.empty()) refuse("{} holds no solid: export one", part.cad.string());
+    if (volumes.size() > 1) {
+        // Solids that touch get common faces, and one mesh.
+        Entities pieces;
+        std::vector<Entities> pieces_of;
+        gmsh::model::occ::fragment(volumes, {}, pieces, pieces_of);
+        gmsh::model::occ::synchronize();
     }
 }
 

@@ -24,9 +24,18 @@ SurfaceMesh read_surface_mesh(const fs::path& path) {
     return module_table<CgalModule>("cgal").read_surface_mesh(path);
 }
 
+SurfaceEdges surface_edges(const SurfaceMesh& mesh) {
+    return module_table<CgalModule>("cgal").surface_edges(mesh);
+}
+
 SurfaceSources surface_sources(const SurfaceMesh& mesh, const CurvatureSizes& sizes,
                                const fs::path& file) {
     return module_table<CgalModule>("cgal").surface_sources(mesh, sizes, file);
+}
+
+std::vector<WallRequest> wall_requests(const SurfaceMesh& mesh, const CurvatureSizes& sizes,
+                                       std::size_t rays, std::uint64_t seed, const fs::path& file) {
+    return module_table<CgalModule>("cgal").wall_requests(mesh, sizes, rays, seed, file);
 }
 
 DistanceField surface_distance(const SurfaceMesh& mesh) {
@@ -36,6 +45,8 @@ DistanceField surface_distance(const SurfaceMesh& mesh) {
 SurfaceMesh read_cad_surface(const fs::path& path) {
     return module_table<GmshModule>("gmsh").read_cad_surface(path);
 }
+
+Box cad_box(const fs::path& path) { return module_table<GmshModule>("gmsh").cad_box(path); }
 
 MeshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshOptions& options) {
     return module_table<GmshModule>("gmsh").mesh_with_gmsh(domain, field, options);

@@ -5,6 +5,7 @@
 CONTROLSPACE_MODULE {
     static const controlspace::GmshModule table{.version = controlspace::version(),
                                                 .mesh_with_gmsh = controlspace::mesh_with_gmsh,
-                                                .read_cad_surface = controlspace::read_cad_surface};
+                                                .read_cad_surface = controlspace::read_cad_surface,
+                                                .cad_box = controlspace::cad_box};
     return &table;
 }

@@ -44,7 +44,9 @@ struct NetcdfModule {
 struct CgalModule {
     std::string_view version;
     decltype(&controlspace::read_surface_mesh) read_surface_mesh;
+    decltype(&controlspace::surface_edges) surface_edges;
     decltype(&controlspace::surface_sources) surface_sources;
+    decltype(&controlspace::wall_requests) wall_requests;
     decltype(&controlspace::surface_distance) surface_distance;
 };
 
@@ -53,6 +55,7 @@ struct GmshModule {
     std::string_view version;
     decltype(&controlspace::mesh_with_gmsh) mesh_with_gmsh;
     decltype(&controlspace::read_cad_surface) read_cad_surface;
+    decltype(&controlspace::cad_box) cad_box;
 };
 
 }  // namespace controlspace

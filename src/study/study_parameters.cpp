@@ -143,6 +143,8 @@ std::vector<Parameter<Study>> table() {
                                   in_file({".vtu", ".vtp", ".vti", ".msh", ".pos"})};
     const AppliesTo<Study> surface{"surfaces: .stl, .obj, .ply, .off, .step, .iges and .brep",
                                    in_file(part_endings())};
+    const AppliesTo<Study> files{"files of sources",
+                                 [](const Study& s) { return !input_files_of(s.sources).empty(); }};
     const AppliesTo<Study> vdb{"sources in a .vdb",
                                in_file({vdb_endings.begin(), vdb_endings.end()})};
     const AppliesTo<Study> field_sphere{"field = \"sphere\"", field_is({"sphere"})};
@@ -261,6 +263,12 @@ std::vector<Parameter<Study>> table() {
         {"field_density_sizes", length,
          "Lengths at densities 1 and 0 of that grid; left out: the grid contains lengths",
          density_sizes(), making, field_file, fields},
+        {"scale", "", "Factor for the coordinates and lengths in files of sources, and for a part",
+         length_or_none(of(sources, &Sources::in_file, &FileSources::scale), 1), reading, files},
+        {"unit", "",
+         "Unit of the field, into which .step and .iges are converted, and a part; left out: mm. "
+         "Files of other formats say none",
+         word<Study>(of(sources, &Sources::in_file, &FileSources::unit)), reading},
         {"source_array", "",
          "Sources of a .vtu, .vtp, .vti, .msh or .pos: the array or view of sizes (1 component) or "
          "Riemannian metrics (6 or 9), at points, or else of cells, for their centres; left out: "

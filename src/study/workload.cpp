@@ -44,7 +44,7 @@ std::vector<DistanceField> distances_of(const SourcesChoice& choice, const FileR
             continue;
         }
         if (!readers.surface_distance) fail_without_reader(primitive.file);
-        distances.push_back(readers.surface_distance(primitive.file));
+        distances.push_back(readers.surface_distance(primitive.file, choice.in_file));
     }
     return distances;
 }
@@ -125,14 +125,27 @@ double finest_length_of(const Workload& workload) {
     return std::min(workload.field.finest_length, finest_length(workload.sources));
 }
 
-std::vector<PointSource> read_one(const std::filesystem::path& file, const SourcesChoice& choice,
-                                  const FileReaders& readers) {
+/// In the units of the file, but for parts.
+std::vector<PointSource> read_unscaled(const std::filesystem::path& file,
+                                       const SourcesChoice& choice, const FileReaders& readers) {
     const std::string ending = lower_case_extension(file);
     if (const auto reader = readers.sources.find(ending); reader != readers.sources.end()) {
         return reader->second(file, choice);
     }
     if (needs_reader(ending)) fail_without_reader(file);
     return read_sources(file, choice.in_file.array);
+}
+
+std::vector<PointSource> read_one(const std::filesystem::path& file, const SourcesChoice& choice,
+                                  const FileReaders& readers) {
+    std::vector<PointSource> sources = read_unscaled(file, choice, readers);
+    const double scale = choice.in_file.scale;
+    if (scale == 1 || has_ending(part_endings(), lower_case_extension(file))) return sources;
+    for (PointSource& source : sources) {
+        source.position *= scale;
+        source.metric = scale * source.metric;
+    }
+    return sources;
 }
 
 /// The sources of several files, one after the other.
@@ -197,6 +210,26 @@ JoinedSources make_sources(const SourcesChoice& s, std::uint64_t seed, const Fil
 
 std::vector<PointSource> read_source_file(const SourcesChoice& choice, const FileReaders& readers) {
     return read_files(choice, readers).all;
+}
+
+double millimetres(LengthUnit unit) {
+    switch (unit) {
+        case LengthUnit::um:
+            return 1e-3;
+        case LengthUnit::mm:
+            return 1;
+        case LengthUnit::cm:
+            return 10;
+        case LengthUnit::m:
+            return 1e3;
+        case LengthUnit::km:
+            return 1e6;
+        case LengthUnit::in:
+            return 25.4;
+        case LengthUnit::ft:
+            return 304.8;
+    }
+    return 1;
 }
 
 bool has_tensors(const Workload& workload) {

@@ -60,6 +60,14 @@ TEST_CASE("metrics at the vertices of a mesh are those of the structure") {
     CHECK_THAT(info.out, Contains("3, all positive definite") && Contains("0.1 to 0.4"));
     REQUIRE(box.run("convert m." + ending + " back.csv").status == 0);
     CHECK_THAT(file_text(box / "back.csv"), Contains("\n0.25,0,0,0.2"));
+    CHECK_THAT(box.run("export s.csv -o m." + ending + " --mesh m.mesh --domain 0,2,0,2,0,2").err,
+               !Contains("outside"));
+    box.write(
+        "m.mesh",
+        "MeshVersionFormatted 2\nDimension 3\nVertices\n3\n0 0 0 0\n0.25 0 9 0\n1 1 1 0\nEnd\n");
+    CHECK_THAT(box.run("export s.csv -o m." + ending + " --mesh m.mesh").err,
+               Contains("1 of 3 vertices are outside the domain [") &&
+                   Contains("all are in [0, 1] x [0, 1] x [0, 9] (--domain)"));
 }
 
 namespace {

@@ -189,6 +189,12 @@ TEST_CASE("settings for surfaces are used, and vertices that are left out counte
     CHECK_THAT(finest(""), Contains("0.05 to 0.5"));
     CHECK_THAT(finest("--elements-across 4"), Contains("0.025 to 0.5"));
     CHECK_THAT(finest("--isotropic"), Contains("0.05 to 0.05"));
+    CHECK_THAT(
+        box.run("info plate.obj").out,
+        Contains("surface      4 triangles, 8 of 10 edges open\n") &&
+            Contains("walls        behind 10000 of 10000 random places of the faces; the exact "
+                     "field (g_r 1.25) is up to 1.") &&
+            Contains("; more than 1.5x at 0\n"));
 }
 #endif
 

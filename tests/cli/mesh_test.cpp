@@ -1,9 +1,11 @@
 // End to end: `controlspace mesh`.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "cli/sandbox.h"
+#include "data_folder.h"
 
 namespace controlspace::mesh_test {
 
@@ -84,8 +86,71 @@ TEST_CASE("a part is meshed, by its own field or another's") {
     check_refused(box.run("mesh s.csv --part none.off"), "none.off");
     check_refused(box.run("mesh s.csv --part s.csv"), "s.csv is no part: name a .stl");
     box.write("far.csv", "x,y,z,h\n5,5,5,0.1\n6,6,6,0.1\n");
-    CHECK_THAT(box.run("mesh far.csv --part brick.off --output far " + quick).err,
-               Contains("is not inside of the field's domain"));
+    CHECK_THAT(
+        box.run("mesh far.csv --part brick.off --domain 5,6,5,6,5,6 --output far " + quick).err,
+        Contains("is not inside of the field's domain"));
+    // A domain that nobody chose grows to the part.
+    const Outcome grown = box.run("mesh far.csv --part brick.off --output grown " + quick);
+    CHECK(grown.status == 0);
+    CHECK_THAT(grown.err,
+               Contains("grows to the part: [0, 6.05] x [0, 6.05] x [0, 6.05] (--domain"));
+    CHECK(is_brick("grown"));
+    box.write("open.off", "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 1 2 3\n");
+    check_refused(box.run("mesh open.off --isotropic --output open"),
+                  "open.off: 3 of 6 edges are open");
+    CHECK_FALSE(fs::exists(box / "open"));
+}
+
+TEST_CASE("a CAD file in metres says so, and is converted into the unit of the field") {
+    const Sandbox box("mesh-unit");
+    fs::copy(data_folder().parent_path() / "tests" / "data" / "cyl_m.step", box / "c.step");
+    box.write("p.csv", "x,y,z\n5,0,10\n");
+    const auto extent = [&](const std::string& options, const std::string& warning) {
+        const Outcome outcome = box.run("info c.step " + options);
+        INFO(outcome.err);
+        CHECK(outcome.status == 0);
+        CHECK(outcome.err.empty() == warning.empty());
+        CHECK_THAT(outcome.err, Contains(warning));
+        const std::size_t at = outcome.out.find("extent");
+        return outcome.out.substr(at, outcome.out.find('\n', at) - at) +
+               outcome.out.substr(outcome.out.find("\n  unit"), 40);
+    };
+    // A cylinder of radius 5 m and height 20 m.
+    CHECK_THAT(extent("",
+                      "c.step has the unit m, and is converted into mm: give that of the field "
+                      "(--unit m)"),
+               Contains("[-5000, 5000] x [-5000, 5000] x [0, 20000]") &&
+                   Contains("m in the file, mm here"));
+    CHECK_THAT(extent("--unit m", ""),
+               Contains("[-5, 5] x [-5, 5] x [0, 20]") && Contains("m in the file, m here"));
+    CHECK_THAT(extent("--unit cm --scale 0.5", ""), Contains("[-250, 250] x [-250, 250] x [0, 10"));
+    // The chord of 15 degrees, from where lengths grow; bounds are in the unit of the field.
+    const auto length = [&](const std::string& options) {
+        const Outcome outcome =
+            box.run("query c.step p.csv --unit m --isotropic --structures direct " + options);
+        INFO(outcome.err);
+        REQUIRE(outcome.status == 0);
+        return std::stod(outcome.out.substr(outcome.out.rfind(',') + 1));
+    };
+    const double chord = 10 * std::sin(7.5 * M_PI / 180);
+    CHECK((length("") > chord && length("") < 1.25 * chord));
+    const double raised = length("--surface-h-min 2");
+    CHECK((raised > 2 && raised < 2.5));
+    const Outcome mesh = box.run(
+        "mesh c.step --unit m --isotropic --exact no --probe-grid 3 --files mesh --optimize 0 "
+        "--mesher delaunay --output m");
+    INFO(mesh.err);
+    CHECK(mesh.status == 0);
+    CHECK_THAT(file_text(box / "m" / "00-K_oV.mesh"), Contains("\n5 ") && !Contains("\n5000"));
+}
+
+TEST_CASE("points are scaled with their lengths") {
+    const Sandbox box("scale");
+    box.write("p.csv", "x,y,z,h\n0,0,0,0.5\n1,2,3,0.25\n");
+    REQUIRE(box.run("convert p.csv q.csv --scale 10").status == 0);
+    CHECK(file_text(box / "q.csv") == "x,y,z,h\n0,0,0,5\n10,20,30,2.5\n");
+    check_refused(box.run("info sphere --scale 10"), "scale is for files of sources");
+    check_refused(box.run("info p.csv --unit yd"), "--unit");
 }
 
 TEST_CASE("a target that a meshed structure missed is told, with status 3") {

@@ -167,6 +167,15 @@ TEST_CASE("sizes that mislead are warned of") {
     CHECK_THAT(coarse.err, Contains("warning: a.msh: ") && Contains("more --samples"));
     const Outcome jumps = box.run("export s.csv -o a.b.ele --structures K_oL");
     CHECK_THAT(jumps.err, Contains("smaller jumps (K_oV, --within 1.1)"));
+    // The points of a .poly, or of the .node that it leaves them to.
+    box.write("a.poly", "# a part\n0 3 0 0 # in a.node\n1 0\n");
+    box.write("a.node", "4 3 1 0\n1 0 0 0 7\n\n# the top\n2 1 0 0 7\n3 0 1 0 7\n4 0 0 5 7\n");
+    const Outcome beyond = box.run("export s.csv -o a.b.ele");
+    CHECK(beyond.status == 0);
+    CHECK_THAT(beyond.err, Contains("1 of 4 points of TetGen's input are outside the domain ["));
+    box.write("a.poly", "2 3 0 0\n1 0 0 0\n2 1 x 0\n");
+    CHECK_THAT(box.run("export s.csv -o a.b.ele").err,
+               Contains("a.poly:3: point 2: 'x' is not a number: not compared"));
     const Outcome thin = box.run("export thin.csv -o a.msz");
     INFO(thin.err);
     CHECK(thin.status == 0);

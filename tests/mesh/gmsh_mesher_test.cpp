@@ -2,6 +2,7 @@
 
 #include <gmsh.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/mesh/conformity.h"
 #include "controlspace/mesh/mesh_files.h"
+#include "geometry/point_order.h"
 #include "gmsh/gmsh_session.h"
 #include "mesh/fixtures.h"
 #include "sources/files.h"
@@ -42,6 +44,27 @@ Part strips(VertexIndex n) {
             {{0, b, a}, {top, top + a, top + b}, {a, b, top + b}, {a, top + b, top + a}});
     }
     return part;
+}
+
+/// A cube with edges along the axes.
+Part cube(const Point& low, double edge) {
+    Part part;
+    for (int i = 0; i < 8; ++i) {
+        part.vertices.push_back(low + edge * Vector(i & 1, i >> 1 & 1, i >> 2));
+    }
+    for (const auto& [a, b, c, d] : std::initializer_list<Tetrahedron>{
+             {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
+        part.triangles.insert(part.triangles.end(), {{a, b, c}, {a, c, d}});
+    }
+    return part;
+}
+
+void add(Part& part, const Part& other) {
+    const auto n = static_cast<VertexIndex>(part.vertices.size());
+    part.vertices.insert(part.vertices.end(), other.vertices.begin(), other.vertices.end());
+    for (const auto& [a, b, c] : other.triangles) {
+        part.triangles.push_back({a + n, b + n, c + n});
+    }
 }
 
 const Box around_strips{Point(85, -15, -5), Point(115, 15, 35)};
@@ -166,6 +189,53 @@ TEST_CASE("Gmsh fills a part that is given by its surface") {
     const auto hole = std::make_shared<const Part>(std::move(open));
     CHECK_THAT(error_of([&] { mesh_with_gmsh(around_strips, field, {.part = hole}); }),
                Contains("Gmsh"));
+}
+
+TEST_CASE("Gmsh fills all bodies of a surface, but not what is hollow in them") {
+    // Inside of the first cube a hole, in that another cube with a hole, and a second one beside.
+    Part part = cube({0, 0, 0}, 9);
+    add(part, cube({1, 1, 1}, 6));
+    add(part, cube({2, 2, 2}, 4));
+    add(part, cube({3, 3, 3}, 1));
+    add(part, cube({12, 0, 0}, 3));
+    std::ranges::reverse(part.triangles);  // the order of shells does not matter
+    const Box domain{Point(-1, -1, -1), Point(16, 10, 10)};
+    const FormulaField field([](const Point&) { return Metric::isotropic(1.5); });
+    const MeshRun run =
+        mesh_with_gmsh(domain, field, {.part = std::make_shared<const Part>(std::move(part))});
+    CHECK(volume(run.mesh) == Approx(729 - 216 + 64 - 1 + 27));
+}
+
+TEST_CASE("Gmsh fills all solids of a CAD file, which share faces where they touch") {
+    const ScratchDirectory folder;
+    const auto path = folder.path() / "three.step";
+    in_gmsh_session(1, [&] {
+        gmsh::model::occ::addBox(0, 0, 0, 4, 4, 4);
+        gmsh::model::occ::addBox(4, 1, 1, 3, 2, 2);
+        gmsh::model::occ::addBox(9, 0, 0, 2, 2, 2);
+        gmsh::model::occ::synchronize();
+        gmsh::write(path.string());
+    });
+    Part part;
+    part.cad = path;
+    const FormulaField field([](const Point&) { return Metric::isotropic(1); });
+    const MeshRun run = mesh_with_gmsh({Point(-1, -1, -1), Point(12, 5, 5)}, field,
+                                       {.part = std::make_shared<const Part>(part)});
+    CHECK(volume(run.mesh) == Approx(64 + 12 + 8));
+    std::size_t on_common_face = 0;
+    for (const Triangle& t : run.mesh.triangles) {
+        on_common_face += std::ranges::all_of(t, [&](VertexIndex v) {
+            const Point& p = run.mesh.vertices[v];
+            return std::abs(p.x() - 4) < 1e-6 && std::abs(p.y() - 2) < 1 + 1e-6 &&
+                   std::abs(p.z() - 2) < 1 + 1e-6;
+        });
+    }
+    CHECK(on_common_face > 4);
+    auto places = run.mesh.vertices;
+    std::ranges::sort(places, precedes);
+    CHECK(std::ranges::adjacent_find(places, [](const Point& p, const Point& q) {
+              return (p - q).norm() < 1e-6;
+          }) == places.end());
 }
 
 TEST_CASE("Gmsh fills a solid of a CAD file") {

@@ -9,6 +9,10 @@
 
 namespace controlspace {
 
+namespace {
+double cosine(double degrees) { return std::cos(degrees * std::numbers::pi / 180); }
+}  // namespace
+
 struct FacingWalls::Tree {
     const SurfaceMesh& mesh;
     const SmoothPatches& patches;
@@ -35,8 +39,12 @@ struct FacingWalls::Tree {
         if (!hit) return infinity;
         const auto* at = boost::get<Kernel::Point_3>(&hit->first);
         const auto wall = index(hit->second);
-        static const double parallel = std::cos(std::numbers::pi / 6);
-        if (at == nullptr || std::abs(patches.normals[wall].dot(ray)) < parallel) return infinity;
+        static const double parallel = cosine(30), slender = cosine(20);
+        if (at == nullptr) return infinity;
+        const double cosine_there = std::abs(patches.normals[wall].dot(ray));
+        if (cosine_there < parallel || (cosine_there < slender && patches.meet(t, wall))) {
+            return infinity;
+        }
         return (Point(at->x(), at->y(), at->z()) - place).norm();
     }
 };

@@ -6,14 +6,17 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <set>
 #include <utility>
 
 #include "controlspace/metric/blend.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/order_free_intersection.h"
+#include "geometry/random_fractions.h"
 #include "io/surface/curvature.h"
 #include "io/surface/facing_walls.h"
+#include "io/surface/surface_sources.h"
 #include "refuse.h"
 
 namespace controlspace {
@@ -48,6 +51,8 @@ Bounds bounds_of(const std::filesystem::path& path, const CurvatureSizes& sizes,
     return bounds;
 }
 
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+
 double shortest(const Metric& m) { return eigen_frame(m).lengths[0]; }
 
 /// `work` for each number below `count`, in parallel.
@@ -61,6 +66,7 @@ struct Piece {
     std::array<Point, 3> at;
     std::array<Metric, 3> metric;
     std::array<bool, 3> is_corner;  ///< of the triangle
+    bool raised;                    ///< whether the curvature at a corner asks for less than h_min
 
     /// Near the centroid, which itself often lies over an edge of the wall behind.
     static constexpr std::array<double, 3> inside{0.35, 0.34, 0.31};
@@ -98,23 +104,29 @@ public:
                  [&](std::uint32_t i) { exact_[i] = metric_of(mesh_.curvatures[i]); });
         metrics_.resize(patches_.fans.size());
         fitted_.resize(patches_.fans.size());
+        raised_.resize(patches_.fans.size());
         for_each(metrics_.size(), [&](std::uint32_t i) { metrics_[i] = metric_of_fan(i); });
         std::vector<std::vector<PointSource>> inside(mesh_.triangles.size());
         corner_walls_.resize(mesh_.triangles.size());
-        for_each(inside.size(), [&](std::uint32_t t) { divide(t, triangle(t), false, inside[t]); });
+        std::vector<std::size_t> raised(mesh_.triangles.size());
+        for_each(inside.size(),
+                 [&](std::uint32_t t) { divide(t, triangle(t), false, inside[t], raised[t]); });
         SurfaceSources result = at_vertices();
         for (const auto& sources : inside) {
             result.sources.insert(result.sources.end(), sources.begin(), sources.end());
         }
+        result.raised += std::reduce(raised.begin(), raised.end());
+        result.h_min = bounds_.h_min;
         return result;
     }
 
 private:
-    static double radians(double degrees) { return degrees * std::numbers::pi / 180; }
-
     double length(double curvature) const {
         return std::clamp(chord_ / curvature, bounds_.h_min, bounds_.h_max);
     }
+
+    /// Whether a length would be below h_min but for this; not at an apex, which has none.
+    bool is_below(double length) const { return length > 0 && length < bounds_.h_min; }
 
     Metric metric_of(const Curvature& curvature) const {
         const double h1 = length(curvature.along[0]), h2 = length(curvature.along[1]);
@@ -137,9 +149,10 @@ private:
         std::vector<Metric> metrics;
         for (const std::uint32_t face : faces) {
             fitted_[i] = face == SurfaceMesh::unknown;
-            metrics.push_back(fitted_[i]
-                                  ? metric_of(curvature_at(mesh_, patches_, patches_.fans[i]))
-                                  : exact_[face]);
+            const Curvature curvature = fitted_[i] ? curvature_at(mesh_, patches_, patches_.fans[i])
+                                                   : mesh_.curvatures[face];
+            raised_[i] = raised_[i] || is_below(chord_ / curvature.along[0]);
+            metrics.push_back(fitted_[i] ? metric_of(curvature) : exact_[face]);
         }
         return intersection_of(metrics);
     }
@@ -155,8 +168,14 @@ private:
         return intersection(m, layer_metric(normal, across, bounds_.h_max));
     }
 
+    /// The largest metric within two may be shorter than both, by up to the square root of 2.
     Metric as_wanted(const Metric& m) const {
-        return isotropic_ ? Metric::isotropic(shortest(m)) : m;
+        EigenFrame frame = eigen_frame(m);
+        const double finest = std::max(frame.lengths[0], bounds_.h_min);
+        if (isotropic_) return Metric::isotropic(finest);
+        if (finest == frame.lengths[0]) return m;
+        for (double& length : frame.lengths) length = std::max(length, finest);
+        return metric_from_frame(frame.lengths, frame.directions);
     }
 
     /// A triangle with the exact metrics of its face at its corners, or fitted ones; without these
@@ -164,7 +183,7 @@ private:
     Piece triangle(std::uint32_t t) const {
         constexpr double far_flatter = 4;
         const double own = length(patches_.bends[t]);
-        Piece piece;
+        Piece piece{.at = {}, .metric = {}, .is_corner = {}, .raised = false};
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t i = patches_.fan_of[t][k];
             const Fan& fan = patches_.fans[i];
@@ -175,6 +194,7 @@ private:
                               : flatter                     ? Metric::isotropic(own)
                                                             : metrics_[i];
             piece.is_corner[k] = true;
+            piece.raised = piece.raised || raised_[i];
         }
         return piece;
     }
@@ -182,7 +202,7 @@ private:
     /// Halves a piece until its edges are short enough, then adds a source there if it `is_part` of
     /// a triangle.
     void divide(std::uint32_t t, const Piece& piece, bool is_part,
-                std::vector<PointSource>& sources) {
+                std::vector<PointSource>& sources, std::size_t& raised) {
         constexpr double longest = 2;
         const Point place = piece.place();
         const double wall = walls_.distance(place, t);
@@ -194,19 +214,22 @@ private:
         const auto widest = std::max_element(edges.begin(), edges.end());
         if (*widest > longest) {
             const auto a = static_cast<std::size_t>(widest - edges.begin()), b = (a + 1) % 3;
-            divide(t, piece.half(a, b), true, sources);
-            divide(t, piece.half(b, a), true, sources);
+            divide(t, piece.half(a, b), true, sources, raised);
+            divide(t, piece.half(b, a), true, sources, raised);
             return;
         }
         for (std::size_t k = 0; k < 3; ++k) {
             if (piece.is_corner[k]) corner_walls_[t][k] = wall;
         }
-        if (is_part) sources.push_back({place, metric});
+        if (!is_part) return;
+        sources.push_back({place, metric});
+        raised += piece.raised || is_below(across_ * wall);
     }
 
     /// The intersection of the metrics of a vertex's fans.
     SurfaceSources at_vertices() const {
         std::vector<std::vector<Metric>> metrics(mesh_.vertices.size());
+        std::vector<char> raised(mesh_.vertices.size());
         for (std::uint32_t i = 0; i < patches_.fans.size(); ++i) {
             const Fan& fan = patches_.fans[i];
             double wall = infinity;
@@ -215,6 +238,7 @@ private:
                     if (patches_.fan_of[t][k] == i) wall = std::min(wall, corner_walls_[t][k]);
                 }
             }
+            raised[fan.vertex] = raised[fan.vertex] || raised_[i] || is_below(across_ * wall);
             metrics[fan.vertex].push_back(with_wall(metrics_[i], fan.normal, wall));
         }
         std::vector<PointSource> sources(mesh_.vertices.size());
@@ -226,6 +250,7 @@ private:
         for (std::size_t v = 0; v < sources.size(); ++v) {
             if (!metrics[v].empty()) result.sources.push_back(sources[v]);
         }
+        result.raised = static_cast<std::size_t>(std::ranges::count(raised, 1));
         result.skipped = sources.size() - result.sources.size();
         std::set<std::uint32_t> fitted;
         for (std::size_t i = 0; i < fitted_.size(); ++i) {
@@ -244,6 +269,7 @@ private:
     std::vector<Metric> exact_;                        ///< by the exact curvatures
     std::vector<Metric> metrics_;                      ///< of fans, by curvature
     std::vector<char> fitted_;                         ///< whether a fan's is
+    std::vector<char> raised_;                         ///< whether it would be below h_min
     std::vector<std::array<double, 3>> corner_walls_;  ///< distances next to corners of triangles
 };
 
@@ -253,6 +279,39 @@ SurfaceSources surface_sources(const SurfaceMesh& mesh, const CurvatureSizes& si
                                const std::filesystem::path& file) {
     require_valid(sizes);
     return Sizing(mesh, sizes, bounds_of(file, sizes, mesh.diagonal)).sources();
+}
+
+std::vector<WallRequest> wall_requests(const SurfaceMesh& mesh, const CurvatureSizes& sizes,
+                                       std::size_t rays, std::uint64_t seed,
+                                       const std::filesystem::path& file) {
+    require_valid(sizes);
+    const Bounds bounds = bounds_of(file, sizes, mesh.diagonal);
+    SmoothPatches patches = smooth_patches(mesh, radians(sizes.crease));
+    patches.normals = triangle_normals(mesh);
+    const FacingWalls walls(mesh, patches);
+    std::vector<double> area_up_to;
+    double area = 0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Point& p = mesh.vertices[a];
+        area_up_to.push_back(area += (mesh.vertices[b] - p).cross(mesh.vertices[c] - p).norm());
+    }
+    RandomFractions random(seed);
+    std::vector<WallRequest> requests;
+    for (std::size_t i = 0; i < rays; ++i) {
+        const auto found =
+            std::upper_bound(area_up_to.begin(), area_up_to.end() - 1, random() * area);
+        const auto t = static_cast<std::uint32_t>(found - area_up_to.begin());
+        const auto& [a, b, c] = mesh.triangles[t];
+        const double u = std::sqrt(random()), v = random();
+        const Point place =
+            (1 - u) * mesh.vertices[a] + u * (1 - v) * mesh.vertices[b] + u * v * mesh.vertices[c];
+        const double thickness = walls.distance(place, t);
+        if (thickness == infinity) continue;
+        requests.push_back(
+            {place, patches.normals[t],
+             std::clamp(thickness / sizes.elements_across, bounds.h_min, bounds.h_max)});
+    }
+    return requests;
 }
 
 SurfaceSources read_surface_sources(const std::filesystem::path& path,

@@ -43,6 +43,7 @@ public:
     Corner partner(Corner side) const { return partner_[side]; }
     std::uint32_t vertex(Corner c) const { return mesh_.triangles[c / 3][c % 3]; }
     const Point& point(Corner c) const { return mesh_.vertices[vertex(c)]; }
+    const SurfaceMesh& mesh() const { return mesh_; }
     double length(Corner side) const { return (point(next(side)) - point(side)).norm(); }
 
     /// Whether the triangles on both sides turn the same way.
@@ -69,39 +70,71 @@ double doubled_area(const Sides& sides, Corner c) {
     return (sides.point(next(c)) - a).cross(sides.point(next(next(c))) - a).norm();
 }
 
-/// The longest side of a triangle with an angle of more than 150 degrees, or none.
-Corner side_of_cap(const Sides& sides, std::uint32_t t) {
+/// By how much round-off of the vertices may tilt a triangle.
+double tilt_by_rounding(const Sides& sides, std::uint32_t t) {
+    const Corner c = 3 * t;
+    const double longest = std::max({sides.length(c), sides.length(c + 1), sides.length(c + 2)});
+    return rounding(sides.mesh()) * longest / doubled_area(sides, c);
+}
+
+/// Whether a triangle has an angle of more than 150 degrees.
+bool is_cap(const Sides& sides, std::uint32_t t) {
     static const double widest = -std::cos(std::numbers::pi / 6);
     for (Corner c = 3 * t; c < 3 * t + 3; ++c) {
         const Vector a = sides.point(next(c)) - sides.point(c);
         const Vector b = sides.point(next(next(c))) - sides.point(c);
-        if (a.dot(b) < widest * a.norm() * b.norm()) return next(c);
+        if (a.dot(b) < widest * a.norm() * b.norm()) return true;
     }
-    return none;
+    return false;
 }
 
-/// Normals, of which those of caps are their neighbours': three vertices nearly on a line hardly
-/// say how the surface is tilted, and would make creases of smooth edges.
-std::vector<Vector> without_caps(const Sides& sides, const std::vector<Vector>& normals) {
+/// Normals, of which those of caps are a neighbour's: three vertices nearly on a line hardly say
+/// how the surface is tilted, and would make creases of smooth edges. Of the neighbours the one
+/// that turns least is taken: the longest side is often an edge of the part. Caps in the plane of
+/// other caps keep their own, and so do those that turn away from neighbours that are apart, too.
+std::vector<Vector> without_caps(const Sides& sides, const std::vector<Vector>& normals,
+                                 double crease) {
+    constexpr double least = 1e-3;
+    std::vector<char> caps(normals.size());
+    for (std::uint32_t t = 0; t < caps.size(); ++t) caps[t] = is_cap(sides, t);
     std::vector<Vector> result = normals;
     for (std::uint32_t t = 0; t < normals.size(); ++t) {
-        const Corner side = side_of_cap(sides, t);
-        if (side == none || sides.partner(side) == none) continue;
-        const std::uint32_t other = sides.partner(side) / 3;
-        if (side_of_cap(sides, other) != none) continue;
-        result[t] = (sides.agree(side) ? 1 : -1) * normals[other];
+        if (!caps[t]) continue;
+        bool is_plane = false;
+        std::vector<std::pair<double, Vector>> around;  // turns and normals of neighbours
+        for (Corner side = 3 * t; side < 3 * t + 3; ++side) {
+            if (sides.partner(side) == none) continue;
+            const std::uint32_t other = sides.partner(side) / 3;
+            const double turn = sides.turn(side);
+            if (caps[other]) {
+                is_plane |= turn < least + 4 * (tilt_by_rounding(sides, t) +
+                                                tilt_by_rounding(sides, other));
+            } else {
+                around.emplace_back(turn, (sides.agree(side) ? 1 : -1) * normals[other]);
+            }
+        }
+        if (around.empty() || is_plane) continue;
+        const auto& [turn, nearest] = *std::ranges::min_element(
+            around, {}, [](const auto& neighbour) { return neighbour.first; });
+        const auto goes_on = std::ranges::count_if(around, [&](const auto& neighbour) {
+            return neighbour.second.dot(nearest) >= std::cos(crease);
+        });
+        if (turn <= crease || around.size() == 1 || goes_on > 1) result[t] = nearest;
     }
     return result;
 }
 
-/// Separates triangles at creases; what the others say of their triangles.
-std::vector<double> separate_at_creases(Sides& sides, double crease) {
+/// Separates triangles at creases, whose triangles are added to `creases`; what the others say of
+/// their triangles.
+std::vector<double> separate_at_creases(Sides& sides, double crease,
+                                        std::vector<std::array<std::uint32_t, 2>>& creases) {
     constexpr double rounding = 1e-6;
     std::vector<double> bends(sides.size() / 3, 0.0);
     for (Corner side = 0; side < sides.size(); ++side) {
         if (sides.partner(side) == none) continue;
         const double turn = sides.turn(side);
         if (turn > crease + rounding) {
+            creases.push_back({side / 3, sides.partner(side) / 3});
             sides.separate(side);
         } else {
             double& bend = bends[side / 3];
@@ -111,9 +144,11 @@ std::vector<double> separate_at_creases(Sides& sides, double crease) {
     return bends;
 }
 
-/// Turns normals so that those on both sides of a smooth edge are on the same side of the surface.
-void orient(const Sides& sides, std::vector<Vector>& normals) {
+/// Turns normals so that those on both sides of a smooth edge are on the same side of the surface;
+/// the patch of each triangle, by its first one.
+std::vector<std::uint32_t> orient(const Sides& sides, std::vector<Vector>& normals) {
     std::vector<double> sign(normals.size(), 0);
+    std::vector<std::uint32_t> patch_of(normals.size());
     std::vector<std::uint32_t> reached;
     for (std::uint32_t seed = 0; seed < normals.size(); ++seed) {
         if (sign[seed] != 0) continue;
@@ -122,6 +157,7 @@ void orient(const Sides& sides, std::vector<Vector>& normals) {
         while (!reached.empty()) {
             const std::uint32_t t = reached.back();
             reached.pop_back();
+            patch_of[t] = seed;
             for (Corner side = 3 * t; side < 3 * t + 3; ++side) {
                 if (sides.partner(side) == none) continue;
                 const std::uint32_t other = sides.partner(side) / 3;
@@ -132,6 +168,11 @@ void orient(const Sides& sides, std::vector<Vector>& normals) {
         }
     }
     for (std::size_t t = 0; t < normals.size(); ++t) normals[t] *= sign[t];
+    return patch_of;
+}
+
+std::array<std::uint32_t, 2> in_order(std::uint32_t a, std::uint32_t b) {
+    return {std::min(a, b), std::max(a, b)};
 }
 
 /// For each corner the first of its fan.
@@ -188,18 +229,33 @@ void add_fans(const Sides& sides, double crease, SmoothPatches& patches) {
 
 }  // namespace
 
-SmoothPatches smooth_patches(const SurfaceMesh& mesh, double crease) {
-    SmoothPatches patches;
+std::vector<Vector> triangle_normals(const SurfaceMesh& mesh) {
+    std::vector<Vector> normals;
     for (const auto& [a, b, c] : mesh.triangles) {
         const Point& p = mesh.vertices[a];
-        patches.normals.push_back(
-            (mesh.vertices[b] - p).cross(mesh.vertices[c] - p).stableNormalized());
+        normals.push_back((mesh.vertices[b] - p).cross(mesh.vertices[c] - p).stableNormalized());
     }
+    return normals;
+}
+
+bool SmoothPatches::meet(std::size_t t, std::size_t other) const {
+    return std::ranges::binary_search(meeting, in_order(patch_of[t], patch_of[other]));
+}
+
+SmoothPatches smooth_patches(const SurfaceMesh& mesh, double crease) {
+    SmoothPatches patches;
+    patches.normals = triangle_normals(mesh);
     patches.fan_of.resize(mesh.triangles.size());
     Sides sides(mesh, patches.normals);
-    patches.normals = without_caps(sides, patches.normals);
-    patches.bends = separate_at_creases(sides, crease);
-    orient(sides, patches.normals);
+    patches.normals = without_caps(sides, patches.normals, crease);
+    patches.bends = separate_at_creases(sides, crease, patches.meeting);
+    patches.patch_of = orient(sides, patches.normals);
+    for (auto& crease_of : patches.meeting) {
+        const auto& [t, other] = crease_of;
+        crease_of = in_order(patches.patch_of[t], patches.patch_of[other]);
+    }
+    std::erase_if(patches.meeting, [](const auto& pair) { return pair[0] == pair[1]; });
+    std::ranges::sort(patches.meeting);
     add_fans(sides, crease, patches);
     return patches;
 }

@@ -29,7 +29,16 @@ struct SmoothPatches {
     std::vector<double> bends;
     std::vector<Fan> fans;
     std::vector<std::array<std::uint32_t, 3>> fan_of;  ///< of the corners of triangles
+    std::vector<std::uint32_t> patch_of;               ///< of triangles
+    /// Different patches with a crease in common, in ascending order.
+    std::vector<std::array<std::uint32_t, 2>> meeting;
+
+    /// Whether two triangles are of different patches that have a crease in common.
+    bool meet(std::size_t t, std::size_t other) const;
 };
+
+/// Unit normals of triangles, each by its own vertices alone.
+std::vector<Vector> triangle_normals(const SurfaceMesh& mesh);
 
 /// `crease` in radians.
 SmoothPatches smooth_patches(const SurfaceMesh& mesh, double crease);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -33,11 +34,29 @@ struct SurfaceMesh {
 /// Largest distance that counts as round-off: coordinates of .stl files have 24 bits.
 inline double rounding(const SurfaceMesh& mesh) { return 0x1p-23 * mesh.diagonal; }
 
-/// Reads a surface of polygons (.stl, .obj, .ply, .off), which are cut into triangles; vertices at
-/// the same place are one. Triangles whose height is rounding, which have no normal, are left out,
+/// Reads a surface of polygons (.stl, .obj, .ply, .off), which are cut into triangles; vertices
+/// within round-off of each other are one: 1e-9 of the box's diagonal, in a binary .stl the spacing
+/// of floats. Triangles whose height is rounding, which have no normal, are left out,
 /// and so is the second of two with the same vertices. Throws InputError that names the file for
 /// what cannot be read, for more vertices than the file has room for, and for one where no triangle
 /// has an area.
 SurfaceMesh read_surface_mesh(const std::filesystem::path& path);
+
+/// The same surface in other units.
+inline SurfaceMesh scaled(SurfaceMesh mesh, double factor) {
+    for (Point& vertex : mesh.vertices) vertex *= factor;
+    mesh.diagonal *= factor;
+    for (Curvature& curvature : mesh.curvatures) {
+        for (double& along : curvature.along) along /= factor;
+    }
+    return mesh;
+}
+
+struct SurfaceEdges {
+    std::size_t count = 0;
+    /// Those of an odd number of triangles, by their ends: none where the surface is closed.
+    std::vector<std::array<std::uint32_t, 2>> open = {};
+};
+SurfaceEdges surface_edges(const SurfaceMesh& mesh);
 
 }  // namespace controlspace

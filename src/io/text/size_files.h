@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "controlspace/space/control_space.h"
 
@@ -41,6 +42,10 @@ SizeFile write_jigsaw_grid(const std::filesystem::path& path, const ControlSpace
 /// its lengths are not linear within 2 %, by one halving, or 5 %, by two, up to 2 million nodes.
 /// TetGen is linear in each. Throws InputError for a field without cells.
 SizeFile write_tetgen_background(const std::filesystem::path& base, const ControlSpace& space);
+
+/// The points of TetGen's input, a .node, .poly or .smesh; none where a .poly leaves them to its
+/// .node. Throws InputError that names the line.
+std::vector<Point> read_tetgen_points(const std::filesystem::path& path);
 
 /// The local mesh sizes of Netgen (.msz, its option meshsizefilename): points at half the lengths
 /// that they request, the smallest first. Netgen takes them as upper bounds, grows from there by

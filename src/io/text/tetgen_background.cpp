@@ -5,9 +5,11 @@
 
 #include "controlspace/geometry/extent.h"
 #include "files/output_file.h"
+#include "files/text_file.h"
 #include "io/text/bisected_box.h"
 #include "io/text/cells.h"
 #include "io/text/lengths_at.h"
+#include "io/text/scanner.h"
 #include "io/text/size_files.h"
 #include "refuse.h"
 
@@ -59,6 +61,24 @@ std::filesystem::path with_ending(std::filesystem::path base, const char* ending
 }
 
 }  // namespace
+
+std::vector<Point> read_tetgen_points(const std::filesystem::path& path) {
+    const std::string text = read_text_file(path);
+    Scanner file(text, path, "#");
+    const auto count = file.number<std::size_t>("the number of points");
+    if (count > 0 && file.number<std::size_t>("the dimension") != 3) {
+        refuse_at(path, "points of a plane: TetGen's have three coordinates");
+    }
+    file.line();
+    file.require_room("points", count, 7);  // "0 0 0 0"
+    std::vector<Point> points(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        file.number<std::size_t>({"the number of point", i});
+        for (double& x : points[i]) x = file.number<double>({"point", i});
+        file.line();  // attributes and markers
+    }
+    return points;
+}
 
 SizeFile write_tetgen_background(const std::filesystem::path& base, const ControlSpace& space) {
     // Of bisections after those for the cells; three halve all edges.

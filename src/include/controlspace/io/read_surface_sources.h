@@ -31,6 +31,8 @@ struct SurfaceSources {
     std::vector<PointSource> sources;
     std::size_t skipped = 0;  ///< vertices without a source: no triangle there has an area
     std::size_t fitted = 0;   ///< vertices whose curvature is fitted to the triangles
+    std::size_t raised = 0;   ///< sources that would have a length below h_min
+    double h_min = 0;         ///< that holds, in the units of the file
 };
 
 /// Sources at the vertices of a surface of polygons (.stl, .obj, .ply, .off), each vertex once, and
@@ -38,7 +40,8 @@ struct SurfaceSources {
 /// the intersection of their metrics. An apex, without a tangent plane, has h_min.
 ///
 /// The distance across a wall or gap is measured along the normal, to surfaces that are parallel
-/// within 30 degrees.
+/// within 30 degrees; of flanks that meet at a sharp edge within 20, with lengths down to h_min at
+/// the edge: wider angles are filled with good elements in one layer.
 ///
 /// Throws InputError that names the file for what cannot be read, where no triangle has an area,
 /// and for angles, elements or bounds out of range.

@@ -3,12 +3,14 @@
 #include <filesystem>
 #include <vector>
 
+#include "controlspace/geometry/box.h"
 #include "controlspace/geometry/point.h"
 #include "controlspace/mesh/tet_mesh.h"
 
 namespace controlspace {
 
-/// A body that is filled with tetrahedra: inside a closed surface of triangles, or of a CAD file.
+/// What is filled with tetrahedra: the bodies inside of a closed surface of triangles, which may be
+/// hollow, or the solids of a CAD file, which share faces where they touch.
 struct Part {
     std::vector<Point> vertices = {};
     std::vector<Triangle> triangles = {};
@@ -16,6 +18,8 @@ struct Part {
     double crease = 30;
     /// In place of triangles: a .step, .stp, .iges, .igs or .brep.
     std::filesystem::path cad = {};
+    Box box = {};      ///< around it
+    double scale = 1;  ///< of millimetres, in which Gmsh reads CAD files, in units of the field
 };
 
 }  // namespace controlspace

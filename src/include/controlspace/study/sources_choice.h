@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,10 +34,17 @@ struct FieldChoice {
     bool operator==(const FieldChoice&) const = default;
 };
 
+enum class LengthUnit { um, mm, cm, m, km, in, ft };
+
+/// How many millimetres it has.
+double millimetres(LengthUnit unit);
+
 /// The part of a file of sources to be read, or lengths for a file without any.
 struct FileSources {
-    std::string array = {};         ///< .vtu, .vtp, .vti, .msh, .pos; empty: the only one
-    CurvatureSizes curvature = {};  ///< .stl, .obj, .ply, .off
+    double scale = 1;                     ///< of coordinates and lengths in files of all formats
+    std::optional<LengthUnit> unit = {};  ///< that CAD files are converted into; none: millimetres
+    std::string array = {};               ///< .vtu, .vtp, .vti, .msh, .pos; empty: the only one
+    CurvatureSizes curvature = {};        ///< .stl, .obj, .ply, .off
 
     bool operator==(const FileSources&) const = default;
 };
@@ -94,6 +102,14 @@ struct Words<SourcesKind> {
     static constexpr Word<SourcesKind> table[] = {{SourcesKind::sphere, "sphere", "sampled"},
                                                   {SourcesKind::planes, "planes", "sampled"},
                                                   {SourcesKind::none, "none", "only a field"}};
+};
+template <>
+struct Words<LengthUnit> {
+    static constexpr Word<LengthUnit> table[] = {
+        {LengthUnit::um, "um", "micrometres"}, {LengthUnit::mm, "mm", "millimetres"},
+        {LengthUnit::cm, "cm", "centimetres"}, {LengthUnit::m, "m", "metres"},
+        {LengthUnit::km, "km", "kilometres"},  {LengthUnit::in, "in", "inches"},
+        {LengthUnit::ft, "ft", "feet"}};
 };
 template <>
 struct Words<Sampling> {

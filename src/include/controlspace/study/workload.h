@@ -18,14 +18,15 @@ namespace controlspace {
 
 /// Readers of file formats, provided by the program that links their libraries.
 struct FileReaders {
-    /// Sources of kind `file`, by the ending of the file's name in small letters (".vdb").
+    /// Sources of kind `file`, by the ending of the file's name in small letters (".vdb"); of parts
+    /// in the units of the field (FileSources), of others in those of the file.
     std::map<std::string, std::function<std::vector<PointSource>(const std::filesystem::path&,
                                                                  const SourcesChoice&)>>
         sources;
     /// A field of kind `file`; may be empty.
     std::function<AnalyticField(const FieldChoice&)> vdb_field;
     /// The distance from the surface in a file; may be empty.
-    std::function<DistanceField(const std::filesystem::path&)> surface_distance;
+    std::function<DistanceField(const std::filesystem::path&, const FileSources&)> surface_distance;
 };
 
 /// Sources and field, shared by all cases with the same ones.
