@@ -12,8 +12,11 @@
 #include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkLogger.h>
+#include <vtkMatrix3x3.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkPointSet.h>
+#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkStaticCellLocator.h>
 #include <vtkUnstructuredGrid.h>
@@ -21,8 +24,10 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <new>
 #include <span>
@@ -144,6 +149,11 @@ Point centre_of(const std::filesystem::path& path, vtkDataSet& grid, vtkIdType c
     return sum / static_cast<double>(n);
 }
 
+Eigen::Matrix3d axes_of(vtkImageData& image) {
+    return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(
+        image.GetDirectionMatrix()->GetData());
+}
+
 /// The metrics at the points or centres of cells of a file.
 struct VtkMetrics {
     vtkSmartPointer<vtkDataSet> grid;
@@ -161,6 +171,13 @@ VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& na
     const auto grid = ending == ".vtp"   ? read_data_set<vtkXMLPolyDataReader>(path)
                       : ending == ".vti" ? read_data_set<vtkXMLImageDataReader>(path)
                                          : read_data_set<vtkXMLUnstructuredGridReader>(path);
+    if (auto* image = vtkImageData::SafeDownCast(grid)) {
+        const double volume = axes_of(*image).determinant();
+        constexpr double least = 1e-6;  // of unit vectors
+        if (!(std::abs(volume) > least)) {
+            refuse_at(path, "its Direction is no basis of space: give three independent axes");
+        }
+    }
     const auto [array, at_points] = array_named(path, *grid, name, option);
     vtkDataArray& values = *array;
     const vtkIdType count = at_points ? grid->GetNumberOfPoints() : grid->GetNumberOfCells();
@@ -193,13 +210,18 @@ VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& na
     return {grid, at_points, std::move(positions), metrics.take()};
 }
 
+Box bounds_of(vtkDataSet& grid) {
+    std::array<double, 6> bounds{};
+    grid.GetBounds(bounds.data());
+    return {{bounds[0], bounds[2], bounds[4]}, {bounds[1], bounds[3], bounds[5]}};
+}
+
 /// Constant in each cell, or by the cells' shape functions between points.
 class CellField final : public ControlSpace {
 public:
-    explicit CellField(VtkMetrics data) : data_(std::move(data)) {
-        std::array<double, 6> bounds{};
-        data_.grid->GetBounds(bounds.data());
-        domain_ = {{bounds[0], bounds[2], bounds[4]}, {bounds[1], bounds[3], bounds[5]}};
+    CellField(VtkMetrics data, double finest) : data_(std::move(data)), finest_(finest) {
+        domain_ = bounds_of(*data_.grid);
+        move_to_unit_box();
         locator_->SetDataSet(data_.grid);
         locator_->BuildLocator();
         largest_cell_ = static_cast<std::size_t>(data_.grid->GetMaxCellSize());
@@ -209,12 +231,40 @@ public:
         const vtkNew<vtkGenericCell> cell;
         std::vector<double> weights(largest_cell_);
         for (std::size_t i = 0; i < x.size(); ++i) {
-            out[i] = at(nearest_in(domain_, x[i]), cell, weights);
+            const Point p = to_grid_ * (x[i] - origin_);
+            out[i] = at(nearest_in(grid_box_, p), cell, weights);
         }
     }
     Box domain() const override { return domain_; }
 
 private:
+    /// Moves the grid to the origin, scales it to a longest edge of 1 and turns an image's axes to
+    /// the coordinates'; places will be moved with it. VTK's tolerances are absolute, and its
+    /// voxels are along the coordinates' axes even where those of their image are not.
+    void move_to_unit_box() {
+        const double unit = 1 / domain_.edges().maxCoeff();
+        origin_ = domain_.low;
+        to_grid_ = unit * Eigen::Matrix3d::Identity();
+        if (auto* image = vtkImageData::SafeDownCast(data_.grid)) {
+            origin_ = Point(image->GetOrigin());
+            to_grid_ = unit * axes_of(*image).inverse();
+            const Vector spacing = unit * Vector(image->GetSpacing());
+            image->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1);
+            image->SetOrigin(0, 0, 0);
+            image->SetSpacing(spacing.data());
+        } else if (auto* set = vtkPointSet::SafeDownCast(data_.grid)) {
+            const vtkNew<vtkPoints> points;
+            points->SetDataTypeToDouble();
+            points->SetNumberOfPoints(set->GetNumberOfPoints());
+            for (vtkIdType i = 0; i < set->GetNumberOfPoints(); ++i) {
+                const Point p = to_grid_ * (Point(set->GetPoint(i)) - origin_);
+                points->SetPoint(i, p.data());
+            }
+            set->SetPoints(points);
+        }
+        grid_box_ = bounds_of(*data_.grid);
+    }
+
     Metric at(Point x, vtkGenericCell* cell, std::vector<double>& weights) const {
         Point inside;
         int part = 0;
@@ -227,11 +277,26 @@ private:
                                    weights.data());
         }
         if (!data_.at_points) return data_.metrics[static_cast<std::size_t>(id)];
+        const auto count = static_cast<std::size_t>(cell->GetNumberOfPoints());
+        const std::span<double> used = std::span(weights).first(count);
+        // Shape functions of higher order are negative in places, and values may be smaller there
+        // than any at a point, down to none: then they are a mean.
+        if (std::ranges::min(used) < 0) {
+            const Metric sum = weighted(cell, used);
+            if (is_source_metric(sum) && eigen_frame(sum).lengths[0] >= finest_) return sum;
+            for (double& weight : used) weight = std::max(0.0, weight);
+        }
+        return weighted(cell, used);
+    }
+
+    /// The mean of the metrics at the points of a cell.
+    Metric weighted(vtkGenericCell* cell, std::span<const double> weights) const {
         Metric sum{0, 0, 0, 0, 0, 0};
         double all = 0;
-        for (int k = 0; k < static_cast<int>(cell->GetNumberOfPoints()); ++k) {
-            const double weight = std::max(0.0, weights[static_cast<std::size_t>(k)]);
-            const Metric& m = data_.metrics[static_cast<std::size_t>(cell->GetPointId(k))];
+        for (std::size_t k = 0; k < weights.size(); ++k) {
+            const double weight = weights[k];
+            const Metric& m =
+                data_.metrics[static_cast<std::size_t>(cell->GetPointId(static_cast<int>(k)))];
             sum = {sum.xx + weight * m.xx, sum.yy + weight * m.yy, sum.zz + weight * m.zz,
                    sum.xy + weight * m.xy, sum.xz + weight * m.xz, sum.yz + weight * m.yz};
             all += weight;
@@ -241,7 +306,11 @@ private:
     }
 
     VtkMetrics data_;
+    double finest_;  ///< length at a point or in a cell
     Box domain_;
+    Box grid_box_;  ///< of the moved grid
+    Point origin_;
+    Eigen::Matrix3d to_grid_;
     std::size_t largest_cell_ = 0;  ///< points of a cell, at most
     vtkNew<vtkStaticCellLocator> locator_;
 };
@@ -264,10 +333,13 @@ AnalyticField read_vtk_field(const std::filesystem::path& path, const std::strin
                   i + 1);
     }
     if (data.grid->GetNumberOfCells() == 0) refuse_at(path, "no cells: nothing to read");
+    if (!(bounds_of(*data.grid).edges().maxCoeff() > 0)) {
+        refuse_at(path, "all points are at one place: nothing is between them");
+    }
     double finest = largest_magnitude;
     for (const Metric& m : data.metrics) finest = std::min(finest, eigen_frame(m).lengths[0]);
     std::vector<Point> places = data.positions;
-    return {std::make_shared<CellField>(std::move(data)), finest, std::move(places)};
+    return {std::make_shared<CellField>(std::move(data), finest), finest, std::move(places)};
 }
 
 }  // namespace controlspace
