@@ -38,11 +38,13 @@ struct SourceFormat {
     SurfaceMesh (*read_mesh)(const std::filesystem::path& file) = nullptr;
 };
 
+void warn(const std::string& remark) { spdlog::warn("{}", remark); }
+
 Sources read_vdb(const std::filesystem::path& file, const SourcesChoice& choice) {
     return read_vdb_sources(file, choice.surface);
 }
 Sources read_vtk(const std::filesystem::path& file, const SourcesChoice& choice) {
-    return read_vtk_sources(file, choice.in_file.array);
+    return read_vtk_sources(file, {.array = choice.in_file.array, .remark = warn});
 }
 template <SurfaceMesh (*read_mesh)(const std::filesystem::path&)>
 Sources read_surface(const std::filesystem::path& file, const SourcesChoice& choice) {
@@ -127,6 +129,7 @@ Part read_part(const std::filesystem::path& file, double crease) {
 
 FileReaders file_readers() {
     FileReaders readers;
+    readers.remark = warn;
     readers.sources = {{".mesh", read_mesh}, {".meshb", read_mesh}};
     for (const SourceFormat& format : formats) {
         for (const std::string_view ending : format.endings) {

@@ -132,7 +132,7 @@ std::vector<PointSource> read_one(const std::filesystem::path& file, const Sourc
         return reader->second(file, choice);
     }
     if (needs_reader(ending)) fail_without_reader(file);
-    return read_sources(file, choice.in_file.array);
+    return read_sources(file, {choice.in_file.array, choice.in_file.step, readers.remark});
 }
 
 /// The sources of several files, one after the other.

@@ -346,12 +346,12 @@ TEST_CASE("arrays of 1, 6 and 9 components, however VTK encodes them") {
     const double tolerance = 1e-6;
     const auto path = write_vtp<vtkDoubleArray>(folder, components, "a:metric", *writer);
     check_close(read_vtk_sources(path), expected, tolerance);
-    check_close(read_vtk_sources(path, "a:metric"), expected, tolerance);
+    check_close(read_vtk_sources(path, {.array = "a:metric"}), expected, tolerance);
     const auto floats = write_vtp<vtkFloatArray>(folder, components, "size", *writer);
-    check_close(read_vtk_sources(floats, "size"), expected, 1e-5);
+    check_close(read_vtk_sources(floats, {.array = "size"}), expected, 1e-5);
     CHECK_THAT(error_of([&] { read_vtk_sources(floats); }),
                Contains("no array is named :metric, there are 'size': name one"));
-    CHECK_THAT(error_of([&] { read_vtk_sources(floats, "sizes"); }),
+    CHECK_THAT(error_of([&] { read_vtk_sources(floats, {.array = "sizes"}); }),
                Contains("no array is named 'sizes', there are 'size': name one"));
 }
 
@@ -401,8 +401,8 @@ TEST_CASE("data of cells are sources at the centres of the cells") {
     };
     write();
     check_close(read_vtk_sources(path), expected);
-    check_close(read_vtk_sources(path, "a:metric"), expected);
-    CHECK_THAT(error_of([&] { read_vtk_sources(path, "b"); }),
+    check_close(read_vtk_sources(path, {.array = "a:metric"}), expected);
+    CHECK_THAT(error_of([&] { read_vtk_sources(path, {.array = "b"}); }),
                Contains("no array is named 'b', there are 'a:metric' (of cells): name one"));
 
     // Points come first, under the same name too.
@@ -443,7 +443,7 @@ TEST_CASE("exported leaves, nodes and slices are sources again") {
     const auto slice = read_vtk_sources(folder / "slice.vti");
     check(slice, 31 * 31);
     for (const PointSource& s : slice) CHECK(s.position.z() == Approx(0.3));
-    const auto lengths = read_vtk_sources(folder / "slice.vti", "h_min");
+    const auto lengths = read_vtk_sources(folder / "slice.vti", {.array = "h_min"});
     for (std::size_t i = 0; i < slice.size(); ++i) {
         CHECK(lengths[i].metric.xx == Approx(eigen_frame(slice[i].metric).lengths[0]));
     }

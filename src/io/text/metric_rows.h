@@ -95,4 +95,7 @@ void require_coordinates(const Point& x, std::string_view what, std::size_t numb
 std::vector<PointSource> sources_from(std::span<const Point> positions,
                                       std::span<const Metric> metrics);
 
+/// Of sources with the same place and metric only the first is kept.
+void drop_repeated(std::vector<PointSource>& sources);
+
 }  // namespace controlspace

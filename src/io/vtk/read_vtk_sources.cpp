@@ -318,8 +318,8 @@ private:
 }  // namespace
 
 std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
-                                          const std::string& name) {
-    const VtkMetrics data = read_metrics(path, name, "--source-array");
+                                          const ReadOptions& options) {
+    const VtkMetrics data = read_metrics(path, options.array, "--source-array");
     return sources_from(data.positions, data.metrics);
 }
 

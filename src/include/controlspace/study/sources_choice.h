@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,8 +37,9 @@ struct FieldChoice {
 
 /// The part of a file of sources to be read, or lengths for a file without any.
 struct FileSources {
-    std::string array = {};         ///< .vtu, .vtp, .vti, .msh, .pos; empty: the only one
-    CurvatureSizes curvature = {};  ///< .stl, .obj, .ply, .off
+    std::string array = {};                  ///< .vtu, .vtp, .vti, .msh, .pos; empty: the only one
+    std::optional<std::uint64_t> step = {};  ///< in time, of a .msh or .pos; none: the last
+    CurvatureSizes curvature = {};           ///< .stl, .obj, .ply, .off
 
     bool operator==(const FileSources&) const = default;
 };

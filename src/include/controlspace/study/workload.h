@@ -18,6 +18,8 @@ namespace controlspace {
 
 /// Readers of file formats, provided by the program that links their libraries.
 struct FileReaders {
+    /// Receives remarks on what was read (ReadOptions); may be empty.
+    std::function<void(const std::string&)> remark;
     /// Sources of kind `file`, by the ending of the file's name in small letters (".vdb").
     std::map<std::string, std::function<std::vector<PointSource>(const std::filesystem::path&,
                                                                  const SourcesChoice&)>>
