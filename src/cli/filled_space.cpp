@@ -30,6 +30,12 @@ std::unique_ptr<ControlSpace> load_saved(const std::filesystem::path& input) {
                                : load_control_space(input, structures());
 }
 
+std::string size_of_file(const std::filesystem::path& file, std::string_view before) {
+    std::error_code unknown;
+    const auto bytes = static_cast<double>(std::filesystem::file_size(file, unknown));
+    return unknown ? "" : fmt::format("{}{:.3g} MB in the file", before, bytes / 1e6);
+}
+
 void require_no_settings(const std::filesystem::path& space, const GivenSettings& given) {
     if (given.empty()) return;
     refuse("{}: {} was made with its own: leave it out", option_name(given.front().first),

@@ -42,6 +42,9 @@ bool is_in_pieces(const std::filesystem::path& input);
 /// Loads either, to be read.
 std::unique_ptr<ControlSpace> load_saved(const std::filesystem::path& input);
 
+/// `before`, and the size of a file; empty for a pipe, which has none.
+std::string size_of_file(const std::filesystem::path& file, std::string_view before);
+
 /// Throws InputError, naming the first, where settings are given with a control space that was
 /// saved.
 void require_no_settings(const std::filesystem::path& space, const GivenSettings& given);

@@ -54,6 +54,12 @@ std::string read_file(const std::filesystem::path& path, std::size_t largest, bo
 
 }  // namespace
 
+void require_no_stream(const std::filesystem::path& path) {
+    std::error_code ignored;
+    if (!std::filesystem::is_other(path, ignored)) return;
+    refuse_at(path, "a pipe or a device, which can be read only once: save it as a file");
+}
+
 std::string read_text_file(const std::filesystem::path& path, std::size_t largest) {
     std::string text;
     if (path == "/dev/stdin") {

@@ -16,6 +16,9 @@ namespace controlspace {
 /// Maximum bytes read from a pipe or a device, which may never end: some six million sources.
 constexpr std::size_t largest_stream = std::size_t{1} << 30;
 
+/// Throws InputError for a pipe or a device, which cannot be read more than once, as libraries do.
+void require_no_stream(const std::filesystem::path& path);
+
 /// The whole file, without a leading UTF-8 byte order mark. Throws InputError, naming the file, if
 /// it is missing, a directory, unreadable or empty, if it holds a zero byte, as no text does, or if
 /// it goes on for `largest` bytes beyond the size that it has on disk (a pipe has none).

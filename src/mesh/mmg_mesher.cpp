@@ -13,9 +13,9 @@
 #include "controlspace/error.h"
 #include "controlspace/mesh/mesh_files.h"
 #include "controlspace/space/sample_parallel.h"
+#include "files/child_process.h"
 #include "io/text/medit.h"
 #include "measure/stopwatch.h"
-#include "mesh/child_program.h"
 #include "mesh/size_query.h"
 #include "refuse.h"
 
@@ -56,6 +56,7 @@ std::vector<Metric> metrics_at(const TetMesh& mesh, const ControlSpace& field) {
 }
 
 std::string reason(const ChildOutcome& outcome, const MmgOptions& options) {
+    if (!outcome.is_known) return "was collected by another part of this program";
     if (outcome.timed_out) return fmt::format("took longer than {} s", options.time_limit_s);
     if (outcome.signal != 0) return fmt::format("was ended by signal {}", outcome.signal);
     if (outcome.status != 0) return fmt::format("failed with status {}", outcome.status);

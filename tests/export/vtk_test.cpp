@@ -11,6 +11,7 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkProbeFilter.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLHyperTreeGridReader.h>
 #include <vtkXMLImageDataReader.h>
@@ -96,6 +97,22 @@ void check_close(const std::vector<PointSource>& a, const std::vector<PointSourc
         CHECK((a[i].position - b[i].position).norm() <= tolerance);
         CHECK(a[i].metric.matrix().isApprox(b[i].metric.matrix(), tolerance));
     }
+}
+
+/// Writes a file by VTK's own writer, with lengths `h` at the points.
+template <class Writer>
+void write_grid(const std::filesystem::path& path, vtkDataSet& grid,
+                const std::function<double(const Point&)>& length_at) {
+    vtkNew<vtkDoubleArray> sizes;
+    sizes->SetName("h");
+    for (vtkIdType i = 0; i < grid.GetNumberOfPoints(); ++i) {
+        sizes->InsertNextValue(length_at(Point(grid.GetPoint(i))));
+    }
+    grid.GetPointData()->AddArray(sizes);
+    vtkNew<Writer> writer;
+    writer->SetFileName(path.c_str());
+    writer->SetInputData(&grid);
+    writer->Write();
 }
 
 const std::vector<PointSource> two{{{0.1, -0.2, 0.3}, {0.3, 0.4, 0.5, 0.02, -0.03, 0.05}},
@@ -426,6 +443,42 @@ TEST_CASE("data of cells are sources at the centres of the cells") {
     CHECK_THAT(error_of([&] { read_vtk_sources(path); }), Contains("it has no arrays"));
 }
 
+TEST_CASE("hidden points and cells are no sources, and make no field") {
+    const ScratchDirectory folder;
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(4, 2, 2);
+    const auto h = [](const Point& p) { return p.x() < 3 ? 1 + p.x() : -1; };
+    const bool at_points = GENERATE(true, false);
+    vtkNew<vtkUnsignedCharArray> marks;
+    marks->SetName("vtkGhostType");
+    if (at_points) {
+        for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i) {
+            const bool is_hidden = image->GetPoint(i)[0] == 3;
+            marks->InsertNextValue(is_hidden ? vtkDataSetAttributes::HIDDENPOINT
+                                             : vtkDataSetAttributes::DUPLICATEPOINT);
+        }
+        image->GetPointData()->AddArray(marks);
+    } else {
+        vtkNew<vtkDoubleArray> sizes;
+        sizes->SetName("c");
+        for (const double size : {1.0, 2.0, -1.0}) sizes->InsertNextValue(size);
+        for (const int mark : {0, 1, 32}) marks->InsertNextValue(static_cast<unsigned char>(mark));
+        image->GetCellData()->AddArray(sizes);
+        image->GetCellData()->AddArray(marks);
+    }
+    write_grid<vtkXMLImageDataWriter>(folder / "h.vti", *image, h);
+    std::string said;
+    const auto sources = read_vtk_sources(
+        folder / "h.vti",
+        {.array = at_points ? "h" : "c", .remark = [&](const std::string& r) { said += r; }});
+    CHECK(sources.size() == (at_points ? 12 : 2));
+    CHECK_THAT(said, Contains(at_points ? "h.vti: 4 hidden points are left out"
+                                        : "h.vti: 1 hidden cells are left out"));
+    for (const PointSource& s : sources) CHECK(s.metric.xx == std::floor(1 + s.position.x()));
+    CHECK_THAT(error_of([&] { read_vtk_field(folder / "h.vti", at_points ? "h" : "c"); }),
+               Contains("is hidden"));
+}
+
 TEST_CASE("exported leaves, nodes and slices are sources again") {
     const ScratchDirectory folder;
     const auto space = filled(GENERATE("K_oL", "K_oV", "K_L"));
@@ -505,22 +558,6 @@ TEST_CASE("between points with metrics a field is linear") {
     write_nodes(folder / "nodes.vtu", *filled("K_oV"));
     CHECK_THAT(error_of([&] { read_vtk_field(folder / "nodes.vtu"); }),
                Contains("cell 1 has no volume"));
-}
-
-/// Writes a file by VTK's own writer, with lengths `h` at the points.
-template <class Writer>
-void write_grid(const std::filesystem::path& path, vtkDataSet& grid,
-                const std::function<double(const Point&)>& length_at) {
-    vtkNew<vtkDoubleArray> sizes;
-    sizes->SetName("h");
-    for (vtkIdType i = 0; i < grid.GetNumberOfPoints(); ++i) {
-        sizes->InsertNextValue(length_at(Point(grid.GetPoint(i))));
-    }
-    grid.GetPointData()->AddArray(sizes);
-    vtkNew<Writer> writer;
-    writer->SetFileName(path.c_str());
-    writer->SetInputData(&grid);
-    writer->Write();
 }
 
 TEST_CASE("the axes of an image may be turned, exchanged and mirrored") {

@@ -121,6 +121,7 @@ std::string npy_header(std::string_view shape) {
 }
 
 std::vector<PointSource> read_npy_sources(const std::filesystem::path& path) {
+    require_no_stream(path);
     Bytes bytes(path);
     const auto [rows, columns] = read_header(bytes, path);
     // Before memory is allocated for them.

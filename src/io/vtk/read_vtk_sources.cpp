@@ -7,6 +7,7 @@
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkExecutive.h>
 #include <vtkGenericCell.h>
 #include <vtkIdList.h>
@@ -19,6 +20,7 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkStaticCellLocator.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataReader.h>
@@ -160,7 +162,21 @@ struct VtkMetrics {
     bool at_points;
     std::vector<Point> positions;
     std::vector<Metric> metrics;
+    std::size_t hidden = 0;  ///< points or cells that are left out: ParaView does not show them
 };
+
+/// Whether point or cell `i` is marked as none, for which VTK has bits in an array of the grid.
+bool is_hidden(vtkDataSet& grid, bool at_points, vtkIdType i) {
+    constexpr int hidden_points = vtkDataSetAttributes::HIDDENPOINT;
+    constexpr int hidden_cells =
+        vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL;
+    vtkDataSetAttributes* data = grid.GetPointData();
+    if (!at_points) data = grid.GetCellData();
+    const auto* marks =
+        vtkUnsignedCharArray::SafeDownCast(data->GetArray(vtkDataSetAttributes::GhostArrayName()));
+    return marks != nullptr &&
+           (marks->GetValue(i) & (at_points ? hidden_points : hidden_cells)) != 0;
+}
 
 VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& name,
                         const char* option) {
@@ -194,10 +210,15 @@ VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& na
     }
     const auto where = [&] { return path.string(); };
     MetricRows metrics(where, components == vtk_tensor.numbers ? vtk_tensor : matrix_rows);
-    std::vector<Point> positions(static_cast<std::size_t>(count));
+    std::vector<Point> positions;
     std::array<double, 9> numbers{};
+    std::size_t hidden = 0;
     for (vtkIdType i = 0; i < count; ++i) {
-        Point& x = positions[static_cast<std::size_t>(i)];
+        if (is_hidden(*grid, at_points, i)) {
+            ++hidden;
+            continue;
+        }
+        Point& x = positions.emplace_back();
         if (at_points) {
             grid->GetPoint(i, x.data());
         } else {
@@ -207,7 +228,8 @@ VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& na
         values.GetTuple(i, numbers.data());
         metrics.add(std::span(numbers).first(components));
     }
-    return {grid, at_points, std::move(positions), metrics.take()};
+    if (positions.empty()) refuse_at(path, "all {}s are hidden: nothing to read", what);
+    return {grid, at_points, std::move(positions), metrics.take(), hidden};
 }
 
 Box bounds_of(vtkDataSet& grid) {
@@ -320,12 +342,19 @@ private:
 std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
                                           const ReadOptions& options) {
     const VtkMetrics data = read_metrics(path, options.array, "--source-array");
+    if (data.hidden > 0 && options.remark) {
+        options.remark(fmt::format("{}: {} hidden {} are left out (vtkGhostType)", path.string(),
+                                   data.hidden, data.at_points ? "points" : "cells"));
+    }
     return sources_from(data.positions, data.metrics);
 }
 
 AnalyticField read_vtk_field(const std::filesystem::path& path, const std::string& name) {
     VtkMetrics data = read_metrics(path, name, "--field-grid");
     for (vtkIdType i = 0; i < data.grid->GetNumberOfCells(); ++i) {
+        if (data.hidden > 0 || is_hidden(*data.grid, /*at_points=*/false, i)) {
+            refuse_at(path, "some of it is hidden (vtkGhostType): save the field without that");
+        }
         if (data.grid->GetCell(i)->GetCellDimension() == 3) continue;
         refuse_at(path,
                   "cell {} has no volume, so that nothing is between points: leave "

@@ -1,14 +1,18 @@
-#include "mesh/child_program.h"
+#include "files/child_process.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -16,7 +20,9 @@
 #include <deque>
 #include <fstream>
 #include <memory>
+#include <mutex>
 #include <thread>
+#include <utility>
 
 #include "refuse.h"
 
@@ -27,10 +33,34 @@ namespace fs = std::filesystem;
 
 constexpr int could_not_start = 127;
 
+/// Gives SIGCHLD its default action while an object of this type exists, if children would be
+/// forgotten otherwise.
+class KeptChildren {
+public:
+    KeptChildren() {
+        const std::lock_guard lock(mutex);
+        if (++count > 1) return;
+        ::sigaction(SIGCHLD, nullptr, &before);
+        forgets = before.sa_handler == SIG_IGN || (before.sa_flags & SA_NOCLDWAIT) != 0;
+        if (forgets) std::signal(SIGCHLD, SIG_DFL);
+    }
+    ~KeptChildren() {
+        const std::lock_guard lock(mutex);
+        if (--count == 0 && forgets) ::sigaction(SIGCHLD, &before, nullptr);
+    }
+    KeptChildren(const KeptChildren&) = delete;
+    KeptChildren& operator=(const KeptChildren&) = delete;
+
+private:
+    static inline std::mutex mutex;
+    static inline int count = 0;
+    static inline bool forgets = false;
+    static inline struct sigaction before {};
+};
+
 /// The child between fork and exec, where nothing but system calls may be made.
 [[noreturn]] void become(char* const* arguments, const char* folder, int in, int out) {
     ::setpgid(0, 0);
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     // This program may hold signals back; the other one must not.
     sigset_t none;
     sigemptyset(&none);
@@ -56,6 +86,55 @@ File opened(const fs::path& path, const std::string& mode) {
 
 }  // namespace
 
+ChildProcess::ChildProcess(const std::function<void()>& body)
+    : kept_(std::make_shared<KeptChildren>()), child_(::fork()) {
+    if (child_ < 0) refuse("cannot start a process: {}", std::strerror(errno));
+    if (child_ > 0) return;
+#ifdef __linux__
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
+    body();
+    ::_exit(could_not_start);
+}
+
+ChildProcess::~ChildProcess() {
+    if (child_ > 0) wait(0);
+}
+
+ChildOutcome ChildProcess::wait(double time_limit_s) {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    const pid_t child = std::exchange(child_, -1);
+    ChildOutcome outcome;
+    int state = 0;
+    rusage usage{};
+    pid_t ended = 0;
+    const auto collect = [&](int how) {
+        do {
+            ended = ::wait4(child, &state, how, &usage);
+        } while (ended < 0 && errno == EINTR);
+        return ended;
+    };
+    while (collect(std::isinf(time_limit_s) ? 0 : WNOHANG) == 0) {
+        const std::chrono::duration<double> elapsed = Clock::now() - start;
+        if (elapsed.count() >= time_limit_s) {
+            outcome.timed_out = true;
+            ::kill(-child, SIGKILL);
+            ::kill(child, SIGKILL);  // it may lead no group
+            collect(0);
+            break;
+        }
+        constexpr std::chrono::milliseconds pause(5);
+        std::this_thread::sleep_for(pause);
+    }
+    outcome.is_known = ended == child;
+    if (WIFSIGNALED(state)) outcome.signal = WTERMSIG(state);
+    if (WIFEXITED(state)) outcome.status = WEXITSTATUS(state);
+    outcome.processor_seconds = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
+    outcome.peak_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+    return outcome;
+}
+
 ChildOutcome run_child(const std::vector<std::string>& arguments, const fs::path& folder,
                        const fs::path& log, double time_limit_s) {
     if (::access(arguments.front().c_str(), X_OK) != 0) {
@@ -67,31 +146,9 @@ ChildOutcome run_child(const std::vector<std::string>& arguments, const fs::path
     for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
     words.push_back(nullptr);
 
-    const pid_t child = ::fork();
-    if (child < 0) refuse("cannot start {}: {}", arguments.front(), std::strerror(errno));
-    if (child == 0) become(words.data(), folder.c_str(), ::fileno(in.get()), ::fileno(out.get()));
-
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    ChildOutcome outcome;
-    int state = 0;
-    rusage usage{};
-    while (::wait4(child, &state, WNOHANG, &usage) == 0) {
-        const std::chrono::duration<double> elapsed = Clock::now() - start;
-        if (elapsed.count() > time_limit_s) {
-            outcome.timed_out = true;
-            ::kill(-child, SIGKILL);
-            ::kill(child, SIGKILL);  // it may not have become a group yet
-            ::wait4(child, &state, 0, &usage);
-            break;
-        }
-        constexpr std::chrono::milliseconds pause(5);
-        std::this_thread::sleep_for(pause);
-    }
-    if (WIFSIGNALED(state)) outcome.signal = WTERMSIG(state);
-    if (WIFEXITED(state)) outcome.status = WEXITSTATUS(state);
-    outcome.processor_seconds = seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
-    outcome.peak_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+    ChildProcess child(
+        [&] { become(words.data(), folder.c_str(), ::fileno(in.get()), ::fileno(out.get())); });
+    const ChildOutcome outcome = child.wait(time_limit_s);
     if (outcome.status == could_not_start && fs::is_empty(log)) {
         refuse("cannot run {}: is it a program of this system?", arguments.front());
     }
