@@ -76,6 +76,13 @@ void MeshFolder::end() {
     replace_file(path_ / "summary.md", head + mesh_tables(rows_, TableStyle::markdown));
 }
 
+void MeshFolder::remove_files_of_meshers() const {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(path_, ignored)) {
+        if (entry.is_directory(ignored)) std::filesystem::remove_all(entry.path(), ignored);
+    }
+}
+
 void MeshFolder::record(bool complete) const {
     replace_file(path_ / results_file, mesh_json(provenance_, study_, settings_, rows_, complete));
 }

@@ -36,6 +36,9 @@ public:
     /// Writes the summary.
     void end();
 
+    /// Removes what meshers that are interrupted leave.
+    void remove_files_of_meshers() const;
+
     const MeshSettings& settings() const { return settings_; }
     const std::filesystem::path& path() const { return path_; }
     const std::vector<MeshRow>& rows() const { return rows_; }

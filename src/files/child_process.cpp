@@ -1,8 +1,11 @@
 #include "files/child_process.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <stdlib.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,6 +13,8 @@
 #include <sys/prctl.h>
 #endif
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -32,6 +37,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int could_not_start = 127;
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 /// Gives SIGCHLD its default action while an object of this type exists, if children would be
 /// forgotten otherwise.
@@ -84,6 +95,50 @@ File opened(const fs::path& path, const std::string& mode) {
     refuse("cannot open {}: {}", path.string(), std::strerror(errno));
 }
 
+/// The standard input of a child: nothing, or one end of a socket.
+struct Input {
+    explicit Input(bool is_socket) {
+        if (!is_socket) {
+            of_child = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+        } else if (std::array<int, 2> ends{};
+                   ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0) {
+            of_child = ends[0];
+            socket = ends[1];
+        }
+        if (of_child < 0) refuse("cannot start a process: {}", std::strerror(errno));
+    }
+    ~Input() {
+        for (const int descriptor : {of_child, socket}) {
+            if (descriptor >= 0) ::close(descriptor);
+        }
+    }
+    Input(const Input&) = delete;
+    Input& operator=(const Input&) = delete;
+
+    mutable int of_child = -1;  ///< -1: closed
+    int socket = -1;
+};
+
+/// Answers until the child has closed its end, or its time is over.
+void converse(int socket, const Conversation& conversation, Clock::time_point start,
+              double time_limit_s) {
+    std::vector<std::byte> question(conversation.question_bytes);
+    std::vector<std::byte> answer(conversation.answer_bytes);
+    constexpr timeval pause{.tv_sec = 0, .tv_usec = 100'000};  // between looks at the clock
+    ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &pause, sizeof pause);
+    for (std::size_t got = 0; seconds_since(start) < time_limit_s;) {
+        const ssize_t more = ::recv(socket, question.data() + got, question.size() - got, 0);
+        if (more < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+        if (more <= 0) return;
+        got += static_cast<std::size_t>(more);
+        if (got < question.size()) continue;
+        got = 0;
+        conversation.answer(question.data(), answer.data());
+        // Shorter than the buffer of the socket, which is empty: sent at once.
+        if (::send(socket, answer.data(), answer.size(), MSG_NOSIGNAL) < 0) return;
+    }
+}
+
 }  // namespace
 
 ChildProcess::ChildProcess(const std::function<void()>& body)
@@ -102,7 +157,6 @@ ChildProcess::~ChildProcess() {
 }
 
 ChildOutcome ChildProcess::wait(double time_limit_s) {
-    using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
     const pid_t child = std::exchange(child_, -1);
     ChildOutcome outcome;
@@ -116,8 +170,7 @@ ChildOutcome ChildProcess::wait(double time_limit_s) {
         return ended;
     };
     while (collect(std::isinf(time_limit_s) ? 0 : WNOHANG) == 0) {
-        const std::chrono::duration<double> elapsed = Clock::now() - start;
-        if (elapsed.count() >= time_limit_s) {
+        if (seconds_since(start) >= time_limit_s) {
             outcome.timed_out = true;
             ::kill(-child, SIGKILL);
             ::kill(child, SIGKILL);  // it may lead no group
@@ -136,23 +189,40 @@ ChildOutcome ChildProcess::wait(double time_limit_s) {
 }
 
 ChildOutcome run_child(const std::vector<std::string>& arguments, const fs::path& folder,
-                       const fs::path& log, double time_limit_s) {
+                       const fs::path& log, double time_limit_s, const Conversation* conversation) {
     if (::access(arguments.front().c_str(), X_OK) != 0) {
         refuse("cannot run {}: {}", arguments.front(), std::strerror(errno));
     }
-    const File in = opened("/dev/null", "r"), out = opened(log, "w");
+    const File out = opened(log, "w");
+    const Input input(conversation != nullptr);
     std::vector<char*> words;
     words.reserve(arguments.size() + 1);
     for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
     words.push_back(nullptr);
 
+    const auto start = Clock::now();
     ChildProcess child(
-        [&] { become(words.data(), folder.c_str(), ::fileno(in.get()), ::fileno(out.get())); });
-    const ChildOutcome outcome = child.wait(time_limit_s);
+        [&] { become(words.data(), folder.c_str(), input.of_child, ::fileno(out.get())); });
+    ::close(std::exchange(input.of_child, -1));
+    if (conversation != nullptr) converse(input.socket, *conversation, start, time_limit_s);
+    const ChildOutcome outcome = child.wait(std::max(0.0, time_limit_s - seconds_since(start)));
     if (outcome.status == could_not_start && fs::is_empty(log)) {
         refuse("cannot run {}: is it a program of this system?", arguments.front());
     }
     return outcome;
+}
+
+TemporaryFolder::TemporaryFolder(const fs::path& parent, const std::string& name) {
+    std::string pattern = (parent / (name + "-XXXXXX")).string();
+    if (::mkdtemp(pattern.data()) == nullptr) {
+        refuse("cannot make a folder in {}: {}", parent.string(), std::strerror(errno));
+    }
+    path_ = fs::absolute(pattern);
+}
+
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code ignored;
+    if (!keep_) fs::remove_all(path_, ignored);
 }
 
 std::string last_lines(const fs::path& file, std::size_t count) {

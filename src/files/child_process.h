@@ -46,12 +46,36 @@ private:
     pid_t child_;                       ///< -1: waited for
 };
 
-/// Runs the program `arguments[0]` in `folder`, with empty input and its output and errors in the
-/// file `log`, and waits for it. It is killed after `time_limit_s`, with what it started
-/// itself, and when the calling thread ends. Throws InputError if it cannot be started.
+/// Answers what a child process asks.
+struct Conversation {
+    std::size_t question_bytes, answer_bytes;
+    std::function<void(const std::byte* question, std::byte* answer)> answer;
+};
+
+/// Runs the program `arguments[0]` in `folder`, with its output and errors in the file `log`, and
+/// waits for it. Its standard input is empty, or a socket by which it may ask, one question after
+/// the other. It is killed after `time_limit_s`, with what it started itself, and when the calling
+/// thread ends. Throws InputError if it cannot be started; what `answer` throws passes through.
 ChildOutcome run_child(const std::vector<std::string>& arguments,
                        const std::filesystem::path& folder, const std::filesystem::path& log,
-                       double time_limit_s);
+                       double time_limit_s, const Conversation* conversation = nullptr);
+
+/// A new folder in another one, removed with all that is in it unless it is to be kept.
+class TemporaryFolder {
+public:
+    /// Its name begins with `name`. Throws InputError.
+    TemporaryFolder(const std::filesystem::path& parent, const std::string& name);
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+    void keep() { keep_ = true; }
+
+private:
+    std::filesystem::path path_;
+    bool keep_ = false;
+};
 
 /// The last lines of a text file that are not blank, joined by " | ", for messages.
 std::string last_lines(const std::filesystem::path& file, std::size_t count);

@@ -1,11 +1,8 @@
 #include "mesh/mmg_mesher.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,31 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A new folder, removed with all that is in it unless it is to be kept.
-class TemporaryFolder {
-public:
-    explicit TemporaryFolder(const fs::path& parent) {
-        std::string pattern = (parent / "mmg-XXXXXX").string();
-        if (::mkdtemp(pattern.data()) == nullptr) {
-            refuse("cannot make a folder in {}: {}", parent.string(), std::strerror(errno));
-        }
-        path_ = fs::absolute(pattern);
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        if (!keep_) fs::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    const fs::path& path() const { return path_; }
-    void keep() { keep_ = true; }
-
-private:
-    fs::path path_;
-    bool keep_ = false;
-};
-
 std::vector<Metric> metrics_at(const TetMesh& mesh, const ControlSpace& field) {
     std::vector<Metric> metrics = sample_parallel(field, mesh.vertices);
     for (std::size_t i = 0; i < metrics.size(); ++i) require_metric(metrics[i], mesh.vertices[i]);
@@ -66,7 +38,7 @@ std::string reason(const ChildOutcome& outcome, const MmgOptions& options) {
 /// One call of MMG on `mesh`.
 TetMesh remesh(const TetMesh& mesh, const std::vector<Metric>& metrics, const fs::path& program,
                const MmgOptions& options, MeshCost& cost) {
-    TemporaryFolder folder(options.folder);
+    TemporaryFolder folder(options.folder, "mmg");
     const fs::path log = folder.path() / "log", out = folder.path() / "out.mesh";
     write_medit_mesh(folder.path() / "in.mesh", mesh);
     write_medit_solution(folder.path() / "in.sol", metrics);

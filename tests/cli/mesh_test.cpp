@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cli/sandbox.h"
+#include "data_folder.h"
 
 namespace controlspace::mesh_test {
 
@@ -86,6 +87,26 @@ TEST_CASE("a part is meshed, by its own field or another's") {
     box.write("far.csv", "x,y,z,h\n5,5,5,0.1\n6,6,6,0.1\n");
     CHECK_THAT(box.run("mesh far.csv --part brick.off --output far " + quick).err,
                Contains("is not inside of the field's domain"));
+}
+
+TEST_CASE("Gmsh has a limit of time, and its crash is a row with its last words") {
+    const Sandbox box("mesh-apart");
+    const Outcome late = box.run(
+        "mesh --h 0.02 --probe-grid 5 --structures K_oL --mesher delaunay --exact no --files none "
+        "--time-limit 0.01 --output late");
+    CHECK(late.status == 3);
+    CHECK_THAT(late.err, Contains("Gmsh took longer than 0.01 s (--time-limit)"));
+    CHECK(std::distance(fs::directory_iterator(box / "late"), {}) == 2);  // no file of the child
+
+    // Triangles whose edges Gmsh 4.8 cannot recover: it throws where nobody catches.
+    fs::copy_file(data_folder() / "../tests/data/bipyramid-of-ten.stl", box / "part.stl");
+    const Outcome crashed = box.run(
+        "mesh part.stl --isotropic --probe-grid 5 --exact no --files none --output crashed");
+    INFO(crashed.err);
+    CHECK((crashed.status == 0 || crashed.status == 3));
+    if (crashed.status == 3) {
+        CHECK_THAT(crashed.err, Contains("Gmsh ") && Contains("repair the part"));
+    }
 }
 
 TEST_CASE("a target that a meshed structure missed is told, with status 3") {
