@@ -164,7 +164,8 @@ FileReaders file_readers() {
 std::string source_formats_help() {
     return "Sources: .csv; .npy; .mesh, .sol, .meshb or .solb, the other beside it; .pos; .msh; "
            ".vtu, "
-           ".vtp, .vti; or a surface: .stl, .obj, .ply, .off, or in a .vdb; or CAD: .step, .iges, "
+           ".vtp, .vti, .vtk; or a surface: .stl, .obj, .ply, .off, or in a .vdb; or CAD: .step, "
+           ".iges, "
            ".brep; several with commas; or another value of --sources (sphere, planes)";
 }
 

@@ -11,7 +11,7 @@ namespace controlspace {
 
 // Endings of files that libraries read; those of read_sources are there.
 
-inline constexpr std::array<std::string_view, 3> vtk_endings{".vtu", ".vtp", ".vti"};
+inline constexpr std::array<std::string_view, 4> vtk_endings{".vtu", ".vtp", ".vti", ".vtk"};
 inline constexpr std::array<std::string_view, 4> triangle_endings{".stl", ".obj", ".ply", ".off"};
 inline constexpr std::array<std::string_view, 5> cad_endings{".step", ".stp", ".iges", ".igs",
                                                              ".brep"};

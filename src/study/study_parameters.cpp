@@ -139,8 +139,8 @@ std::vector<Parameter<Study>> table() {
     const AppliesTo<Study> planes{"the planes", of_kind(SourcesKind::planes)};
     const AppliesTo<Study> sampled{"sampled surfaces",
                                    [](const Study& s) { return is_sampled(s.sources); }};
-    const AppliesTo<Study> arrays{".vtu, .vtp, .vti, .msh and .pos",
-                                  in_file({".vtu", ".vtp", ".vti", ".msh", ".pos"})};
+    const AppliesTo<Study> arrays{".vtu, .vtp, .vti, .vtk, .msh and .pos",
+                                  in_file({".vtu", ".vtp", ".vti", ".vtk", ".msh", ".pos"})};
     const AppliesTo<Study> steps{".msh and .pos", in_file({".msh", ".pos"})};
     const AppliesTo<Study> surface{"surfaces: .stl, .obj, .ply, .off, .step, .iges and .brep",
                                    in_file(part_endings())};
@@ -160,7 +160,8 @@ std::vector<Parameter<Study>> table() {
          "sphere or planes (sampled); none (only a field); or files and primitives, the smallest "
          "of "
          "whose metrics counts where they overlap. Files of points with metrics: .csv (- for "
-         "standard input), .mesh or .meshb with .sol or .solb, .pos, .msh, .vtu, .vtp or .vti; or "
+         "standard input), .mesh or .meshb with .sol or .solb, .pos, .msh, .vtu, .vtp, .vti or "
+         ".vtk; or "
          "a surface: .stl, .obj, .ply, .off, .step, .iges, .brep or in a .vdb. Primitives: "
          "box:x0,x1,y0,y1,z0,z1,h=H, ball:x,y,z,r=R,h=H, cylinder:x0,y0,z0,x1,y1,z1,r=R,h=H, "
          "segment:x0,y0,z0,x1,y1,z1,h=H, surface:FILE,h=H: the length is H on them and inside, and "
@@ -263,7 +264,8 @@ std::vector<Parameter<Study>> table() {
          "Lengths at densities 1 and 0 of that grid; left out: the grid contains lengths",
          density_sizes(), making, field_file, fields},
         {"source_array", "",
-         "Sources of a .vtu, .vtp, .vti, .msh or .pos: the array or view of sizes (1 component) or "
+         "Sources of a .vtu, .vtp, .vti, .vtk, .msh or .pos: the array or view of sizes (1 "
+         "component) or "
          "Riemannian metrics (6 or 9), at points, or else of cells, for their centres; left out: "
          "the array named :metric, the only view",
          text<Study>(of(sources, &Sources::in_file, &FileSources::array)), reading, arrays},

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -183,11 +184,19 @@ TEST_CASE("sources are read from an array of NumPy as from a table") {
     REQUIRE(box.run("convert b.npy b.csv").status == 0);
     CHECK(file_text(box / "b.csv") == "x,y,z,h\n0,0,0,0.1\n");
 
+    const std::array<float, 4> narrow{0, 1, 0.5F, 0.125F};
+    std::vector<double> halves(2);
+    std::memcpy(halves.data(), narrow.data(), sizeof narrow);
+    box.write("c.npy", array("(1, 4)", "<f4", halves));
+    REQUIRE(box.run("convert c.npy c.csv").status == 0);
+    CHECK(file_text(box / "c.csv") == "x,y,z,h\n0,1,0.5,0.125\n");
+
     const std::vector<std::pair<std::string, std::string>> damaged{
         {array("(3, 5)", "<f8", two), "it has 2 of 3 rows"},
         {array("(5, 2)", "<f8", two), "its shape is (5, 2): give rows"},
         {array("(10,)", "<f8", two), "its shape is (10,): give rows"},
-        {array("(2, 5)", "<f4", two), "it holds no doubles"},
+        {array("(2, 5)", "<i4", two), "it holds no floats or doubles"},
+        {array("(9, 5)", "<f4", two), "it has 4 of 9 rows"},
         {array("(2, 5)", "<f8", {0, 0, 0, 1, 1, 0, 0, 0, -1, 1}),
          "row 1: h = -1: a length must be positive"},
         {array("(2, 5)", "<f8", {0, 0, 0, 1, 0.5, 0, 0, 0, 1, 1}),

@@ -443,6 +443,37 @@ TEST_CASE("data of cells are sources at the centres of the cells") {
     CHECK_THAT(error_of([&] { read_vtk_sources(path); }), Contains("it has no arrays"));
 }
 
+TEST_CASE("legacy files of VTK are read, of all arrays and kinds of data sets") {
+    const ScratchDirectory folder;
+    const std::string head = "# vtk DataFile Version 3.0\nby hand\nASCII\n";
+    const std::string data =
+        "POINT_DATA 2\nSCALARS first double\nLOOKUP_TABLE default\n3 4\n"
+        "SCALARS h double\nLOOKUP_TABLE default\n0.5 0.25\n"
+        "TENSORS t double\n4 0 0\n0 16 0\n0 0 64\n\n1 0 0\n0 1 0\n0 0 1\n"
+        "FIELD more 1\nf 1 2 float\n0.125 2\n";
+    const std::string grid = GENERATE("DATASET UNSTRUCTURED_GRID\nPOINTS 2 double\n0 0 0 1 0 0\n",
+                                      "DATASET POLYDATA\nPOINTS 2 double\n0 0 0 1 0 0\n",
+                                      "DATASET STRUCTURED_POINTS\nDIMENSIONS 2 1 1\nORIGIN 0 0 0\n"
+                                      "SPACING 1 1 1\n",
+                                      "DATASET RECTILINEAR_GRID\nDIMENSIONS 2 1 1\n"
+                                      "X_COORDINATES 2 double\n0 1\nY_COORDINATES 1 double\n0\n"
+                                      "Z_COORDINATES 1 double\n0\n");
+    CAPTURE(grid);
+    const auto path = folder.file("a.vtk", head + grid + data);
+    const auto read = [&](const char* array) { return read_vtk_sources(path, {.array = array}); };
+    CHECK(read("h") == std::vector<PointSource>{{{0, 0, 0}, Metric::isotropic(0.5)},
+                                                {{1, 0, 0}, Metric::isotropic(0.25)}});
+    CHECK(read("f").back().metric == Metric::isotropic(2));
+    CHECK(read("t").front().metric.matrix().isApprox(Metric{0.5, 0.25, 0.125, 0, 0, 0}.matrix(),
+                                                     1e-14));
+    const auto error = [&](const std::string& text) {
+        return error_of([&] { read_vtk_sources(folder.file("b.vtk", text), {.array = "h"}); });
+    };
+    CHECK_THAT(error("x,y,z,h\n0,0,0,1\n"), Contains("b.vtk: does not start with '# vtk"));
+    CHECK_FALSE(error(head + "DATASET NONE\n").empty());
+    CHECK_FALSE(error(head + grid + data.substr(0, 60)).empty());
+}
+
 TEST_CASE("hidden points and cells are no sources, and make no field") {
     const ScratchDirectory folder;
     vtkNew<vtkImageData> image;

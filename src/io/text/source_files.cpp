@@ -65,7 +65,7 @@ std::vector<PointSource> read_sources(const std::filesystem::path& path,
         refuse("{} is a directory: name a file", path.string());
     }
     const std::string extension = lower_case_extension(path);
-    if (extension == ".csv") return read_csv_sources(path);
+    if (extension == ".csv") return read_csv_sources(path, options);
     if (extension == ".npy") return read_npy_sources(path);
     if (extension == ".mesh") return read_medit_mesh(path, ".sol", ".solb");
     if (extension == ".sol") return read_medit_sources(mesh_of(path, ".mesh", ".meshb"), path);
@@ -75,7 +75,7 @@ std::vector<PointSource> read_sources(const std::filesystem::path& path,
     if (extension == ".msh") return read_msh_sources(path, options);
     // A pipe, as of <(command), has a name that says nothing.
     if (path == "/dev/stdin" || !std::filesystem::is_regular_file(path, ignored)) {
-        return read_csv_sources(path);
+        return read_csv_sources(path, options);
     }
     refuse_at(path, "name a .csv, a .npy, a .mesh beside a .sol, a .pos or a .msh");
 }

@@ -8,6 +8,7 @@
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
 #include <vtkDataSetAttributes.h>
+#include <vtkDataSetReader.h>
 #include <vtkExecutive.h>
 #include <vtkGenericCell.h>
 #include <vtkIdList.h>
@@ -34,6 +35,7 @@
 #include <new>
 #include <span>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "controlspace/io/read_sources.h"
@@ -85,8 +87,14 @@ vtkSmartPointer<vtkDataSet> read_data_set(const std::filesystem::path& path) {
         reader->AddObserver(event, errors.command());
         reader->GetExecutive()->AddObserver(event, errors.command());
     }
-    reader->SetReaderErrorObserver(errors.command());
-    reader->SetParserErrorObserver(errors.command());
+    if constexpr (std::is_same_v<Reader, vtkDataSetReader>) {
+        reader->ReadAllScalarsOn();  // not the first array alone
+        reader->ReadAllTensorsOn();
+        reader->ReadAllFieldsOn();
+    } else {
+        reader->SetReaderErrorObserver(errors.command());
+        reader->SetParserErrorObserver(errors.command());
+    }
     reader->SetFileName(path.c_str());
     try {
         reader->Update();
@@ -180,13 +188,19 @@ bool is_hidden(vtkDataSet& grid, bool at_points, vtkIdType i) {
 
 VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& name,
                         const char* option) {
-    if (read_binary_file(path).find("<VTKFile") == std::string::npos) {
-        refuse_at(path, "no VTKFile element: give a file in VTK's XML format");
-    }
     const std::string ending = lower_case_extension(path);
+    const bool is_legacy = ending == ".vtk";
+    if (read_binary_file(path).find(is_legacy ? "# vtk DataFile" : "<VTKFile") ==
+        std::string::npos) {
+        refuse_at(path, "{}",
+                  is_legacy ? "does not start with '# vtk DataFile': give a file of VTK"
+                            : "no VTKFile element: give a file in VTK's XML format");
+    }
     const auto grid = ending == ".vtp"   ? read_data_set<vtkXMLPolyDataReader>(path)
                       : ending == ".vti" ? read_data_set<vtkXMLImageDataReader>(path)
+                      : is_legacy        ? read_data_set<vtkDataSetReader>(path)
                                          : read_data_set<vtkXMLUnstructuredGridReader>(path);
+    if (grid == nullptr) refuse_at(path, "it holds no data set that VTK knows: save it again");
     if (auto* image = vtkImageData::SafeDownCast(grid)) {
         const double volume = axes_of(*image).determinant();
         constexpr double least = 1e-6;  // of unit vectors
@@ -362,6 +376,9 @@ AnalyticField read_vtk_field(const std::filesystem::path& path, const std::strin
                   i + 1);
     }
     if (data.grid->GetNumberOfCells() == 0) refuse_at(path, "no cells: nothing to read");
+    if (data.grid->IsA("vtkRectilinearGrid") != 0) {
+        refuse_at(path, "a rectilinear grid: save it as an unstructured one");
+    }
     if (!(bounds_of(*data.grid).edges().maxCoeff() > 0)) {
         refuse_at(path, "all points are at one place: nothing is between them");
     }

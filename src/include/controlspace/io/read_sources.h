@@ -27,10 +27,11 @@ struct ReadOptions {
 ///     tensor M, whose eigenvalues are lengths), or h1, h2, h3, e1x, e1y, e1z, e2x, e2y, e2z
 ///     (lengths along two orthogonal directions and normal to both); and g, if there is such a
 ///     column, the gradation ratio of the source's own;
-///   - `.npy`: an array of NumPy of doubles with rows x, y, z, h or x, y, z, h, g;
+///   - `.npy`: an array of NumPy of doubles or floats with rows x, y, z, h or x, y, z, h, g;
 ///   - `.mesh`, `.meshb`, `.sol` or `.solb`: a Medit mesh or solution that has the other beside it
-///     under the same name, with lengths, or Riemannian metrics M^-2 as xx xy yy xz yz zz; a mesh
-///     without a solution gives the lengths of its required edges, at their ends;
+///     under the same name, of the plane or space, with lengths, or Riemannian metrics M^-2 as xx
+///     xy yy xz yz zz; a mesh without a solution gives the lengths of its required edges, at their
+///     ends;
 ///   - `.pos` and `.msh`: a list view of Gmsh, or a mesh (formats 4.1 and 2.x) with $NodeData, with
 ///     $ElementData for the centres of elements or $ElementNodeData for their corners, with
 ///     lengths, or Riemannian metrics M^-2 by rows; `array` names the view, if there is more than

@@ -10,11 +10,11 @@
 
 namespace controlspace {
 
-/// Sources at the points of a VTK file (.vtu, .vtp or .vti) that carry the array `options.array`,
-/// or, where no array of points has that name, at the centres (means of the points) of cells that
-/// do; without a name, the only one whose name contains ":metric". It holds sizes h (1 component)
-/// or Riemannian metrics M^-2: 6 components in VTK's order XX YY ZZ XY YZ XZ, or 9 by rows.
-/// Exported leaves, control nodes and slices are read again so, as sources. Points
+/// Sources at the points of a VTK file (.vtu, .vtp, .vti or the legacy .vtk) that carry the array
+/// `options.array`, or, where no array of points has that name, at the centres (means of the
+/// points) of cells that do; without a name, the only one whose name contains ":metric". It holds
+/// sizes h (1 component) or Riemannian metrics M^-2: 6 components in VTK's order XX YY ZZ XY YZ XZ,
+/// or 9 by rows. Exported leaves, control nodes and slices are read again so, as sources. Points
 /// and cells that VTK marks as hidden (vtkGhostType) are left out, with a remark; a field that has
 /// such is refused.
 ///
