@@ -41,7 +41,8 @@ TetMesh remesh(const TetMesh& mesh, const std::vector<Metric>& metrics, const fs
     TemporaryFolder folder(options.folder, "mmg");
     const fs::path log = folder.path() / "log", out = folder.path() / "out.mesh";
     write_medit_mesh(folder.path() / "in.mesh", mesh);
-    write_medit_solution(folder.path() / "in.sol", metrics);
+    // Of sizes MMG would make a mesh by other rules.
+    write_medit_solution(folder.path() / "in.sol", metrics, /*keep_tensors=*/true);
     std::vector<std::string> words{program.string(), "-v",   "1",      "-hgrad", "-1",      "-in",
                                    "in.mesh",        "-sol", "in.sol", "-out",   "out.mesh"};
     if (options.hausdorff > 0) {

@@ -9,7 +9,11 @@
 
 namespace controlspace {
 
-// Endings of files that libraries read; those of read_sources are there.
+/// Of files that read_sources reads.
+inline constexpr std::array<std::string_view, 8> own_endings{".csv", ".npy",  ".mesh", ".meshb",
+                                                             ".sol", ".solb", ".pos",  ".msh"};
+
+// Endings of files that libraries read.
 
 inline constexpr std::array<std::string_view, 4> vtk_endings{".vtu", ".vtp", ".vti", ".vtk"};
 inline constexpr std::array<std::string_view, 4> triangle_endings{".stl", ".obj", ".ply", ".off"};

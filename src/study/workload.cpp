@@ -132,6 +132,13 @@ std::vector<PointSource> read_one(const std::filesystem::path& file, const Sourc
         return reader->second(file, choice);
     }
     if (needs_reader(ending)) fail_without_reader(file);
+    if (!has_ending(own_endings, ending) && std::filesystem::is_regular_file(file)) {
+        std::vector<std::string_view> all(own_endings.begin(), own_endings.end());
+        for (const auto& [known, reader] : readers.sources) {
+            if (!has_ending(own_endings, known)) all.push_back(known);
+        }
+        refuse_at(file, "its ending is none that can be read: name a {}", fmt::join(all, ", "));
+    }
     return read_sources(file, {choice.in_file.array, choice.in_file.step, readers.remark});
 }
 

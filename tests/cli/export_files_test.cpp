@@ -142,7 +142,7 @@ TEST_CASE("lengths of a slice, for NumPy, ParaView and netCDF, are those of sing
     INFO(outcome.err);
     REQUIRE(outcome.status == 0);
     const std::string nc = file_text(box / "a.nc");
-    CHECK(nc.starts_with("CDF\x05"));
+    CHECK(nc.starts_with("CDF\x02"));  // as SciPy reads it
     CHECK(doubles_in(nc, lengths.size(), true) == lengths);
 #endif
 }

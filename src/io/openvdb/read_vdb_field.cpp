@@ -129,8 +129,14 @@ std::string name_of(const Coord& voxel) {
     return fmt::format("({}, {}, {})", voxel.x(), voxel.y(), voxel.z());
 }
 
+/// As the grids are, or in the unit from which they were scaled.
 AnalyticField field_of(Grids grids, double elsewhere, double finest) {
-    return {std::make_shared<VoxelField>(std::move(grids), elsewhere), finest};
+    const auto note = grids.base().getMetadata<openvdb::DoubleMetadata>(scale_note);
+    auto field = std::make_shared<VoxelField>(std::move(grids), elsewhere);
+    const double scale = note ? note->value() : 1;
+    if (!(scale > 1 && std::isfinite(scale))) return {std::move(field), finest};
+    const std::shared_ptr<const ControlSpace> in_unit = scaled(*field, 1 / scale);
+    return {{in_unit.get(), [field, in_unit](const ControlSpace*) {}}, finest / scale};
 }
 
 AnalyticField tensor_field(const VdbFile& file) {

@@ -138,6 +138,29 @@ void VdbFile::require_usable(const openvdb::GridBase& grid) const {
     }
 }
 
+std::unique_ptr<ControlSpace> scaled(const ControlSpace& field, double scale) {
+    class Scaled final : public ControlSpace {
+    public:
+        Scaled(const ControlSpace& field, double scale) : field_(field), scale_(scale) {}
+
+        void sample(std::span<const Point> x, std::span<Metric> out) const override {
+            std::vector<Point> places(x.begin(), x.end());
+            for (Point& p : places) p /= scale_;
+            field_.sample(places, out);
+            for (Metric& m : out) m = scale_ * m;
+        }
+        Box domain() const override {
+            const Box box = field_.domain();
+            return {scale_ * box.low, scale_ * box.high};
+        }
+
+    private:
+        const ControlSpace& field_;
+        const double scale_;
+    };
+    return std::make_unique<Scaled>(field, scale);
+}
+
 Box active_box(const openvdb::GridBase& grid) {
     const openvdb::CoordBBox voxels = grid.evalActiveVoxelBoundingBox();
     const Box index{{voxels.min().x() - 0.5, voxels.min().y() - 0.5, voxels.min().z() - 0.5},

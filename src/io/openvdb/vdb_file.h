@@ -6,12 +6,14 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "controlspace/geometry/box.h"
 #include "controlspace/io/write_vdb.h"
+#include "controlspace/space/control_space.h"
 #include "refuse.h"
 
 namespace controlspace {
@@ -61,6 +63,12 @@ private:
     std::vector<std::string> names_;
     std::vector<std::string> types_;  ///< of values; "unknown type" where OpenVDB knows none
 };
+
+/// Metadatum of a grid whose places and lengths are multiplied by that number.
+inline constexpr const char* scale_note = "scale";
+
+/// The field with places and lengths multiplied by `scale`; refers to `field`.
+std::unique_ptr<ControlSpace> scaled(const ControlSpace& field, double scale);
 
 /// Box of the active voxels, with their extent, in the world.
 Box active_box(const openvdb::GridBase& grid);

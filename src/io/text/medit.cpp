@@ -1,5 +1,6 @@
 #include "io/text/medit.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -121,9 +122,11 @@ std::vector<PointSource> parse_medit_required_edges(std::string_view bytes,
     return sources;
 }
 
-void write_medit_solution(const std::filesystem::path& path, std::span<const Metric> metrics) {
+void write_medit_solution(const std::filesystem::path& path, std::span<const Metric> metrics,
+                          bool keep_tensors) {
+    const bool sizes = !keep_tensors && std::ranges::all_of(metrics, is_isotropic);
     MeditWriter file(path, metrics.size() * medit_tensor.numbers * sizeof(double));
-    write_solution(file, metrics, /*sizes=*/false);
+    write_solution(file, metrics, sizes);
     file.commit();
 }
 
