@@ -60,7 +60,8 @@ TEST_CASE("metrics at the vertices of a mesh are those of the structure") {
     INFO(info.err);
     CHECK_THAT(info.out, Contains("3, all positive definite") && Contains("0.1 to 0.4"));
     REQUIRE(box.run("convert m." + ending + " back.csv").status == 0);
-    CHECK_THAT(file_text(box / "back.csv"), Contains("\n0.25,0,0,0.2"));
+    CHECK_THAT(file_text(box / "back.csv"),
+               Contains("\n0.25,0,0,0.2") || Contains("\n0.25,0,0,0.1999999999999"));
 }
 
 namespace {

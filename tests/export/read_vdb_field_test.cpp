@@ -124,6 +124,15 @@ TEST_CASE("voxels that are too small for OpenVDB are written in another unit, an
         const Point p = small.low + t.cwiseProduct(small.edges());
         CHECK(sample_at(*read.field, p).matrix().isApprox(metric_at(p).matrix(), 1e-4));
     }
+    const auto painted =
+        read_vdb_field(path, {.grid = "density", .density = {{report.finest, report.coarsest}}});
+    CHECK(painted.finest_length == Approx(report.finest).epsilon(1e-5));
+    const double h = sample_at(*painted.field, small.centre()).xx;
+    CHECK(h == Approx(eigen_frame(metric_at(small.centre())).lengths[0]).epsilon(1e-3));
+    for (const PointSource& s : read_vdb_sources(path, {.grid = "density", .h = unit})) {
+        CHECK(small.contains(s.position));
+        CHECK(s.metric == Metric::isotropic(unit));
+    }
 }
 
 TEST_CASE("our own density leads back to the smallest length") {

@@ -131,10 +131,9 @@ std::string name_of(const Coord& voxel) {
 
 /// As the grids are, or in the unit from which they were scaled.
 AnalyticField field_of(Grids grids, double elsewhere, double finest) {
-    const auto note = grids.base().getMetadata<openvdb::DoubleMetadata>(scale_note);
+    const double scale = scale_of(grids.base());
     auto field = std::make_shared<VoxelField>(std::move(grids), elsewhere);
-    const double scale = note ? note->value() : 1;
-    if (!(scale > 1 && std::isfinite(scale))) return {std::move(field), finest};
+    if (scale == 1) return {std::move(field), finest};
     const std::shared_ptr<const ControlSpace> in_unit = scaled(*field, 1 / scale);
     return {{in_unit.get(), [field, in_unit](const ControlSpace*) {}}, finest / scale};
 }
@@ -188,6 +187,8 @@ AnalyticField tensor_field(const VdbFile& file) {
 
 AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
     const auto grid = file.read_as<openvdb::FloatGrid>(what.grid);
+    // Lengths of densities are in the unit of the field, the others in that of the grid.
+    const double scale = scale_of(*grid);
     double finest = largest_magnitude;
     double coarsest = 0;
     for (auto value = grid->beginValueOn(); value; ++value) {
@@ -196,9 +197,9 @@ AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
             file.fail("grid '{}' holds {} at voxel {}: give finite numbers", what.grid, given,
                       name_of(value.getCoord()));
         }
-        const double h =
-            what.density ? length_of_density(given, what.density->finest, what.density->coarsest)
-                         : given;
+        const double h = what.density ? scale * length_of_density(given, what.density->finest,
+                                                                  what.density->coarsest)
+                                      : given;
         if (!is_length(h)) {
             file.fail("grid '{}' holds {} at voxel {}: lengths must be positive", what.grid, given,
                       name_of(value.getCoord()));
@@ -207,8 +208,8 @@ AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
         finest = std::min(finest, h);
         coarsest = std::max(coarsest, h);
     }
-    return field_of({grid, nullptr, nullptr}, what.density ? what.density->coarsest : coarsest,
-                    finest);
+    return field_of({grid, nullptr, nullptr},
+                    what.density ? scale * what.density->coarsest : coarsest, finest);
 }
 
 }  // namespace

@@ -160,6 +160,12 @@ std::vector<PointSource> read_vdb_sources(const std::filesystem::path& path,
                               sources[i] = {x, Metric::isotropic(h)};
                           }
                       });
+    const double scale = scale_of(*grid);
+    for (PointSource& source : sources) {
+        if (scale == 1) break;
+        source.position /= scale;
+        if (by_curvature) source.metric = (1 / scale) * source.metric;
+    }
     return sources;
 }
 

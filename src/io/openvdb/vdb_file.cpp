@@ -138,6 +138,12 @@ void VdbFile::require_usable(const openvdb::GridBase& grid) const {
     }
 }
 
+double scale_of(const openvdb::GridBase& grid) {
+    const auto note = grid.getMetadata<openvdb::DoubleMetadata>(scale_note);
+    const double scale = note ? note->value() : 1;
+    return scale > 0 && std::isfinite(scale) ? scale : 1;
+}
+
 std::unique_ptr<ControlSpace> scaled(const ControlSpace& field, double scale) {
     class Scaled final : public ControlSpace {
     public:

@@ -67,6 +67,9 @@ private:
 /// Metadatum of a grid whose places and lengths are multiplied by that number.
 inline constexpr const char* scale_note = "scale";
 
+/// That number; 1 where there is none.
+double scale_of(const openvdb::GridBase& grid);
+
 /// The field with places and lengths multiplied by `scale`; refers to `field`.
 std::unique_ptr<ControlSpace> scaled(const ControlSpace& field, double scale);
 
