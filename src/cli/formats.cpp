@@ -44,7 +44,8 @@ Sources read_vdb(const std::filesystem::path& file, const SourcesChoice& choice)
     return read_vdb_sources(file, choice.surface);
 }
 Sources read_vtk(const std::filesystem::path& file, const SourcesChoice& choice) {
-    return read_vtk_sources(file, {.array = choice.in_file.array, .remark = warn});
+    return read_vtk_sources(
+        file, {.array = choice.in_file.array, .step = choice.in_file.step, .remark = warn});
 }
 template <SurfaceMesh (*read_mesh)(const std::filesystem::path&)>
 Sources read_surface(const std::filesystem::path& file, const SourcesChoice& choice) {

@@ -141,7 +141,8 @@ std::vector<Parameter<Study>> table() {
                                    [](const Study& s) { return is_sampled(s.sources); }};
     const AppliesTo<Study> arrays{".vtu, .vtp, .vti, .vtk, .msh and .pos",
                                   in_file({".vtu", ".vtp", ".vti", ".vtk", ".msh", ".pos"})};
-    const AppliesTo<Study> steps{".msh and .pos", in_file({".msh", ".pos"})};
+    const AppliesTo<Study> steps{".vtu, .vtp, .vti, .msh and .pos",
+                                 in_file({".vtu", ".vtp", ".vti", ".msh", ".pos"})};
     const AppliesTo<Study> surface{"surfaces: .stl, .obj, .ply, .off, .step, .iges and .brep",
                                    in_file(part_endings())};
     const AppliesTo<Study> vdb{"sources in a .vdb",
@@ -270,9 +271,9 @@ std::vector<Parameter<Study>> table() {
          "the array named :metric, the only view",
          text<Study>(of(sources, &Sources::in_file, &FileSources::array)), reading, arrays},
         {"source_step", "",
-         "Sources of a .msh or .pos: step in time of the view, by its number in a .msh, from 0 in "
-         "a "
-         ".pos; left out: the last",
+         "Sources of a .vtu, .vtp, .vti, .msh or .pos: step in time, by its number in a .msh, from "
+         "0 "
+         "in others; left out: the last",
          number<Study>(of(sources, &Sources::in_file, &FileSources::step),
                        within(0, exact_integers)),
          reading, steps},

@@ -1,4 +1,5 @@
 // Files of VTK, read by VTK itself and by our reader.
+#include <fmt/format.h>
 #include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkCellTypeSource.h>
@@ -441,6 +442,36 @@ TEST_CASE("data of cells are sources at the centres of the cells") {
     grid->GetCellData()->RemoveArray("a:metric");
     write();
     CHECK_THAT(error_of([&] { read_vtk_sources(path); }), Contains("it has no arrays"));
+}
+
+TEST_CASE("of several steps in time in a file of VTK the last is read, or the one that is named") {
+    const ScratchDirectory folder;
+    const auto array = [](int step, const char* h) {
+        return fmt::format(
+            R"(<DataArray type="Float64" Name="h" format="ascii" TimeStep="{}">{}</DataArray>)",
+            step, h);
+    };
+    const std::string head =
+        R"(<VTKFile type="ImageData" version="0.1" byte_order="LittleEndian">)"
+        R"(<ImageData TimeValues="0 0.5" WholeExtent="0 1 0 0 0 0" Origin="0 0 0" Spacing="1 1 1">)"
+        R"(<Piece Extent="0 1 0 0 0 0"><PointData>)";
+    const auto path = folder.file("t.vti", head + array(0, "1 2") + array(1, "3 4") +
+                                               "</PointData></Piece></ImageData></VTKFile>");
+    std::string said;
+    const auto first = [&](std::optional<std::uint64_t> step) {
+        said.clear();
+        return read_vtk_sources(
+                   path,
+                   {.array = "h", .step = step, .remark = [&](const std::string& r) { said += r; }})
+            .front()
+            .metric.xx;
+    };
+    CHECK(first({}) == 3);
+    CHECK_THAT(said, Contains("t.vti: view 'h' has 2 steps in time: the last is taken, number 1"));
+    CHECK(first(0) == 1);
+    CHECK(first(1) == 3);
+    CHECK(said.empty());
+    CHECK_THAT(error_of([&] { first(2); }), Contains("has no step 2 in time: name one of 0, 1"));
 }
 
 TEST_CASE("legacy files of VTK are read, of all arrays and kinds of data sets") {

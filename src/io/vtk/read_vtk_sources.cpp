@@ -31,12 +31,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <new>
+#include <numeric>
 #include <span>
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "controlspace/io/read_sources.h"
 #include "files/text_file.h"
@@ -80,7 +83,8 @@ private:
 };
 
 template <class Reader>
-vtkSmartPointer<vtkDataSet> read_data_set(const std::filesystem::path& path) {
+vtkSmartPointer<vtkDataSet> read_data_set(const std::filesystem::path& path,
+                                          const ReadOptions& options) {
     vtkNew<Reader> reader;
     ErrorLog errors;
     for (const auto event : {vtkCommand::ErrorEvent, vtkCommand::WarningEvent}) {
@@ -97,6 +101,17 @@ vtkSmartPointer<vtkDataSet> read_data_set(const std::filesystem::path& path) {
     }
     reader->SetFileName(path.c_str());
     try {
+        if constexpr (!std::is_same_v<Reader, vtkDataSetReader>) {
+            reader->UpdateInformation();
+            std::vector<std::uint64_t> steps(
+                static_cast<std::size_t>(std::max(1, reader->GetNumberOfTimeSteps())));
+            std::iota(steps.begin(), steps.end(), 0);
+            const std::string name = options.array.empty() ? path.stem().string() : options.array;
+            if (errors.first().empty()) {
+                reader->SetTimeStep(
+                    static_cast<int>(chosen_step(path, name, steps, options.step, options.remark)));
+            }
+        }
         reader->Update();
     } catch (const std::bad_alloc&) {
         refuse_at(path, "an array is said to hold more than memory does: is it cut off?");
@@ -186,7 +201,7 @@ bool is_hidden(vtkDataSet& grid, bool at_points, vtkIdType i) {
            (marks->GetValue(i) & (at_points ? hidden_points : hidden_cells)) != 0;
 }
 
-VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& name,
+VtkMetrics read_metrics(const std::filesystem::path& path, const ReadOptions& options,
                         const char* option) {
     const std::string ending = lower_case_extension(path);
     const bool is_legacy = ending == ".vtk";
@@ -196,10 +211,10 @@ VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& na
                   is_legacy ? "does not start with '# vtk DataFile': give a file of VTK"
                             : "no VTKFile element: give a file in VTK's XML format");
     }
-    const auto grid = ending == ".vtp"   ? read_data_set<vtkXMLPolyDataReader>(path)
-                      : ending == ".vti" ? read_data_set<vtkXMLImageDataReader>(path)
-                      : is_legacy        ? read_data_set<vtkDataSetReader>(path)
-                                         : read_data_set<vtkXMLUnstructuredGridReader>(path);
+    const auto grid = ending == ".vtp"   ? read_data_set<vtkXMLPolyDataReader>(path, options)
+                      : ending == ".vti" ? read_data_set<vtkXMLImageDataReader>(path, options)
+                      : is_legacy        ? read_data_set<vtkDataSetReader>(path, options)
+                                  : read_data_set<vtkXMLUnstructuredGridReader>(path, options);
     if (grid == nullptr) refuse_at(path, "it holds no data set that VTK knows: save it again");
     if (auto* image = vtkImageData::SafeDownCast(grid)) {
         const double volume = axes_of(*image).determinant();
@@ -208,7 +223,7 @@ VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& na
             refuse_at(path, "its Direction is no basis of space: give three independent axes");
         }
     }
-    const auto [array, at_points] = array_named(path, *grid, name, option);
+    const auto [array, at_points] = array_named(path, *grid, options.array, option);
     vtkDataArray& values = *array;
     const vtkIdType count = at_points ? grid->GetNumberOfPoints() : grid->GetNumberOfCells();
     const char* what = at_points ? "point" : "cell";
@@ -355,7 +370,7 @@ private:
 
 std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
                                           const ReadOptions& options) {
-    const VtkMetrics data = read_metrics(path, options.array, "--source-array");
+    const VtkMetrics data = read_metrics(path, options, "--source-array");
     if (data.hidden > 0 && options.remark) {
         options.remark(fmt::format("{}: {} hidden {} are left out (vtkGhostType)", path.string(),
                                    data.hidden, data.at_points ? "points" : "cells"));
@@ -364,7 +379,7 @@ std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
 }
 
 AnalyticField read_vtk_field(const std::filesystem::path& path, const std::string& name) {
-    VtkMetrics data = read_metrics(path, name, "--field-grid");
+    VtkMetrics data = read_metrics(path, {.array = name}, "--field-grid");
     for (vtkIdType i = 0; i < data.grid->GetNumberOfCells(); ++i) {
         if (data.hidden > 0 || is_hidden(*data.grid, /*at_points=*/false, i)) {
             refuse_at(path, "some of it is hidden (vtkGhostType): save the field without that");

@@ -38,7 +38,7 @@ struct FieldChoice {
 /// The part of a file of sources to be read, or lengths for a file without any.
 struct FileSources {
     std::string array = {};                  ///< .vtu, .vtp, .vti, .msh, .pos; empty: the only one
-    std::optional<std::uint64_t> step = {};  ///< in time, of a .msh or .pos; none: the last
+    std::optional<std::uint64_t> step = {};  ///< in time, of the same but .vtk; none: the last
     CurvatureSizes curvature = {};           ///< .stl, .obj, .ply, .off
 
     bool operator==(const FileSources&) const = default;
