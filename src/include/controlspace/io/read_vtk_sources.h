@@ -14,9 +14,9 @@ namespace controlspace {
 /// `options.array`, or, where no array of points has that name, at the centres (means of the
 /// points) of cells that do; without a name, the only one whose name contains ":metric". It holds
 /// sizes h (1 component) or Riemannian metrics M^-2: 6 components in VTK's order XX YY ZZ XY YZ XZ,
-/// or 9 by rows. Exported leaves, control nodes and slices are read again so, as sources. Points
-/// and cells that VTK marks as hidden (vtkGhostType) are left out, with a remark; a field that has
-/// such is refused.
+/// or 9 by rows. Exported leaves, control nodes and slices are read again so, as sources. Of
+/// several steps in time `options` name one. Points and cells that VTK marks as hidden
+/// (vtkGhostType) are left out, with a remark; a field that has such is refused.
 ///
 /// Throws InputError that names the file for what VTK cannot read; for more points or cells than
 /// the file has room for; for an array that is missing, or of another number of components; and for
