@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Access time of a batch, on one thread: every structure on the paper's sphere, in several orders
 // of places, beside that of lengths place by place, alone and by a cursor, and the limit of a
 // batch: a gather of the same metrics with precomputed indices, or of eight that are blended.

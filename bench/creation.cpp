@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Creation, insertion and gradation, of every tree of the catalogue on spheres. Names:
 //   creation/STRUCTURE/WORK/one-thread and creation/STRUCTURE/WORK/all-threads
 //   growth/STRUCTURE/SERIES/sources:N, on one thread; SERIES "finer": spacing and lengths of the

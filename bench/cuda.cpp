@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Access time of octrees on a GPU (component cuda) and on one thread of the processor: lengths, or
 // metrics where there are tensors, at four million places at random, that lie in the memory of the
 // side that answers. Beside them, on the GPU, NanoVDB's dense grids, trilinear, of a float a voxel

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The order-free intersection of 12 metrics to a duality gap of 1e-6, on one thread: from nothing
 // ("cold"), and from an answer whose lengths are off by half a percent ("warm"). Names:
 // cold/KIND/ANISOTROPY and warm/KIND/ANISOTROPY; counters are the Newton steps of an intersection,

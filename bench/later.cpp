@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sources that come later: inserting and grading 1 % more of them, against all at once. In CPU time
 // of all threads together.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // K_oL of the paper's tables with right links between leaves and with those of the published
 // program, at all six settings of the paper's sphere: prints data/paper/octree_links.csv, which
 // bench/links makes by it. Sources are isotropic, so that a metric is one length. It uses nothing

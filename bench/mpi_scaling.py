@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs controlspace-mpi on 1, 2 and 4 ranks, and writes scaling.json, summary.md: see bench/mpi."""
 import json
 import os

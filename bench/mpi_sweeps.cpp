@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What parallel codes do in place of an exchange of sources, to compare with: metrics are graded
 // from leaf to leaf over faces, those of other ranks' leaves are copies (ghosts) that are exchanged
 // until nothing changes.

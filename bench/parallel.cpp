@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Batches of queries on many threads, and single queries from many threads. Names:
 //   parallel/STRUCTURE/batch:N/T-threads    one batch of N random places by sample_parallel
 //   parallel/STRUCTURE/points/T-threads     T threads that each query place after place

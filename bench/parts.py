@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Three parts as CAD files: parts.py FOLDER writes bracket.step, junction.step and blade.step.
 
 Lengths are in millimetres. The bracket has a fillet, two holes and a rib of 1.5; the junction of two

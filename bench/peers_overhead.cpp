@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What stands between a user and a library: the time of `sample_lengths`, and of `length_at` one
 // place after the other, over that of a plain loop over the library itself (of an array, for
 // uniform grids), on the same sources and places. Samples are taken in turns; printed is the median

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The works on which bench/peers compares systems: peers_works.py FOLDER [--quick] [--only WORK]... writes
 FOLDER/WORK/study.toml, and the sources that the program does not sample itself.
 

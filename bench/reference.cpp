@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The exact field on the paper's sphere, of isotropic sources and of layered ones (four times as
 // long along the sphere as across), whose cones are intersected by either rule: time to build its
 // search structure on all cores, and time of a query on one, at random places, along a walk in

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws how an exact query of tensors grows with the number of sources: reference.py JSON SVG."""
 import json
 import re

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Saving and loading of trees on the paper's sphere at rho = tau = 0.2, as they are after
 // gradation: saving/STRUCTURE and loading/STRUCTURE, by the wall clock (real_time), which is what
 // one waits for a file; counters give the number of leaves and the size of the file in MB.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tables and plot of bench/speed: RAW (a folder of Google Benchmark's JSON files) OUTPUT (a folder)."""
 import datetime
 import json

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 /// Before a function: compiled for processors with vectors of 512, 256 and 128 bits; the program

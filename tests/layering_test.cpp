@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Dependencies point one way: no folder includes from one to its right, and public headers include
 // only each other.
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "baselines/lattice/fit_lattice.h"
 
 #include <tbb/blocked_range.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "baselines/openvdb/catalogue.h"
 
 #include "baselines/lattice/grid_row.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "baselines/lattice/grid_row.h"
 #include "baselines/lattice/grid_space.h"
 #include "baselines/rows.h"

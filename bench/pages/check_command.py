@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The command bench/check: whether two runs of the same cases, on two machines or by two compilers,
 # have the same results. Times are not compared.
 import argparse

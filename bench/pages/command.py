@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What the commands share: errors as one line and an exit status, and runs of the program.
 import shutil
 import subprocess

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Two runs beside each other: rows of the same case, after over before.
 import math
 from collections import namedtuple

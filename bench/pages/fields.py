@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Sampled fields of structures: slices, and δ at the probes, from fields/*.npy beside results.json.
 import math
 from dataclasses import dataclass

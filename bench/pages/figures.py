@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Figures of a report, drawn by matplotlib and embedded in the page.
 import base64
 import io

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The glossary of a report: names with what they mean, and links from where they are used.
 import re
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The paper's Tables 1-5 beside rows that were run in the same way: which cells are equal, which
 # differ, and whether a run shows why or it is inferred; and which conclusions hold.
 import math

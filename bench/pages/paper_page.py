@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Tables of the comparison with the paper, and the page paper.md.
 import json
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The page of bench/peers: foreign systems and the project's structures on the same works.
 import argparse
 import math

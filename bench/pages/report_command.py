@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The command bench/report: a page with figures and tables of results that needs no other file.
 import argparse
 from collections import namedtuple

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # A folder of results as `controlspace compare` writes it: results.json, schema version 2.
 import json
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Tables of text, and their Markdown.
 import tomllib
 from dataclasses import dataclass, field

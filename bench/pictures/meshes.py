@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The paper's Figures 4a, 4b and 5 beside meshes of ours (see bench/pictures/meshes).
 
 Of each figure three meshes: of the exact field, of the paper's structure made by the paper's procedure, and of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws the surfaces of the meshes of bench/day-one: parts.py FOLDER PICTURE.png"""
 import pathlib
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Renders volumes side by side, each cut open: blender -b --factory-startup --python THIS -- OUT FILE...
 
 h_min of each .vdb colours its cut, on one logarithmic scale for all; anisotropy, 0 outside the

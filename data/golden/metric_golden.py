@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Golden numbers of the metric algebra, by textbook formulas in 60-digit arithmetic.
 
     python3 metric_golden.py > metric_golden.csv      (needs NumPy and mpmath)

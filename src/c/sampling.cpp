@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the C library answers: metrics, lengths, Gmsh's size callbacks, and conversions of metrics.
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>

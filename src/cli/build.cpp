@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command `build`: builds and grades one structure, and saves it.
 #include <fmt/format.h>
 
@@ -22,10 +23,10 @@ int build(const Job& job) {
     const FilledSpace filled = filled_space(
         job, "writing", [&](const auto& made, auto&) { save_control_space(output, *made.space); });
     const Footprint footprint = filled.space->footprint();
-    print(fmt::format("{}: {} with {} control nodes, {:.3g} MB in memory, {:.3g} MB in the file\n",
-                      output.string(), filled.structure, footprint.control_nodes,
+    print(fmt::format("{}: {} with {} control nodes, {:.3g} MB in memory{}\n", output.string(),
+                      filled.structure, footprint.control_nodes,
                       static_cast<double>(footprint.bytes_total()) / 1e6,
-                      static_cast<double>(std::filesystem::file_size(output)) / 1e6));
+                      size_of_file(output, ", ")));
     return report_remark(filled);
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command `compare`: runs a study.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

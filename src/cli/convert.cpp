@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command `convert`: writes the sources of one file in another format.
 #include <filesystem>
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command `export`: writes the field of one structure to a file.
 #include "cli/export.h"
 
@@ -83,11 +84,17 @@ int export_field(const ExportJob& job, const Options& options, const std::string
 
 }  // namespace
 
-std::string written(const Export& e, const std::string& what) {
+std::string written(const Export& e, const std::string& what,
+                    std::span<const std::filesystem::path> files) {
     std::error_code none;  // a pipe has no size
-    const std::uintmax_t bytes = std::filesystem::file_size(e.output, none);
+    std::uintmax_t bytes = 0;
+    if (files.empty()) files = {&e.output, 1};
+    for (const std::filesystem::path& file : files) {
+        bytes += std::filesystem::file_size(file, none);
+        if (none) break;
+    }
     const std::string size =
-        none ? "" : fmt::format("; {:.1f} MB", static_cast<double>(bytes) / 1e6);
+        none ? "" : fmt::format("; {:.3g} MB", static_cast<double>(bytes) / 1e6);
     return fmt::format("{}: {}{}\n", e.output.string(), what, size);
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -47,6 +48,7 @@ std::vector<FieldFormat> add_vdb_formats(Options& options);
 std::vector<FieldFormat> add_vtk_formats(Options& options);
 
 /// "FILE: `what`; 1.2 MB", and a line end.
-std::string written(const Export& e, const std::string& what);
+std::string written(const Export& e, const std::string& what,
+                    std::span<const std::filesystem::path> files = {});
 
 }  // namespace controlspace

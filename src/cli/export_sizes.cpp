@@ -1,8 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 // Formats of `export` for meshers that take one length a place: Gmsh, JIGSAW, Netgen and TetGen.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <cmath>
+#include <filesystem>
+#include <span>
+#include <vector>
 
 #include "cli/export.h"
 #include "io/text/size_files.h"
@@ -14,7 +18,7 @@ namespace {
 /// "FILE: 81 nodes for JIGSAW; 99 % of 1000 random places within 1.02x; 1.2 MB"; what the mesher
 /// does not see is a warning.
 std::string report(const Export& e, const SizeFile& file, const std::string& what,
-                   const std::string& remedy) {
+                   const std::string& remedy, std::span<const std::filesystem::path> files = {}) {
     constexpr double far = 1.25;
     if (file.has_tensors) {
         spdlog::warn(
@@ -28,7 +32,7 @@ std::string report(const Export& e, const SizeFile& file, const std::string& wha
                             std::ceil(100 * *file.within) / 100);
         if (*file.within > far) spdlog::warn("{}: {}", e.output.string(), remedy);
     }
-    return written(e, text);
+    return written(e, text, files);
 }
 
 /// A format of lengths at the nodes of a grid, which are `what`.
@@ -79,15 +83,17 @@ std::vector<Point> tetgen_points(std::filesystem::path base) {
 
 std::string write_tetgen(const Export& e) {
     const std::filesystem::path base = background_base(e.output);
-    for (const char* ending : {".node", ".ele", ".mtr"}) {
-        std::filesystem::path file = base;
-        e.progress.writes(file += ending);
-    }
+    std::vector<std::filesystem::path> files(3, base);
+    files[0] += ".node";
+    files[1] += ".ele";
+    files[2] += ".mtr";
+    for (const std::filesystem::path& file : files) e.progress.writes(file);
     report_outside(tetgen_points(base), "points of TetGen's input", e.filled.space->domain());
     return report(e, write_tetgen_background(base, *e.filled.space),
                   "nodes of a background mesh for TetGen (-m), in three files",
                   "lengths are off by more than 1.25x, as they jump in this structure: write one "
-                  "with smaller jumps (K_oV, --within 1.1)");
+                  "with smaller jumps (K_oV, --within 1.1)",
+                  files);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Formats of `export` that need no external library: tables, views and solutions.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The format .vdb of `export`.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -62,6 +63,12 @@ std::string export_vdb(const Export& e, VdbOptions vdb) {
     const Stopwatch time;
     const VdbReport report = write_vdb(e.output, *e.filled.space, vdb);
     std::string text = summary(e, report, time);
+    if (report.scale != 1) {
+        spdlog::warn(
+            "OpenVDB has no voxels of {:.4g}: places and lengths in the file are {:g} times as "
+            "large (metadatum scale)",
+            report.voxel, report.scale);
+    }
     const double finest = origin ? origin->workload.finest_length : report.finest;
     if (report.voxel > finest) {
         spdlog::warn(

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The formats of VTK of `export`: leaves or control nodes, a slice, an octree; and a slice's
 // lengths for NumPy and netCDF.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "cli/filled_space.h"
 
 #include <fmt/format.h>
@@ -30,6 +31,12 @@ bool is_in_pieces(const std::filesystem::path& input) { return input.extension()
 std::unique_ptr<ControlSpace> load_saved(const std::filesystem::path& input) {
     return is_in_pieces(input) ? load_octree_pieces(input, structures())
                                : load_control_space(input, structures());
+}
+
+std::string size_of_file(const std::filesystem::path& file, std::string_view before) {
+    std::error_code unknown;
+    const auto bytes = static_cast<double>(std::filesystem::file_size(file, unknown));
+    return unknown ? "" : fmt::format("{}{:.3g} MB in the file", before, bytes / 1e6);
 }
 
 void require_no_settings(const std::filesystem::path& space, const GivenSettings& given) {

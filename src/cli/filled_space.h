@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <tbb/global_control.h>
@@ -42,6 +43,9 @@ bool is_control_space(const std::filesystem::path& input);
 bool is_in_pieces(const std::filesystem::path& input);
 /// Loads either, to be read.
 std::unique_ptr<ControlSpace> load_saved(const std::filesystem::path& input);
+
+/// `before`, and the size of a file; empty for a pipe, which has none.
+std::string size_of_file(const std::filesystem::path& file, std::string_view before);
 
 /// Throws InputError, naming the first, where settings are given with a control space that was
 /// saved.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "cli/formats.h"
 
 #include <fmt/format.h>
@@ -41,13 +42,16 @@ struct SourceFormat {
     SurfaceMesh (*read_mesh)(const std::filesystem::path& file) = nullptr;
 };
 
+void warn(const std::string& remark) { spdlog::warn("{}", remark); }
+
 Sources read_vdb(const std::filesystem::path& file, const SourcesChoice& choice) {
     VdbSurface surface = choice.surface;
     surface.h /= choice.in_file.scale;  // what is read is scaled
     return read_vdb_sources(file, surface);
 }
 Sources read_vtk(const std::filesystem::path& file, const SourcesChoice& choice) {
-    return read_vtk_sources(file, choice.in_file.array);
+    return read_vtk_sources(
+        file, {.array = choice.in_file.array, .step = choice.in_file.step, .remark = warn});
 }
 
 /// From the numbers of a part as they are read, for which CAD files are in millimetres, to those of
@@ -205,6 +209,7 @@ Part read_part(const std::filesystem::path& file, double crease, const FileSourc
 
 FileReaders file_readers() {
     FileReaders readers;
+    readers.remark = warn;
     readers.sources = {{".mesh", read_mesh}, {".meshb", read_mesh}};
     for (const SourceFormat& format : formats) {
         for (const std::string_view ending : format.endings) {
@@ -241,7 +246,8 @@ FileReaders file_readers() {
 std::string source_formats_help() {
     return "Sources: .csv; .npy; .mesh, .sol, .meshb or .solb, the other beside it; .pos; .msh; "
            ".vtu, "
-           ".vtp, .vti; or a surface: .stl, .obj, .ply, .off, or in a .vdb; or CAD: .step, .iges, "
+           ".vtp, .vti, .vtk; or a surface: .stl, .obj, .ply, .off, or in a .vdb; or CAD: .step, "
+           ".iges, "
            ".brep; several with commas; or another value of --sources (sphere, planes)";
 }
 

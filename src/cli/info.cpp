@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command `info`: describes a file of sources, or a control space.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -181,8 +182,8 @@ std::string space_info(const std::filesystem::path& file) {
     }
     text += fmt::format("  saved by     {}\n  domain       {}\n  options      {}\n", saved.saved_by,
                         to_string(saved.space->domain()), options_text(entry, recipe.options));
-    text += fmt::format("{}; {:.3g} MB in the file\n", footprint_info(saved.space->footprint()),
-                        mb(std::filesystem::file_size(file)));
+    text +=
+        fmt::format("{}{}\n", footprint_info(saved.space->footprint()), size_of_file(file, "; "));
     const auto nodes = control_nodes(*saved.space, Neighbourhood::faces);
     if (!nodes) return text;
     const LengthSummary lengths = summarise_lengths(nodes->metrics);

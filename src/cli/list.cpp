@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command `list`: structures, and other values of options.
 #include <fmt/format.h>
 

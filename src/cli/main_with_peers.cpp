@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // controlspace-peers: the same commands, with the rows of foreign systems.
 #include "baselines/add_structures.h"
 #include "baselines/peers/peer_rows.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command `mesh`: makes meshes with structures as size fields.
 #include <fmt/format.h>
 
@@ -165,6 +166,7 @@ int mesh(const Job& job, const std::string& command_line) {
     MeshFolder folder(study, std::move(settings), command_line, job.quiet, interruption);
     {
         const Interruption::Watch watch(interruption, nullptr, [&] {
+            folder.remove_files_of_meshers();
             print_error(fmt::format("controlspace: interrupted: meshes in {}: {}\n",
                                     folder.path().string(), folder.rows().size()));
         });

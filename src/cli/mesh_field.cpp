@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "cli/mesh_field.h"
 
 #include <spdlog/spdlog.h>
@@ -6,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "cli/mesh_apart.h"
 #include "controlspace/fields/formula_field.h"
-#include "controlspace/gmsh/gmsh_mesher.h"
 #include "controlspace/mesh/mesh_files.h"
 #include "controlspace/space/sample_parallel.h"
 #include "io/text/medit.h"
@@ -34,19 +35,22 @@ GmshOptions gmsh_options(const MeshSettings& settings, bool hxt) {
 }
 
 /// The mesh that MMG starts from.
-MeshRun start_mesh(const Box& domain, const ControlSpace& field, const MeshSettings& settings) {
+MeshRun start_mesh(const Box& domain, const ControlSpace& field, const MeshSettings& settings,
+                   const std::filesystem::path& folder) {
+    const double limit = settings.mmg.time_limit_s;
     if (settings.start == MeshStart::coarse) {
-        return mesh_with_gmsh(domain, coarse_field(domain), {.part = settings.gmsh.part});
+        return mesh_apart(domain, coarse_field(domain), {.part = settings.gmsh.part}, folder,
+                          limit);
     }
     GmshOptions options = gmsh_options(settings, settings.start == MeshStart::hxt);
     options.factor.reset();
-    return mesh_with_gmsh(domain, field, options);
+    return mesh_apart(domain, field, options, folder, limit);
 }
 
 MeshRun mesh_by_mmg(const Box& domain, const ControlSpace& field, const MeshSettings& settings,
                     const std::filesystem::path& folder) {
     if (!settings.gmsh.part) require_few_tets(domain, field, settings.gmsh.max_tets);
-    const MeshRun start = start_mesh(domain, field, settings);
+    const MeshRun start = start_mesh(domain, field, settings, folder);
     MmgOptions options = settings.mmg;
     options.factor = settings.gmsh.factor.value_or(mmg_factor);
     options.folder = folder;
@@ -66,10 +70,10 @@ Mesher chosen_mesher(Mesher requested, std::span<const Metric> metrics) {
 
 TetMesh make_mesh(const Box& domain, const ControlSpace& field, const MeshSettings& settings,
                   const std::filesystem::path& folder, MeshRow& row) {
-    MeshRun run =
-        row.mesher == Mesher::mmg
-            ? mesh_by_mmg(domain, field, settings, folder)
-            : mesh_with_gmsh(domain, field, gmsh_options(settings, row.mesher == Mesher::hxt));
+    MeshRun run = row.mesher == Mesher::mmg
+                      ? mesh_by_mmg(domain, field, settings, folder)
+                      : mesh_apart(domain, field, gmsh_options(settings, row.mesher == Mesher::hxt),
+                                   folder, settings.mmg.time_limit_s);
     row.cost = run.cost;
     if (run.anisotropic) {
         spdlog::warn(

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "cli/mesh_folder.h"
 
 #include <fmt/format.h>
@@ -74,6 +75,13 @@ void MeshFolder::end() {
     const std::string head =
         fmt::format("# {}\n\n{}\n\n", study_.name, origin_text(provenance_, /*complete=*/true));
     replace_file(path_ / "summary.md", head + mesh_tables(rows_, TableStyle::markdown));
+}
+
+void MeshFolder::remove_files_of_meshers() const {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(path_, ignored)) {
+        if (entry.is_directory(ignored)) std::filesystem::remove_all(entry.path(), ignored);
+    }
 }
 
 void MeshFolder::record(bool complete) const {

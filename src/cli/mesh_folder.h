@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -35,6 +36,9 @@ public:
              const std::function<const ControlSpace&(MeshRow&)>& field = {});
     /// Writes the summary.
     void end();
+
+    /// Removes what meshers that are interrupted leave.
+    void remove_files_of_meshers() const;
 
     const MeshSettings& settings() const { return settings_; }
     const std::filesystem::path& path() const { return path_; }

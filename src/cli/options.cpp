@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "cli/options.h"
 
 #include <fmt/format.h>
@@ -91,7 +92,8 @@ void Options::add_parameter(const OptionText& text, ValueType type, std::size_t 
     CLI::Option* option = command_->add_option(text.name, words, text.help + default_text);
     option->group(text.group)->option_text(type_name(type, at_most));
     if (at_most > 1) {
-        option->delimiter(',')->expected(static_cast<int>(at_most));
+        // No more, as a file's name may follow.
+        option->delimiter(',')->expected(static_cast<int>(at_most))->allow_extra_args(false);
     } else {
         option->allow_extra_args(false);  // given_settings() splits it
     }

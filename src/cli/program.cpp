@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "cli/program.h"
 
 #include <fmt/format.h>
@@ -20,6 +21,7 @@
 
 #include "cli/command.h"
 #include "cli/help.h"
+#include "cli/mesh_apart.h"
 #include "cli/options.h"
 #include "cli/standard_output.h"
 #include "controlspace/error.h"
@@ -98,6 +100,7 @@ std::string command_line_text(int argc, const char* const* argv) {
 }
 
 int run(int argc, const char* const* argv) {
+    if (argc == 3 && std::string_view(argv[1]) == gmsh_job) return run_gmsh_job(argv[2]);
     CLI::App app(
         "Builds and compares control spaces for mesh generation: metrics at every point of a box, "
         "from point sources.",

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command `query`: writes the metrics of one structure at given points.
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a box needs: the cones that are the smallest in it, or the nodes above them, found once.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "answer_on_gpu.cuh"
 #include "cuda/octree_kernels.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A ball meshed by CGAL's Mesh_3, with a control space as its sizing field.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Labeled_mesh_domain_3.h>

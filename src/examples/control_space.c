@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* A control space from C: sources request edge lengths at some points, and the control space gives
  * them at every point, before and after it is saved. */
 #include <controlspace/controlspace.h>

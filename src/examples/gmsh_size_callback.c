@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* A control space as the size callback of Gmsh, from C: Gmsh calls the library itself. */
 #include <controlspace/controlspace.h>
 #include <gmshc.h>

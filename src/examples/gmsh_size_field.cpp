@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A control space as the size field of a Gmsh program: sources request edge lengths at some points,
 // and the control space gives them at every point.
 #include <controlspace/space/make_control_space.h>

@@ -1,4 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "files/output_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -15,6 +20,12 @@ std::filesystem::path without_links(const std::filesystem::path& path) {
     std::error_code ignored;
     const std::filesystem::path resolved = std::filesystem::weakly_canonical(path, ignored);
     return resolved.empty() ? path : resolved;
+}
+
+/// Gives a new file the owner, as far as that is allowed, and the mode of the one that it replaces.
+void keep_rights(int file, const struct stat& before) {
+    [[maybe_unused]] const int ignored = ::fchown(file, before.st_uid, before.st_gid);
+    ::fchmod(file, before.st_mode & 07777);
 }
 
 }  // namespace
@@ -51,8 +62,15 @@ OutputFile::OutputFile(const std::filesystem::path& path) {
                                              !std::filesystem::is_regular_file(path, ignored));
     target_ = special ? path : without_links(path);
     written_ = special ? path : partial(path);
+    struct stat before {};
+    const bool replaces = !special && ::stat(target_.c_str(), &before) == 0;
+    if (replaces && ((before.st_mode & 0222) == 0 || ::access(target_.c_str(), W_OK) != 0)) {
+        refuse("cannot write {}: it is write-protected (chmod u+w), or name another file",
+               path.string());
+    }
     file_ = standard_output ? stdout : std::fopen(written_.string().c_str(), "wb");
     if (file_ == nullptr) fail();
+    if (replaces) keep_rights(::fileno(file_), before);
 }
 
 OutputFile::~OutputFile() {
@@ -82,8 +100,19 @@ void OutputFile::finish() {
 void OutputFile::commit() {
     finish();
     if (written_ == target_) return;
+    sync();
     if (std::rename(written_.string().c_str(), target_.string().c_str()) != 0) fail();
     written_ = target_;
+}
+
+/// A crash of the system right after renaming must not leave an empty file.
+void OutputFile::sync() const {
+    const int file = ::open(written_.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) fail();
+    const int error = ::fsync(file) == 0 ? 0 : errno;
+    ::close(file);
+    errno = error;
+    if (error != 0 && error != EINVAL) fail();  // not all file systems can do it
 }
 
 void OutputFile::fail() const {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <fmt/format.h>
@@ -15,9 +16,10 @@ namespace controlspace {
 void require_room(const std::filesystem::path& path, std::uintmax_t bytes);
 
 /// A file that is written whole or not at all: the bytes go to a temporary file beside it, which is
-/// renamed by `commit` and removed without it. Every writer of this program uses this. What is not
-/// a regular file is written to directly, and so is standard output (/dev/stdout), whatever it is.
-/// Failures, a full disk among them, throw InputError.
+/// renamed by `commit`, once the disk has it, and removed without it. A file that is replaced
+/// leaves its mode to the new one, and is refused if it is write-protected. Every writer of this
+/// program uses this. What is not a regular file is written to directly, and so is standard output
+/// (/dev/stdout), whatever it is. Failures, a full disk among them, throw InputError.
 class OutputFile {
 public:
     explicit OutputFile(const std::filesystem::path& path);
@@ -55,6 +57,7 @@ public:
 
 private:
     bool close();
+    void sync() const;
     [[noreturn]] void fail() const;
 
     std::filesystem::path target_;

@@ -1,8 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "files/text_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -52,6 +54,12 @@ std::string read_file(const std::filesystem::path& path, std::size_t largest, bo
 }
 
 }  // namespace
+
+void require_no_stream(const std::filesystem::path& path) {
+    std::error_code ignored;
+    if (!std::filesystem::is_other(path, ignored)) return;
+    refuse_at(path, "a pipe or a device, which can be read only once: save it as a file");
+}
 
 std::string read_text_file(const std::filesystem::path& path, std::size_t largest) {
     std::string text;
@@ -112,6 +120,26 @@ std::size_t chosen_array(const std::filesystem::path& path, std::string_view kin
     if (chosen.size() == 1) return chosen.front();
     refuse_at(path, "{} of its {} can be meant: name one of {} (--source-array)", chosen.size(),
               kind, fmt::join(quoted, ", "));
+}
+
+std::size_t chosen_step(const std::filesystem::path& path, std::string_view view,
+                        std::span<const std::uint64_t> steps, std::optional<std::uint64_t> wanted,
+                        const std::function<void(const std::string&)>& remark) {
+    if (!wanted) {
+        if (steps.size() > 1 && remark) {
+            remark(
+                fmt::format("{}: view {} has {} steps in time: the last is taken, number {} "
+                            "(--source-step chooses)",
+                            path.string(), quote(view), steps.size(), steps.back()));
+        }
+        return steps.size() - 1;
+    }
+    const auto found = std::ranges::find(steps, *wanted);
+    if (found != steps.end()) return static_cast<std::size_t>(found - steps.begin());
+    constexpr std::size_t shown = 10;
+    refuse_at(path, "view {} has no step {} in time: name one of {}{} (--source-step)", quote(view),
+              *wanted, fmt::join(steps.first(std::min(shown, steps.size())), ", "),
+              steps.size() > shown ? fmt::format(", ..., {}", steps.back()) : "");
 }
 
 }  // namespace controlspace

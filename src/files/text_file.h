@@ -1,7 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <charconv>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +16,9 @@ namespace controlspace {
 
 /// Maximum bytes read from a pipe or a device, which may never end: some six million sources.
 constexpr std::size_t largest_stream = std::size_t{1} << 30;
+
+/// Throws InputError for a pipe or a device, which cannot be read more than once, as libraries do.
+void require_no_stream(const std::filesystem::path& path);
 
 /// The whole file, without a leading UTF-8 byte order mark. Throws InputError, naming the file, if
 /// it is missing, a directory, unreadable or empty, if it holds a zero byte, as no text does, or if
@@ -41,6 +48,13 @@ std::vector<std::string_view> split(std::string_view text, char separator);
 /// InputError that lists them if there is none, or more than one. `kind` is "views", for messages.
 std::size_t chosen_array(const std::filesystem::path& path, std::string_view kind,
                          std::span<const std::string> names, const std::string& wanted);
+
+/// Index in `steps`, the numbers of a view's steps in time, of the step `wanted`; of the last one
+/// if there is none, which `remark` is then told where there are more. Throws InputError that lists
+/// them if there is no such step.
+std::size_t chosen_step(const std::filesystem::path& path, std::string_view view,
+                        std::span<const std::uint64_t> steps, std::optional<std::uint64_t> wanted,
+                        const std::function<void(const std::string&)>& remark);
 
 /// Whether all of `text` is a number that fits into `value`; a leading + is allowed.
 template <class Number>

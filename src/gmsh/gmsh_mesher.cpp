@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/gmsh/gmsh_mesher.h"
 
 #include <gmsh.h>
@@ -23,21 +24,47 @@
 namespace controlspace {
 namespace {
 
+/// By tag, a third of the length of each curve that ends where it begins: Gmsh 4.8 crashes, or does
+/// not end, on some of those that get fewer than three edges.
+std::map<int, double> thirds_of_closed_curves() {
+    constexpr int curve = 1, samples = 60;
+    std::map<int, double> thirds;
+    std::vector<std::pair<int, int>> curves, ends;
+    gmsh::model::getEntities(curves, curve);
+    for (const auto& [dimension, tag] : curves) {
+        gmsh::model::getBoundary({{dimension, tag}}, ends, false, false);
+        if (ends.size() == 2 && ends[0].second != ends[1].second) continue;
+        std::vector<double> low, high, parameters, x;
+        gmsh::model::getParametrizationBounds(curve, tag, low, high);
+        for (int i = 0; i <= samples; ++i) {
+            parameters.push_back(low.at(0) + (high.at(0) - low.at(0)) * i / samples);
+        }
+        gmsh::model::getValue(curve, tag, parameters, x);
+        double length = 0;
+        for (std::size_t i = 3; i + 2 < x.size(); i += 3) {
+            length += std::hypot(x[i] - x[i - 3], x[i + 1] - x[i - 2], x[i + 2] - x[i - 1]);
+        }
+        if (length > 0) thirds[tag] = length / 3;
+    }
+    return thirds;
+}
+
 /// On curves and surfaces sizes are multiplied by `on_surfaces` besides.
 void set_size_callback(SizeQuery& query, double on_surfaces) {
-    const auto size = [&query, on_surfaces](int dimension, double x, double y, double z) {
-        return (dimension < 3 ? on_surfaces : 1) * query(x, y, z);
+    const auto size = [&query, on_surfaces, thirds = thirds_of_closed_curves()](
+                          int dimension, int tag, double x, double y, double z) {
+        const double h = (dimension < 3 ? on_surfaces : 1) * query(x, y, z);
+        const auto third = dimension == 1 ? thirds.find(tag) : thirds.end();
+        return third == thirds.end() ? h : std::min(h, third->second);
     };
 #if GMSH_API_VERSION_MAJOR > 4 || (GMSH_API_VERSION_MAJOR == 4 && GMSH_API_VERSION_MINOR >= 9)
     // From 4.9 on, what is returned takes the place of the other sizes.
     gmsh::model::mesh::setSizeCallback(
-        [size](int dimension, int, double x, double y, double z, double other) {
-            return std::min(other, size(dimension, x, y, z));
+        [size](int dimension, int tag, double x, double y, double z, double other) {
+            return std::min(other, size(dimension, tag, x, y, z));
         });
 #else
-    gmsh::model::mesh::setSizeCallback([size](int dimension, int, double x, double y, double z) {
-        return size(dimension, x, y, z);
-    });
+    gmsh::model::mesh::setSizeCallback(size);
 #endif
 }
 
@@ -265,6 +292,11 @@ MeshRun mesh_with_gmsh(const Box& domain, const ControlSpace& field, const GmshO
     SizeQuery query(field, frame, options.factor.value_or(standard_factor(options.algorithm)));
     MeshRun run;
     in_gmsh_session(options.threads, [&] {
+        if (options.reports) {
+            constexpr double warnings_and_errors = 2;
+            gmsh::option::setNumber("General.Terminal", 1);
+            gmsh::option::setNumber("General.Verbosity", warnings_and_errors);
+        }
         add_geometry(options.part.get(), frame);
         set_options(options);
         // Triangles are hardly larger than requested, and most edges of a thin part are on its

@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/io/require_readable.h"
+
+#include "files/text_file.h"
 
 #ifdef __linux__
 
 #include <fcntl.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
 
@@ -14,10 +15,13 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
+#include <optional>
 #include <string>
 
 #include "controlspace/error.h"
+#include "files/child_process.h"
 #include "io/give_up_rights.h"
 #include "io/text/metric_rows.h"
 #include "refuse.h"
@@ -26,7 +30,7 @@ namespace controlspace {
 namespace {
 
 /// How the child ends: other numbers than those of libraries and sanitizers.
-constexpr int readable = 0, refused = 90, failed = 91;
+constexpr int readable = EXIT_SUCCESS, refused = 90, failed = 91;
 
 /// Sanitizers reserve terabytes of addresses.
 constexpr bool limits_memory =
@@ -78,7 +82,6 @@ void end_on_crashes() {
 [[noreturn]] void read_in_child(const std::filesystem::path& file,
                                 const std::function<void()>& read, int answer) {
     end_on_crashes();
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     // Libraries report crashes on standard error: not part of the program's output.
     const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
     ::dup2(nowhere, STDOUT_FILENO);
@@ -116,23 +119,33 @@ std::string text_from(int descriptor) {
 }  // namespace
 
 void require_readable(const std::filesystem::path& file, const std::function<void()>& read) {
+    require_no_stream(file);
     std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::bad_alloc();
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
+        refuse_at(file, "no process can be started to read it: {}", std::strerror(errno));
+    }
     // The child has none of the threads that TBB has started: in an arena of one thread, made
     // before, work neither waits for them nor for a lock that one of them holds.
-    pid_t child = -1;
-    tbb::task_arena(1).execute([&] {
-        child = ::fork();
-        if (child == 0) read_in_child(file, read, ends[1]);
-    });
+    std::optional<ChildProcess> child;
+    try {
+        tbb::task_arena(1).execute(
+            [&] { child.emplace([&] { read_in_child(file, read, ends[1]); }); });
+    } catch (...) {
+        ::close(ends[0]);
+        ::close(ends[1]);
+        throw;
+    }
     ::close(ends[1]);
     const std::string answer = text_from(ends[0]);
     ::close(ends[0]);
-    int status = 0;
-    const bool ended =
-        child > 0 && TEMP_FAILURE_RETRY(::waitpid(child, &status, 0)) == child && WIFEXITED(status);
-    if (ended && WEXITSTATUS(status) == readable) return;
-    if (ended && WEXITSTATUS(status) == refused) throw InputError(answer);
+    const ChildOutcome outcome = child->wait();
+    if (outcome.succeeded()) return;
+    if (outcome.signal == 0 && outcome.status == refused) throw InputError(answer);
+    if (!outcome.is_known) {
+        refuse_at(file,
+                  "it cannot be known whether it is readable: the program that runs this one "
+                  "collects its child processes");
+    }
     refuse_at(file, "the library that reads such files fails on it: is it damaged, or cut off?");
 }
 
@@ -142,7 +155,10 @@ void require_readable(const std::filesystem::path& file, const std::function<voi
 
 namespace controlspace {
 
-void require_readable(const std::filesystem::path&, const std::function<void()>& read) { read(); }
+void require_readable(const std::filesystem::path& file, const std::function<void()>& read) {
+    require_no_stream(file);
+    read();
+}
 
 }  // namespace controlspace
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/measure/reference.h"
 
 #include <fmt/format.h>

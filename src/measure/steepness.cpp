@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/measure/steepness.h"
 
 #include <tbb/combinable.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/mesh/mesh_files.h"
 
 #include <cstdint>

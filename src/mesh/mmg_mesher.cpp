@@ -1,11 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesh/mmg_mesher.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,9 +11,9 @@
 #include "controlspace/error.h"
 #include "controlspace/mesh/mesh_files.h"
 #include "controlspace/space/sample_parallel.h"
+#include "files/child_process.h"
 #include "io/text/medit.h"
 #include "measure/stopwatch.h"
-#include "mesh/child_program.h"
 #include "mesh/size_query.h"
 #include "refuse.h"
 
@@ -24,31 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A new folder, removed with all that is in it unless it is to be kept.
-class TemporaryFolder {
-public:
-    explicit TemporaryFolder(const fs::path& parent) {
-        std::string pattern = (parent / "mmg-XXXXXX").string();
-        if (::mkdtemp(pattern.data()) == nullptr) {
-            refuse("cannot make a folder in {}: {}", parent.string(), std::strerror(errno));
-        }
-        path_ = fs::absolute(pattern);
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        if (!keep_) fs::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-    const fs::path& path() const { return path_; }
-    void keep() { keep_ = true; }
-
-private:
-    fs::path path_;
-    bool keep_ = false;
-};
-
 std::vector<Metric> metrics_at(const TetMesh& mesh, const ControlSpace& field) {
     std::vector<Metric> metrics = sample_parallel(field, mesh.vertices);
     for (std::size_t i = 0; i < metrics.size(); ++i) require_metric(metrics[i], mesh.vertices[i]);
@@ -56,6 +29,7 @@ std::vector<Metric> metrics_at(const TetMesh& mesh, const ControlSpace& field) {
 }
 
 std::string reason(const ChildOutcome& outcome, const MmgOptions& options) {
+    if (!outcome.is_known) return "was collected by another part of this program";
     if (outcome.timed_out) return fmt::format("took longer than {} s", options.time_limit_s);
     if (outcome.signal != 0) return fmt::format("was ended by signal {}", outcome.signal);
     if (outcome.status != 0) return fmt::format("failed with status {}", outcome.status);
@@ -65,10 +39,11 @@ std::string reason(const ChildOutcome& outcome, const MmgOptions& options) {
 /// One call of MMG on `mesh`.
 TetMesh remesh(const TetMesh& mesh, const std::vector<Metric>& metrics, const fs::path& program,
                const MmgOptions& options, MeshCost& cost) {
-    TemporaryFolder folder(options.folder);
+    TemporaryFolder folder(options.folder, "mmg");
     const fs::path log = folder.path() / "log", out = folder.path() / "out.mesh";
     write_medit_mesh(folder.path() / "in.mesh", mesh);
-    write_medit_solution(folder.path() / "in.sol", metrics);
+    // Of sizes MMG would make a mesh by other rules.
+    write_medit_solution(folder.path() / "in.sol", metrics, /*keep_tensors=*/true);
     std::vector<std::string> words{program.string(), "-v",   "1",      "-hgrad", "-1",      "-in",
                                    "in.mesh",        "-sol", "in.sol", "-out",   "out.mesh"};
     if (options.hausdorff > 0) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "metric/interior_point.h"
 
 #include <Eigen/Cholesky>

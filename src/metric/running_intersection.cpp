@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "metric/running_intersection.h"
 
 #include <Eigen/Geometry>

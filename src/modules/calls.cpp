@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
 
 #include "modules/load.h"
@@ -7,8 +8,8 @@ namespace controlspace {
 
 namespace fs = std::filesystem;
 
-std::vector<PointSource> read_vtk_sources(const fs::path& path, const std::string& array) {
-    return module_table<VtkModule>("vtk").read_vtk_sources(path, array);
+std::vector<PointSource> read_vtk_sources(const fs::path& path, const ReadOptions& options) {
+    return module_table<VtkModule>("vtk").read_vtk_sources(path, options);
 }
 
 AnalyticField read_vtk_field(const fs::path& path, const std::string& array) {

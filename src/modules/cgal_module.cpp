@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/version.h"
 #include "modules/load.h"
 #include "modules/tables.h"

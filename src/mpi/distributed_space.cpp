@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Control spaces that are built by many ranks, and their queries.
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1

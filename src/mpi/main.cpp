@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program controlspace-mpi: commands of `controlspace`, on all ranks of an MPI job.
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1

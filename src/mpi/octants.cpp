@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The cutting and sharing out of octants.
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1

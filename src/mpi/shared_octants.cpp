@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The octree as a forest of p4est, which orders and shares out its leaves.
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1

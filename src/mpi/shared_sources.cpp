@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which sources matter in which octants, and their exchange.
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/space/detail/adapt_for_precision.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/space/detail/given_sources.h"
 
 #include <fmt/format.h>

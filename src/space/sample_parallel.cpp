@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/space/sample_parallel.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -9,9 +10,13 @@
 
 namespace controlspace {
 
-// Endings of files that libraries read; those of read_sources are there.
+/// Of files that read_sources reads.
+inline constexpr std::array<std::string_view, 8> own_endings{".csv", ".npy",  ".mesh", ".meshb",
+                                                             ".sol", ".solb", ".pos",  ".msh"};
 
-inline constexpr std::array<std::string_view, 3> vtk_endings{".vtu", ".vtp", ".vti"};
+// Endings of files that libraries read.
+
+inline constexpr std::array<std::string_view, 4> vtk_endings{".vtu", ".vtp", ".vti", ".vtk"};
 inline constexpr std::array<std::string_view, 4> triangle_endings{".stl", ".obj", ".ply", ".off"};
 inline constexpr std::array<std::string_view, 5> cad_endings{".step", ".stp", ".iges", ".igs",
                                                              ".brep"};

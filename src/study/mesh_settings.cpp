@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "study/mesh_settings.h"
 
 #include "refuse.h"
@@ -67,7 +68,7 @@ std::span<const Parameter<MeshSettings>> mesh_parameters() {
         {"rounds", "",
          "MMG: number of times that the mesh is made anew, each time by the field at its vertices",
          number<MeshSettings>(of(mmg, &MmgOptions::rounds), within(1, 100))},
-        {"time_limit", "s", "MMG: time limit of each round",
+        {"time_limit", "s", "Time limit of a mesh by Gmsh, and of each round of MMG",
          number<MeshSettings>(of(mmg, &MmgOptions::time_limit_s), positive)},
         {"exact", "", "Mesh the exact field too, to compare with",
          word<MeshSettings>(&MeshSettings::exact)},

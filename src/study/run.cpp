@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/study/run.h"
 
 #include <fmt/format.h>
@@ -119,8 +120,8 @@ private:
                                      static_cast<double>(member.finished->footprint.bytes_total()));
             }
         } catch (const GrowthStopped& stopped) {
-            member.row.error = fmt::format("stopped {}, {} leaves",
-                                           limits.place_of(stopped.stop()), stopped.leaves());
+            member.row.error = fmt::format("stopped {}, {} leaves", limits.place_of(stopped.stop()),
+                                           stopped.leaves());
         } catch (const std::bad_alloc&) {
             member.row.error = "out of memory: lower max_memory, or raise tau";
         } catch (const std::exception& error) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
 #include <functional>
@@ -139,8 +140,10 @@ std::vector<Parameter<Study>> table() {
     const AppliesTo<Study> planes{"the planes", of_kind(SourcesKind::planes)};
     const AppliesTo<Study> sampled{"sampled surfaces",
                                    [](const Study& s) { return is_sampled(s.sources); }};
-    const AppliesTo<Study> arrays{".vtu, .vtp, .vti, .msh and .pos",
-                                  in_file({".vtu", ".vtp", ".vti", ".msh", ".pos"})};
+    const AppliesTo<Study> arrays{".vtu, .vtp, .vti, .vtk, .msh and .pos",
+                                  in_file({".vtu", ".vtp", ".vti", ".vtk", ".msh", ".pos"})};
+    const AppliesTo<Study> steps{".vtu, .vtp, .vti, .msh and .pos",
+                                 in_file({".vtu", ".vtp", ".vti", ".msh", ".pos"})};
     const AppliesTo<Study> surface{"surfaces: .stl, .obj, .ply, .off, .step, .iges and .brep",
                                    in_file(part_endings())};
     const AppliesTo<Study> files{"files of sources",
@@ -161,7 +164,8 @@ std::vector<Parameter<Study>> table() {
          "sphere or planes (sampled); none (only a field); or files and primitives, the smallest "
          "of "
          "whose metrics counts where they overlap. Files of points with metrics: .csv (- for "
-         "standard input), .mesh or .meshb with .sol or .solb, .pos, .msh, .vtu, .vtp or .vti; or "
+         "standard input), .mesh or .meshb with .sol or .solb, .pos, .msh, .vtu, .vtp, .vti or "
+         ".vtk; or "
          "a surface: .stl, .obj, .ply, .off, .step, .iges, .brep or in a .vdb. Primitives: "
          "box:x0,x1,y0,y1,z0,z1,h=H, ball:x,y,z,r=R,h=H, cylinder:x0,y0,z0,x1,y1,z1,r=R,h=H, "
          "segment:x0,y0,z0,x1,y1,z1,h=H, surface:FILE,h=H: the length is H on them and inside, and "
@@ -270,10 +274,18 @@ std::vector<Parameter<Study>> table() {
          "Files of other formats say none",
          word<Study>(of(sources, &Sources::in_file, &FileSources::unit)), reading},
         {"source_array", "",
-         "Sources of a .vtu, .vtp, .vti, .msh or .pos: the array or view of sizes (1 component) or "
+         "Sources of a .vtu, .vtp, .vti, .vtk, .msh or .pos: the array or view of sizes (1 "
+         "component) or "
          "Riemannian metrics (6 or 9), at points, or else of cells, for their centres; left out: "
          "the array named :metric, the only view",
          text<Study>(of(sources, &Sources::in_file, &FileSources::array)), reading, arrays},
+        {"source_step", "",
+         "Sources of a .vtu, .vtp, .vti, .msh or .pos: step in time, by its number in a .msh, from "
+         "0 "
+         "in others; left out: the last",
+         number<Study>(of(sources, &Sources::in_file, &FileSources::step),
+                       within(0, exact_integers)),
+         reading, steps},
         {"surface_angle", "degrees",
          "Sources of a surface (.stl, .obj, .ply, .off): part of the circle of curvature that an "
          "edge spans",

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/study/workload.h"
 
 #include <fmt/format.h>
@@ -133,7 +134,14 @@ std::vector<PointSource> read_unscaled(const std::filesystem::path& file,
         return reader->second(file, choice);
     }
     if (needs_reader(ending)) fail_without_reader(file);
-    return read_sources(file, choice.in_file.array);
+    if (!has_ending(own_endings, ending) && std::filesystem::is_regular_file(file)) {
+        std::vector<std::string_view> all(own_endings.begin(), own_endings.end());
+        for (const auto& [known, reader] : readers.sources) {
+            if (!has_ending(own_endings, known)) all.push_back(known);
+        }
+        refuse_at(file, "its ending is none that can be read: name a {}", fmt::join(all, ", "));
+    }
+    return read_sources(file, {choice.in_file.array, choice.in_file.step, readers.remark});
 }
 
 std::vector<PointSource> read_one(const std::filesystem::path& file, const SourcesChoice& choice,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/trees/node_metrics.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The C library answers as the C++ library does, and turns every failure into a status.
 #include <controlspace/controlspace.h>
 

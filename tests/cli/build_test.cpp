@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // End to end: `controlspace build`, and what takes what it saves.
 #include <catch2/catch.hpp>
 

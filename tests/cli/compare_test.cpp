@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // End to end: runs the program as a user does.
 #include <catch2/catch.hpp>
 #include <filesystem>

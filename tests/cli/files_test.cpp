@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // End to end: `controlspace info`, `convert` and `query`.
 #include <catch2/catch.hpp>
 #include <string>
@@ -153,7 +154,8 @@ TEST_CASE("commands on files that cannot be carried out end with one line") {
         {"convert no.csv out.csv", "no.csv: no such file"},
         {"convert s.csv no/out.mesh", "cannot write"},
         {"convert s.csv out.csv --vdb-size x", "--vdb-size: 'x' is not a number"},
-        {"info s.csv --source-array a", "source_array is for .vtu, .vtp, .vti, .msh and .pos"},
+        {"info s.csv --source-array a",
+         "source_array is for .vtu, .vtp, .vti, .vtk, .msh and .pos"},
         {"info s.csv --surface-h-min 1", "surface_h_min is for surfaces: .stl, .obj, .ply, .off, "},
         {"info s.csv --isotropic", "isotropic is for surfaces: .stl, .obj, .ply, .off, "},
         {"info s.stl --surface-crease 200", "--surface-crease: 200 is out of range"},

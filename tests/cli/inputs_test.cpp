@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What all commands have in common: INPUT, --output, --quiet and the help.
 #include <catch2/catch.hpp>
 #include <sstream>

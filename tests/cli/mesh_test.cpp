@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // End to end: `controlspace mesh`.
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -151,6 +152,26 @@ TEST_CASE("points are scaled with their lengths") {
     CHECK(file_text(box / "q.csv") == "x,y,z,h\n0,0,0,5\n10,20,30,2.5\n");
     check_refused(box.run("info sphere --scale 10"), "scale is for files of sources");
     check_refused(box.run("info p.csv --unit yd"), "--unit");
+}
+
+TEST_CASE("Gmsh has a limit of time, and its crash is a row with its last words") {
+    const Sandbox box("mesh-apart");
+    const Outcome late = box.run(
+        "mesh --h 0.02 --probe-grid 5 --structures K_oL --mesher delaunay --exact no --files none "
+        "--time-limit 0.01 --output late");
+    CHECK(late.status == 3);
+    CHECK_THAT(late.err, Contains("Gmsh took longer than 0.01 s (--time-limit)"));
+    CHECK(std::distance(fs::directory_iterator(box / "late"), {}) == 2);  // no file of the child
+
+    // Triangles whose edges Gmsh 4.8 cannot recover: it throws where nobody catches.
+    fs::copy_file(data_folder() / "../tests/data/bipyramid-of-ten.stl", box / "part.stl");
+    const Outcome crashed = box.run(
+        "mesh part.stl --isotropic --probe-grid 5 --exact no --files none --output crashed");
+    INFO(crashed.err);
+    CHECK((crashed.status == 0 || crashed.status == 3));
+    if (crashed.status == 3) {
+        CHECK_THAT(crashed.err, Contains("Gmsh ") && Contains("repair the part"));
+    }
 }
 
 TEST_CASE("a target that a meshed structure missed is told, with status 3") {

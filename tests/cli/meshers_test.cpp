@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // End to end: lengths for meshers, by files and by a pipe.
 #include <array>
 #include <catch2/catch.hpp>

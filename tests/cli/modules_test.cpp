@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // External libraries are loaded by the work that needs them, and by no other.
 #include <catch2/catch.hpp>
 #include <string>

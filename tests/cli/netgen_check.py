@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Netgen answers by mesh sizes that `export` wrote as the structure does.
 
 netgen_check.py PROGRAM. Ends with 77 where Netgen's Python package, 6.2.2404 or later, is missing.

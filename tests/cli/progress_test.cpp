@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // End to end: what runs show while they go on, on a terminal and elsewhere, and what Ctrl-C leaves.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // End to end: primitives, limits, data of cells, and exports that are read again.
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -224,6 +225,31 @@ TEST_CASE("a mesh without a solution is said to give the lengths of its required
     box.write("b.mesh", mesh);
     box.write("b.sol", "MeshVersionFormatted 2 Dimension 3 SolAtVertices 3 1 1 1 1 1 End");
     CHECK(box.run("convert b.mesh b.csv").err.empty());
+}
+
+TEST_CASE("a file's name may follow the numbers of an option") {
+    const Sandbox box("after-domain");
+    box.write("s.csv", "x,y,z,h\n0.2,0.5,0.5,0.1\n");
+    box.write("p.csv", "x,y,z\n0,0,0\n1,0,0\n");
+    for (const char* domain : {"--domain 0 1 0 1 0 1", "--domain 0,1,0,1,0,1"}) {
+        const Outcome outcome = box.run(std::string("query ") + domain + " s.csv p.csv --quiet");
+        INFO(outcome.err);
+        CHECK(outcome.status == 0);
+        CHECK(lines(outcome.out) == 3);
+        CHECK(box.run(std::string("query s.csv ") + domain + " p.csv --quiet").out == outcome.out);
+    }
+    check_refused(box.run("query s.csv p.csv --domain 0 1 0 1 0"), "--domain");
+    check_refused(box.run("query --domain 0 1 0 1 s.csv p.csv"), "--domain");
+}
+
+TEST_CASE("a file of an unknown ending is refused with all that can be read") {
+    const Sandbox box("unknown-ending");
+    box.write("a.xyz", "0 0 0 1\n");
+    const Outcome outcome = box.run("info a.xyz");
+    check_refused(outcome, "a.xyz: its ending is none that can be read: name a .csv, .npy, .mesh");
+    for (const char* ending : {".vtu", ".vtk", ".vdb", ".stl", ".step", ".msh", ".pos", ".solb"}) {
+        CHECK_THAT(outcome.err, Contains(ending));
+    }
 }
 
 }  // namespace controlspace::sources_test

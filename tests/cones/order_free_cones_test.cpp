@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "cones/order_free_cones.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Uses the library as installed: every structure of the catalogue, and its errors.
 #include <controlspace/baselines/catalogue.h>
 #include <controlspace/error.h>

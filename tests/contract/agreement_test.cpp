@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Structures that share nothing but the sources must agree with the exact field and with each
 // other, within what the size of their cells and the gradation explain.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What holds between control nodes, and what no structure takes.
 #include <Eigen/Eigenvalues>
 #include <algorithm>

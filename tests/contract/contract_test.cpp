@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What every structure of the catalogue promises (spaces/control_space.h), whichever it is.
 #include <fmt/format.h>
 

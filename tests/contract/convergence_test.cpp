@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast the error of a smooth field falls with the size of cells: by the order of interpolation.
 #include <catch2/catch.hpp>
 #include <cmath>

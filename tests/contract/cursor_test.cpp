@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cursors answer as the space does, whatever they remember.
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grids of the catalogue, made equal by their voxels.
 #include "study/equal_setting.h"
 

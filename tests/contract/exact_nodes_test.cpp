@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gradation by the sources: what control nodes hold, and how far from the exact field a structure
 // may be between them.
 #include <algorithm>

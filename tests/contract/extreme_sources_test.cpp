@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sources that are as bad as they may be: what every structure of the catalogue still promises.
 #include <algorithm>
 #include <catch2/catch.hpp>

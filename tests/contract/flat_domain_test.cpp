@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Domains of any aspect, and planes: boxes with no extent along one axis.
 #include <algorithm>
 #include <catch2/catch.hpp>

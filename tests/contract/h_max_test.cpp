@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The largest length, in all structures.
 #include <catch2/catch.hpp>
 

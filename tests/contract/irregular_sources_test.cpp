@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sources that lie anyhow and request 50:1: every structure must take them.
 #include <catch2/catch.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sources that come after gradation, where that is provided for: grading again gives the field of
 // all sources at once.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a field does when its sources and its domain are scaled, moved or turned together.
 #include <catch2/catch.hpp>
 #include <cmath>

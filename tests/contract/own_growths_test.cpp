@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sources with gradation ratios of their own, in all structures.
 #include <algorithm>
 #include <catch2/catch.hpp>

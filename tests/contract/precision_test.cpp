@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Structures in each precision: what is stored, what is read back, and what an adapted one
 // promises.
 #include <algorithm>

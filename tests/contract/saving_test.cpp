@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A control space that was saved and loaded is the same, now and later.
 #include <catch2/catch.hpp>
 

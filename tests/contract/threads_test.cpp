@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One answer whatever the number of threads, to the bit.
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>

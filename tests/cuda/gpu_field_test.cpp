@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // On a GPU, where there is one.
 #include "controlspace/cuda/gpu_field.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Octrees as arrays for a GPU answer as octrees do, to the bit: by the kernels' functions, called
 // here.
 #include "cuda/octree_arrays.h"

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures how sharp the tests are: puts each defect of tests/defects into a copy of the tree, builds, and runs the tests
 up to the first failure. A defect that no test finds is a gap of the suite.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Run in Blender by blender_test.sh: are its grids, places and values those that were exported?"""
 import math
 import os

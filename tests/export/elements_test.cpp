@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Elements found by asking, against what structures say of themselves.
 #include <catch2/catch.hpp>
 

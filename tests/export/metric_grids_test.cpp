@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/io/metric_grids.h"
 
 #include <Eigen/Geometry>

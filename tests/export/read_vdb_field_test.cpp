@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <limits>
 
 #include "case_of_each.h"
 #include "controlspace/baselines/catalogue.h"
+#include "controlspace/fields/formula_field.h"
 #include "controlspace/io/read_vdb.h"
 #include "controlspace/io/write_vdb.h"
 #include "controlspace/metric/nonconformity.h"
@@ -97,6 +99,41 @@ TEST_CASE("between centres fields are linear, and beyond the box as at its neare
     CHECK(value_at(*field, {7, 0.05, 0.05}) == value_at(*field, {0.95, 0.05, 0.05}));
     const double nan = std::numeric_limits<double>::quiet_NaN();
     CHECK(is_positive_definite(value_at(*field, {nan, nan, nan})));
+}
+
+TEST_CASE("voxels that are too small for OpenVDB are written in another unit, and read in theirs") {
+    const ScratchDirectory folder;
+    const double unit = GENERATE(1e-6, 1e-9, 3e-4);
+    const Box small{unit * Point(1, 2, 3), unit * Point(3, 4, 6)};
+    const auto metric_at = [&](const Point& p) {
+        const Point x = p / unit;
+        return unit * Metric{0.3 + 0.01 * x.x(), 0.4, 0.5 + 0.02 * x.z(), 0.02, -0.03, 0.05};
+    };
+    const FormulaField field(metric_at);
+    const auto path = folder.path() / "small.vdb";
+    const VdbReport report = write_vdb(path, field, small, {.voxel = unit / 10, .tolerance = 0});
+    CHECK(report.voxel == Approx(unit / 10));
+    CHECK(report.finest > 0.1 * unit);
+    CHECK(report.finest < report.coarsest * (1 + 1e-9));
+    CHECK(report.coarsest < unit);
+    CHECK((report.scale > 1) == (unit < 1e-4));
+    const AnalyticField read = read_vdb_field(path, {});
+    CHECK((read.field->domain().low - small.low).norm() < 1e-5 * unit);
+    CHECK((read.field->domain().high - small.high).norm() < 1e-5 * unit);
+    CHECK(read.finest_length == Approx(report.finest).epsilon(1e-5));
+    for (const Vector& t : {Vector(0.2, 0.3, 0.4), Vector(0.9, 0.1, 0.5), Vector(0.5, 0.5, 0.5)}) {
+        const Point p = small.low + t.cwiseProduct(small.edges());
+        CHECK(sample_at(*read.field, p).matrix().isApprox(metric_at(p).matrix(), 1e-4));
+    }
+    const auto painted =
+        read_vdb_field(path, {.grid = "density", .density = {{report.finest, report.coarsest}}});
+    CHECK(painted.finest_length == Approx(report.finest).epsilon(1e-5));
+    const double h = sample_at(*painted.field, small.centre()).xx;
+    CHECK(h == Approx(eigen_frame(metric_at(small.centre())).lengths[0]).epsilon(1e-3));
+    for (const PointSource& s : read_vdb_sources(path, {.grid = "density", .h = unit})) {
+        CHECK(small.contains(s.position));
+        CHECK(s.metric == Metric::isotropic(unit));
+    }
 }
 
 TEST_CASE("our own density leads back to the smallest length") {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <openvdb/tools/LevelSetSphere.h>
 #include <openvdb/tools/LevelSetUtil.h>
 #include <openvdb/tools/MeshToVolume.h>
@@ -119,6 +120,17 @@ TEST_CASE("surfaces that cannot be used are refused in one line") {
     plain->setGridClass(openvdb::GRID_UNKNOWN);
     CHECK_THAT(error({plain}, {.h = 0.1}), Contains("isovalue"));
     CHECK(error({plain}, {.isovalue = 0.0, .h = 0.1}).empty());
+
+    // A file of some kilobytes whose surface has 25 million voxels; of a smaller cube it is read.
+    const auto fog = [&](int edge) {
+        const auto grid = openvdb::FloatGrid::create(0);
+        grid->setName("fog");
+        grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+        grid->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(edge - 1)), 1);
+        return grid;
+    };
+    CHECK_THAT(error({fog(2048)}, {.h = 0.1}), Contains("a surface of some 25 million voxels"));
+    CHECK(error({fog(256)}, {.h = 0.1}).empty());
 
     const auto broken = sphere(0.8);
     broken->tree().setValueOn(broken->tree().cbeginLeaf()->origin(), std::nanf(""));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/openvdb/sampled_block.h"
 
 #include <Eigen/Eigenvalues>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Curvature of surfaces in closed form, and creases.
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sources by curvature on surfaces whose curvature is known.
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,6 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of VTK, read by VTK itself and by our reader.
+#include <fmt/format.h>
 #include <vtkCell.h>
 #include <vtkCellData.h>
+#include <vtkCellTypeSource.h>
 #include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
 #include <vtkHyperTreeGrid.h>
@@ -9,6 +12,8 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkProbeFilter.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLHyperTreeGridReader.h>
 #include <vtkXMLImageDataReader.h>
@@ -21,6 +26,8 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <catch2/catch.hpp>
+#include <numeric>
+#include <random>
 
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/geometry/extent.h"
@@ -30,6 +37,7 @@
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
 #include "editable_space.h"
+#include "files/text_file.h"
 #include "io/text/cells.h"
 #include "io/text/metric_rows.h"
 #include "io/text/vtk_xml.h"
@@ -91,6 +99,22 @@ void check_close(const std::vector<PointSource>& a, const std::vector<PointSourc
         CHECK((a[i].position - b[i].position).norm() <= tolerance);
         CHECK(a[i].metric.matrix().isApprox(b[i].metric.matrix(), tolerance));
     }
+}
+
+/// Writes a file by VTK's own writer, with lengths `h` at the points.
+template <class Writer>
+void write_grid(const std::filesystem::path& path, vtkDataSet& grid,
+                const std::function<double(const Point&)>& length_at) {
+    vtkNew<vtkDoubleArray> sizes;
+    sizes->SetName("h");
+    for (vtkIdType i = 0; i < grid.GetNumberOfPoints(); ++i) {
+        sizes->InsertNextValue(length_at(Point(grid.GetPoint(i))));
+    }
+    grid.GetPointData()->AddArray(sizes);
+    vtkNew<Writer> writer;
+    writer->SetFileName(path.c_str());
+    writer->SetInputData(&grid);
+    writer->Write();
 }
 
 const std::vector<PointSource> two{{{0.1, -0.2, 0.3}, {0.3, 0.4, 0.5, 0.02, -0.03, 0.05}},
@@ -341,12 +365,12 @@ TEST_CASE("arrays of 1, 6 and 9 components, however VTK encodes them") {
     const double tolerance = 1e-6;
     const auto path = write_vtp<vtkDoubleArray>(folder, components, "a:metric", *writer);
     check_close(read_vtk_sources(path), expected, tolerance);
-    check_close(read_vtk_sources(path, "a:metric"), expected, tolerance);
+    check_close(read_vtk_sources(path, {.array = "a:metric"}), expected, tolerance);
     const auto floats = write_vtp<vtkFloatArray>(folder, components, "size", *writer);
-    check_close(read_vtk_sources(floats, "size"), expected, 1e-5);
+    check_close(read_vtk_sources(floats, {.array = "size"}), expected, 1e-5);
     CHECK_THAT(error_of([&] { read_vtk_sources(floats); }),
                Contains("no array is named :metric, there are 'size': name one"));
-    CHECK_THAT(error_of([&] { read_vtk_sources(floats, "sizes"); }),
+    CHECK_THAT(error_of([&] { read_vtk_sources(floats, {.array = "sizes"}); }),
                Contains("no array is named 'sizes', there are 'size': name one"));
 }
 
@@ -396,8 +420,8 @@ TEST_CASE("data of cells are sources at the centres of the cells") {
     };
     write();
     check_close(read_vtk_sources(path), expected);
-    check_close(read_vtk_sources(path, "a:metric"), expected);
-    CHECK_THAT(error_of([&] { read_vtk_sources(path, "b"); }),
+    check_close(read_vtk_sources(path, {.array = "a:metric"}), expected);
+    CHECK_THAT(error_of([&] { read_vtk_sources(path, {.array = "b"}); }),
                Contains("no array is named 'b', there are 'a:metric' (of cells): name one"));
 
     // Points come first, under the same name too.
@@ -421,6 +445,103 @@ TEST_CASE("data of cells are sources at the centres of the cells") {
     CHECK_THAT(error_of([&] { read_vtk_sources(path); }), Contains("it has no arrays"));
 }
 
+TEST_CASE("of several steps in time in a file of VTK the last is read, or the one that is named") {
+    const ScratchDirectory folder;
+    const auto array = [](int step, const char* h) {
+        return fmt::format(
+            R"(<DataArray type="Float64" Name="h" format="ascii" TimeStep="{}">{}</DataArray>)",
+            step, h);
+    };
+    const std::string head =
+        R"(<VTKFile type="ImageData" version="0.1" byte_order="LittleEndian">)"
+        R"(<ImageData TimeValues="0 0.5" WholeExtent="0 1 0 0 0 0" Origin="0 0 0" Spacing="1 1 1">)"
+        R"(<Piece Extent="0 1 0 0 0 0"><PointData>)";
+    const auto path = folder.file("t.vti", head + array(0, "1 2") + array(1, "3 4") +
+                                               "</PointData></Piece></ImageData></VTKFile>");
+    std::string said;
+    const auto first = [&](std::optional<std::uint64_t> step) {
+        said.clear();
+        return read_vtk_sources(
+                   path,
+                   {.array = "h", .step = step, .remark = [&](const std::string& r) { said += r; }})
+            .front()
+            .metric.xx;
+    };
+    CHECK(first({}) == 3);
+    CHECK_THAT(said, Contains("t.vti: view 'h' has 2 steps in time: the last is taken, number 1"));
+    CHECK(first(0) == 1);
+    CHECK(first(1) == 3);
+    CHECK(said.empty());
+    CHECK_THAT(error_of([&] { first(2); }), Contains("has no step 2 in time: name one of 0, 1"));
+}
+
+TEST_CASE("legacy files of VTK are read, of all arrays and kinds of data sets") {
+    const ScratchDirectory folder;
+    const std::string head = "# vtk DataFile Version 3.0\nby hand\nASCII\n";
+    const std::string data =
+        "POINT_DATA 2\nSCALARS first double\nLOOKUP_TABLE default\n3 4\n"
+        "SCALARS h double\nLOOKUP_TABLE default\n0.5 0.25\n"
+        "TENSORS t double\n4 0 0\n0 16 0\n0 0 64\n\n1 0 0\n0 1 0\n0 0 1\n"
+        "FIELD more 1\nf 1 2 float\n0.125 2\n";
+    const std::string grid = GENERATE("DATASET UNSTRUCTURED_GRID\nPOINTS 2 double\n0 0 0 1 0 0\n",
+                                      "DATASET POLYDATA\nPOINTS 2 double\n0 0 0 1 0 0\n",
+                                      "DATASET STRUCTURED_POINTS\nDIMENSIONS 2 1 1\nORIGIN 0 0 0\n"
+                                      "SPACING 1 1 1\n",
+                                      "DATASET RECTILINEAR_GRID\nDIMENSIONS 2 1 1\n"
+                                      "X_COORDINATES 2 double\n0 1\nY_COORDINATES 1 double\n0\n"
+                                      "Z_COORDINATES 1 double\n0\n");
+    CAPTURE(grid);
+    const auto path = folder.file("a.vtk", head + grid + data);
+    const auto read = [&](const char* array) { return read_vtk_sources(path, {.array = array}); };
+    CHECK(read("h") == std::vector<PointSource>{{{0, 0, 0}, Metric::isotropic(0.5)},
+                                                {{1, 0, 0}, Metric::isotropic(0.25)}});
+    CHECK(read("f").back().metric == Metric::isotropic(2));
+    CHECK(read("t").front().metric.matrix().isApprox(Metric{0.5, 0.25, 0.125, 0, 0, 0}.matrix(),
+                                                     1e-14));
+    const auto error = [&](const std::string& text) {
+        return error_of([&] { read_vtk_sources(folder.file("b.vtk", text), {.array = "h"}); });
+    };
+    CHECK_THAT(error("x,y,z,h\n0,0,0,1\n"), Contains("b.vtk: does not start with '# vtk"));
+    CHECK_FALSE(error(head + "DATASET NONE\n").empty());
+    CHECK_FALSE(error(head + grid + data.substr(0, 60)).empty());
+}
+
+TEST_CASE("hidden points and cells are no sources, and make no field") {
+    const ScratchDirectory folder;
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(4, 2, 2);
+    const auto h = [](const Point& p) { return p.x() < 3 ? 1 + p.x() : -1; };
+    const bool at_points = GENERATE(true, false);
+    vtkNew<vtkUnsignedCharArray> marks;
+    marks->SetName("vtkGhostType");
+    if (at_points) {
+        for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i) {
+            const bool is_hidden = image->GetPoint(i)[0] == 3;
+            marks->InsertNextValue(is_hidden ? vtkDataSetAttributes::HIDDENPOINT
+                                             : vtkDataSetAttributes::DUPLICATEPOINT);
+        }
+        image->GetPointData()->AddArray(marks);
+    } else {
+        vtkNew<vtkDoubleArray> sizes;
+        sizes->SetName("c");
+        for (const double size : {1.0, 2.0, -1.0}) sizes->InsertNextValue(size);
+        for (const int mark : {0, 1, 32}) marks->InsertNextValue(static_cast<unsigned char>(mark));
+        image->GetCellData()->AddArray(sizes);
+        image->GetCellData()->AddArray(marks);
+    }
+    write_grid<vtkXMLImageDataWriter>(folder / "h.vti", *image, h);
+    std::string said;
+    const auto sources = read_vtk_sources(
+        folder / "h.vti",
+        {.array = at_points ? "h" : "c", .remark = [&](const std::string& r) { said += r; }});
+    CHECK(sources.size() == (at_points ? 12 : 2));
+    CHECK_THAT(said, Contains(at_points ? "h.vti: 4 hidden points are left out"
+                                        : "h.vti: 1 hidden cells are left out"));
+    for (const PointSource& s : sources) CHECK(s.metric.xx == std::floor(1 + s.position.x()));
+    CHECK_THAT(error_of([&] { read_vtk_field(folder / "h.vti", at_points ? "h" : "c"); }),
+               Contains("is hidden"));
+}
+
 TEST_CASE("exported leaves, nodes and slices are sources again") {
     const ScratchDirectory folder;
     const auto space = filled(GENERATE("K_oL", "K_oV", "K_L"));
@@ -438,7 +559,7 @@ TEST_CASE("exported leaves, nodes and slices are sources again") {
     const auto slice = read_vtk_sources(folder / "slice.vti");
     check(slice, 31 * 31);
     for (const PointSource& s : slice) CHECK(s.position.z() == Approx(0.3));
-    const auto lengths = read_vtk_sources(folder / "slice.vti", "h_min");
+    const auto lengths = read_vtk_sources(folder / "slice.vti", {.array = "h_min"});
     for (std::size_t i = 0; i < slice.size(); ++i) {
         CHECK(lengths[i].metric.xx == Approx(eigen_frame(slice[i].metric).lengths[0]));
     }
@@ -500,6 +621,179 @@ TEST_CASE("between points with metrics a field is linear") {
     write_nodes(folder / "nodes.vtu", *filled("K_oV"));
     CHECK_THAT(error_of([&] { read_vtk_field(folder / "nodes.vtu"); }),
                Contains("cell 1 has no volume"));
+}
+
+TEST_CASE("the axes of an image may be turned, exchanged and mirrored") {
+    const ScratchDirectory folder;
+    const double unit = GENERATE(1.0, 1e-7);
+    const auto turn = [](double degrees, const Vector& axis) {
+        return Eigen::AngleAxisd(degrees * 3.14159265358979 / 180, axis.normalized()).matrix();
+    };
+    const Eigen::Matrix3d exchanged = (Eigen::Matrix3d() << 0, 1, 0, 1, 0, 0, 0, 0, 1).finished();
+    const Eigen::Matrix3d axes[] = {
+        Eigen::Matrix3d::Identity(), exchanged,           Eigen::Vector3d(1, 1, -1).asDiagonal(),
+        turn(120, {1, 1, 1}),        turn(90, {0, 1, 0}), turn(33, {1, 2, -0.5})};
+    const Eigen::Matrix3d& d = axes[GENERATE(range(0, 6))];
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(4, 3, 5);
+    image->SetExtent(-1, 2, 3, 5, 0, 4);
+    image->SetOrigin(-unit, 0.2 * unit, 3 * unit);
+    image->SetSpacing(0.5 * unit, unit, 0.25 * unit);
+    image->SetDirectionMatrix(d(0, 0), d(0, 1), d(0, 2), d(1, 0), d(1, 1), d(1, 2), d(2, 0),
+                              d(2, 1), d(2, 2));
+    const auto length_at = [&](const Point& p) {
+        return 9 + (0.1 * p.x() - 0.2 * p.y() + 0.3 * p.z()) / unit;
+    };
+    const auto point_at = [&](double i, double j, double k) {
+        Point p;
+        const std::array<double, 3> index{i, j, k};
+        image->TransformContinuousIndexToPhysicalPoint(index.data(), p.data());
+        return p;
+    };
+    write_grid<vtkXMLImageDataWriter>(folder / "h.vti", *image, length_at);
+    const auto field = read_vtk_field(folder / "h.vti", "h").field;
+    std::mt19937 random(1);
+    const auto between = [&](double low, double high) {
+        return std::uniform_real_distribution(low, high)(random);
+    };
+    for (int n = 0; n < 200; ++n) {
+        const Point p = point_at(between(-1, 2), between(3, 5), between(0, 4));
+        CHECK(metric_at(*field, p).xx == Approx(length_at(p)).epsilon(1e-9));
+        CHECK(field->domain().contains(p));
+    }
+    const Point corner = point_at(2, 5, 4);
+    CHECK(metric_at(*field, point_at(2.1, 5.2, 4.3)).xx == Approx(length_at(corner)).epsilon(1e-9));
+}
+
+/// Cells of a kind in [0, 2]^3: as VTK makes them, or one, slanted, from its parametric form.
+vtkSmartPointer<vtkUnstructuredGrid> cells_of(int kind) {
+    vtkNew<vtkGenericCell> cell;
+    const bool is_free = kind == VTK_CONVEX_POINT_SET || kind == VTK_POLYHEDRON;
+    cell->SetCellType(is_free ? VTK_HEXAHEDRON : kind);
+    if (kind >= VTK_LAGRANGE_CURVE) {
+        vtkNew<vtkCellTypeSource> cells;
+        cells->SetCellType(kind);
+        cells->SetBlocksDimensions(2, 2, 2);
+        cells->SetOutputPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+        cells->Update();
+        vtkSmartPointer<vtkUnstructuredGrid> grid = cells->GetOutput();
+        while (grid->GetPointData()->GetNumberOfArrays() > 0) grid->GetPointData()->RemoveArray(0);
+        return grid;
+    }
+    vtkNew<vtkUnstructuredGrid> grid;
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    std::vector<vtkIdType> corners;
+    Eigen::Matrix3d slant;
+    slant << 1.6, 0.2, 0.1, 0, 1.5, 0.2, 0.1, 0, 1.7;
+    if (kind == VTK_VOXEL) slant = Eigen::Vector3d(1.6, 1.5, 1.7).asDiagonal();
+    const double* places = cell->GetParametricCoords();
+    for (vtkIdType i = 0; i < cell->GetNumberOfPoints(); ++i) {
+        corners.push_back(i);
+        points->InsertNextPoint(Point(slant * Point(places + 3 * i)).data());
+    }
+    grid->SetPoints(points);
+    if (kind == VTK_POLYHEDRON) {
+        const std::array<vtkIdType, 30> faces{4, 0, 3, 2, 1, 4, 4, 5, 6, 7, 4, 0, 1, 5, 4,
+                                              4, 1, 2, 6, 5, 4, 2, 3, 7, 6, 4, 3, 0, 4, 7};
+        grid->InsertNextCell(kind, 8, corners.data(), 6, faces.data());
+    } else {
+        grid->InsertNextCell(kind, static_cast<vtkIdType>(corners.size()), corners.data());
+    }
+    return grid;
+}
+
+TEST_CASE("in cells of all kinds a field is what VTK's own probe finds") {
+    const ScratchDirectory folder;
+    const int kind = GENERATE(VTK_TETRA, VTK_VOXEL, VTK_HEXAHEDRON, VTK_WEDGE, VTK_PYRAMID,
+                              VTK_PENTAGONAL_PRISM, VTK_HEXAGONAL_PRISM, VTK_QUADRATIC_TETRA,
+                              VTK_QUADRATIC_HEXAHEDRON, VTK_QUADRATIC_WEDGE, VTK_QUADRATIC_PYRAMID,
+                              VTK_TRIQUADRATIC_HEXAHEDRON, VTK_QUADRATIC_LINEAR_WEDGE,
+                              VTK_BIQUADRATIC_QUADRATIC_WEDGE, VTK_BIQUADRATIC_QUADRATIC_HEXAHEDRON,
+                              VTK_TRIQUADRATIC_PYRAMID, VTK_CONVEX_POINT_SET, VTK_POLYHEDRON,
+                              VTK_LAGRANGE_TETRAHEDRON, VTK_LAGRANGE_HEXAHEDRON, VTK_LAGRANGE_WEDGE,
+                              VTK_BEZIER_TETRAHEDRON, VTK_BEZIER_HEXAHEDRON, VTK_BEZIER_WEDGE);
+    CAPTURE(kind);
+    const auto made = cells_of(kind);
+    vtkUnstructuredGrid& grid = *made;
+    REQUIRE(grid.GetNumberOfCells() > 0);
+    REQUIRE(grid.GetCellType(0) == kind);
+    while (grid.GetPointData()->GetNumberOfArrays() > 0) grid.GetPointData()->RemoveArray(0);
+    write_grid<vtkXMLUnstructuredGridWriter>(folder / "h.vtu", grid, [](const Point& p) {
+        return 3 + std::sin(2 * p.x()) - 0.5 * std::cos(3 * p.y() + p.z());
+    });
+    std::mt19937 random(1);
+    std::uniform_real_distribution between(0.0, 2.0);
+    vtkNew<vtkPoints> places;
+    places->SetDataTypeToDouble();
+    for (int n = 0; n < 300; ++n) {
+        const double x = between(random), y = between(random), z = between(random);
+        places->InsertNextPoint(x, y, z);
+    }
+    vtkNew<vtkPolyData> set;
+    set->SetPoints(places);
+    vtkNew<vtkProbeFilter> probe;
+    probe->SetInputData(set);
+    probe->SetSourceData(&grid);
+    probe->ComputeToleranceOff();  // by default, values near a cell are extrapolated from it
+    probe->SetTolerance(1e-12);
+    probe->Update();
+    const auto field = read_vtk_field(folder / "h.vtu", "h").field;
+    vtkPointData& found = *probe->GetOutput()->GetPointData();
+    // Shape functions of higher order may go below all values: the field does not.
+    const double finest = read_vtk_field(folder / "h.vtu", "h").finest_length;
+    std::size_t compared = 0;
+    for (vtkIdType i = 0; i < places->GetNumberOfPoints(); ++i) {
+        const double expected = value_at(found, "h", i);
+        if (value_at(found, probe->GetValidPointMaskArrayName(), i) == 0) continue;
+        const double h = metric_at(*field, Point(places->GetPoint(i))).xx;
+        CHECK(h >= finest);
+        if (expected < finest) continue;
+        // To VTK's iterations for parametric coordinates.
+        CHECK(h == Approx(expected).epsilon(1e-4));
+        ++compared;
+    }
+    CHECK(compared > 20);
+}
+
+TEST_CASE("cells may be as small as a unit makes them") {
+    const ScratchDirectory folder;
+    const double unit = GENERATE(1e-9, 1e9);
+    const int kind = GENERATE(VTK_TETRA, VTK_VOXEL, VTK_HEXAHEDRON, VTK_WEDGE, VTK_PYRAMID,
+                              VTK_QUADRATIC_TETRA, VTK_QUADRATIC_HEXAHEDRON);
+    CAPTURE(kind, unit);
+    const auto grid = cells_of(kind);
+    vtkPoints& points = *grid->GetPoints();
+    std::vector<Point> places;
+    for (vtkIdType i = 0; i < points.GetNumberOfPoints(); ++i) {
+        const Point p = unit * Point(points.GetPoint(i));
+        points.SetPoint(i, p.data());
+        places.push_back(p);
+    }
+    const auto length_at = [&](const Point& p) {
+        return 9 + (0.1 * p.x() - 0.2 * p.y() + 0.3 * p.z()) / unit;
+    };
+    write_grid<vtkXMLUnstructuredGridWriter>(folder / "h.vtu", *grid, length_at);
+    const auto field = read_vtk_field(folder / "h.vtu", "h").field;
+    const Point centre =
+        std::accumulate(places.begin(), places.end(), Point(0, 0, 0)) / double(places.size());
+    for (const Point& corner : places) {
+        const Point p = 0.7 * centre + 0.3 * corner;
+        CHECK(metric_at(*field, p).xx == Approx(length_at(p)).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("an image whose axes are in a plane is refused") {
+    const ScratchDirectory folder;
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(2, 2, 2);
+    write_grid<vtkXMLImageDataWriter>(folder / "h.vti", *image, [](const Point&) { return 1; });
+    std::string text = read_binary_file(folder / "h.vti");
+    const std::string axes = "Direction=\"1 0 0 0 1 0 0 0 1\"";
+    REQUIRE_THAT(text, Contains(axes));
+    text.replace(text.find(axes), axes.size(), "Direction=\"1 0 0 0 1 0 0 0 0\"");
+    const auto path = folder.file("flat.vti", text);
+    CHECK_THAT(error_of([&] { read_vtk_field(path, "h"); }), Contains("no basis of space"));
 }
 
 }  // namespace controlspace::vtk_test

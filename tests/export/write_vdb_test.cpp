@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/io/write_vdb.h"
 
 #include <openvdb/points/PointDataGrid.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A structure of one's own that is neither a tree nor a grid: a list of all sources, each evaluated
 // for every point. Its row makes it run wherever the catalogue's structures do.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A storage of one's own: a leaf holds a metric and its gradient. The field in a leaf is linear,
 // M (a + s·x), where M is the metric at the centre of the leaf and a + s·x a factor that is 1 there
 // and positive in the whole leaf.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A measure of one's own: control nodes for each cell. Results, CSV and tables follow from its row.
 #include <controlspace/baselines/catalogue.h>
 #include <controlspace/study/run.h>

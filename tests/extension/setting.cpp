@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A setting of one's own: `stretch`, a factor of the maximum leaf edge. The study file, the cases,
 // labels and results follow from its row.
 #include <controlspace/baselines/catalogue.h>

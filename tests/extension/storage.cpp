@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The storage of leaf_gradients.h in a kd-tree and an octree: inserted, graded, adapted, packed,
 // saved, measured.
 #include <controlspace/sources/sampled_surfaces.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The structure of brute_force.h over 100 sources answers what `direct`, which searches them, does.
 #include <controlspace/baselines/catalogue.h>
 #include <controlspace/metric/nonconformity.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/python3 -B
+# SPDX-License-Identifier: Apache-2.0
 """Faults for real: full disks, missing rights, folders that vanish, kill -9, two runs at once, little memory.
 
     faults.py PROGRAM [--kills N] [--cases N] [--only PART]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Saved control spaces whose size and checksum are right, whatever else is not. Inputs are changed
 // array by array, behind the compression; where there is none yet, a file is made that is whole.
 #define XXH_INLINE_ALL

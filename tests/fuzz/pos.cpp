@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/text/pos.h"
 
 #include "fuzz/fuzzing.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How gradation behaves when the unit of length, the origin or the names of the axes change: in an
 // oblong box far from the origin, with metrics that have no symmetry.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Nearest points against a search through all.
 #include "measure/nearest.h"
 

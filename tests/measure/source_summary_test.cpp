@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "measure/source_summary.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh in binary Medit files against the same in ASCII.
 #include <catch2/catch.hpp>
 

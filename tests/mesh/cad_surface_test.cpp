@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Curvatures of CAD parts, which are exact, against closed forms. Files are Gmsh's.
 #include "gmsh/cad_surface.h"
 

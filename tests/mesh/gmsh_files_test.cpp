@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that Gmsh itself wrote.
 #include <gmsh.h>
 
@@ -7,6 +8,7 @@
 #include <cstring>
 #include <fstream>
 #include <random>
+#include <set>
 
 #include "case_of_each.h"
 #include "controlspace/sources/riemannian.h"
@@ -34,8 +36,10 @@ std::vector<double> row_of(const Point& p, bool sizes) {
 }
 
 /// A box meshed by Gmsh, with data at its nodes, as Gmsh saves it.
-void write_by_gmsh(const std::filesystem::path& msh, bool sizes, bool binary, int views = 1) {
+void write_by_gmsh(const std::filesystem::path& msh, bool sizes, bool binary, int views = 1,
+                   double version = 4.1) {
     in_gmsh_session(1, [&] {
+        gmsh::option::setNumber("Mesh.MshFileVersion", version);
         gmsh::option::setNumber("Mesh.Binary", binary ? 1 : 0);
         gmsh::option::setNumber("Mesh.MeshSizeMax", 0.4);
         gmsh::model::occ::addBox(0, 0, 0, 1, 1, 2);
@@ -80,10 +84,10 @@ TEST_CASE("data at the nodes of a mesh by Gmsh are sources") {
     const bool sizes = GENERATE(true, false);
     const bool binary = GENERATE(false, true);
     const auto path = folder.path() / "box.msh";
-    write_by_gmsh(path, sizes, binary, 2);
+    write_by_gmsh(path, sizes, binary, 2, GENERATE(4.1, 2.2));
     CHECK_THAT(error_of([&] { read_msh_sources(path); }),
                Contains("2 of its views can be meant: name one of 'view 0', 'view 1'"));
-    const auto sources = read_msh_sources(path, "view 1");
+    const auto sources = read_msh_sources(path, {.array = "view 1"});
     CHECK(sources.size() > 50);
     check_sources(sources, sizes);
 }
@@ -93,9 +97,11 @@ TEST_CASE("data of the elements of a mesh by Gmsh are sources at their centres")
     const bool sizes = GENERATE(true, false);
     const bool binary = GENERATE(false, true);
     const int order = GENERATE(1, 2);
+    const double version = GENERATE(4.1, 2.2);
     const auto path = folder.path() / "box.msh";
     std::size_t count = 0;
     in_gmsh_session(1, [&] {
+        gmsh::option::setNumber("Mesh.MshFileVersion", version);
         gmsh::option::setNumber("Mesh.Binary", binary ? 1 : 0);
         gmsh::option::setNumber("Mesh.MeshSizeMax", 0.4);
         gmsh::option::setNumber("Mesh.SaveAll", 1);
@@ -128,9 +134,10 @@ TEST_CASE("data of the elements of a mesh by Gmsh are sources at their centres")
     CHECK(sources.size() == count);
     CHECK(count > 100);
     check_sources(sources, sizes);
-    CHECK(read_msh_sources(path, "of cells") == sources);
-    CHECK_THAT(error_of([&] { read_msh_sources(path, "other"); }), Contains("'of cells'"));
-    if (binary) return;
+    CHECK(read_msh_sources(path, {.array = "of cells"}) == sources);
+    CHECK_THAT(error_of([&] { read_msh_sources(path, {.array = "other"}); }),
+               Contains("'of cells'"));
+    if (binary || version < 4) return;
     const std::string text = read_text_file(path);
     // Gmsh writes the mesh twice: before the view and with it.
     const auto error = [&](const std::string& from, const std::string& to) {
@@ -149,6 +156,43 @@ TEST_CASE("data of the elements of a mesh by Gmsh are sources at their centres")
     CHECK_THAT(error(block + std::to_string(count), block + "2000000000"),
                Contains("Elements 2000"));
     CHECK_THAT(error(block + std::to_string(count), block + "1"), Contains("box.msh"));
+}
+
+TEST_CASE("data at the corners of elements by Gmsh are sources there") {
+    const ScratchDirectory folder;
+    const bool sizes = GENERATE(true, false);
+    const bool binary = GENERATE(false, true);
+    const double version = GENERATE(4.1, 2.2);
+    const auto path = folder.path() / "box.msh";
+    std::size_t nodes_of_tets = 0;
+    in_gmsh_session(1, [&] {
+        gmsh::option::setNumber("Mesh.MshFileVersion", version);
+        gmsh::option::setNumber("Mesh.Binary", binary ? 1 : 0);
+        gmsh::option::setNumber("Mesh.MeshSizeMax", 0.4);
+        gmsh::model::occ::addBox(0, 0, 0, 1, 1, 2);
+        gmsh::model::occ::synchronize();
+        gmsh::model::mesh::generate(3);
+        std::vector<std::size_t> tags, nodes;
+        gmsh::model::mesh::getElementsByType(4, tags, nodes);
+        std::vector<std::vector<double>> rows(tags.size());
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            std::vector<double> x, unused;
+            gmsh::model::mesh::getNode(nodes[i], x, unused);
+            const auto row = row_of(Point(x.data()), sizes);
+            rows[i / 4].insert(rows[i / 4].end(), row.begin(), row.end());
+        }
+        nodes_of_tets = std::set(nodes.begin(), nodes.end()).size();
+        gmsh::option::setNumber("Mesh.SaveAll", 1);
+        gmsh::write(path.string());
+        std::string model;
+        gmsh::model::getCurrent(model);
+        const int view = gmsh::view::add("of corners");
+        gmsh::view::addModelData(view, 0, model, "ElementNodeData", tags, rows, 0, sizes ? 1 : 9);
+        gmsh::view::write(view, path.string(), true);
+    });
+    const auto sources = read_msh_sources(path);
+    CHECK(sources.size() == nodes_of_tets);
+    check_sources(sources, sizes);
 }
 
 TEST_CASE("list views that Gmsh saved are sources") {
@@ -206,7 +250,7 @@ TEST_CASE("a .msh that lies or breaks off is refused") {
     };
     write_by_gmsh(path, true, false);
     const std::string text = read_text_file(path);
-    CHECK_THAT(error(altered(text, "4.1 0 8", "2.2 0 8")), Contains("box.msh:2: format '2.2'"));
+    CHECK_THAT(error(altered(text, "4.1 0 8", "4.0 0 8")), Contains("box.msh:2: format '4.0'"));
     CHECK_THAT(error("mesh"), Contains("does not start with $MeshFormat"));
     CHECK_THAT(error(text.substr(0, text.find("$EndNodes"))), Contains("no $NodeData"));
     CHECK_THAT(error(text.substr(0, text.find("$EndNodes") - 200)), Contains("cut off"));

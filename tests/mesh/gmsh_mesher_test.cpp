@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/gmsh/gmsh_mesher.h"
 
 #include <gmsh.h>
@@ -260,6 +261,23 @@ TEST_CASE("Gmsh fills a solid of a CAD file") {
     const auto none = std::make_shared<const Part>(part);
     CHECK_THAT(error_of([&] { mesh_with_gmsh(around_strips, field, {.part = none}); }),
                Contains("none.step"));
+}
+
+TEST_CASE("closed curves get three edges at least, however long lengths are") {
+    const ScratchDirectory folder;
+    const double h = GENERATE(5, 30, 1000);
+    Part part;
+    part.cad = folder.path() / "part.brep";
+    in_gmsh_session(1, [&] {
+        gmsh::model::occ::addCylinder(100, 0, 0, 0, 0, 30, 1);
+        gmsh::model::occ::synchronize();
+        gmsh::write(part.cad.string());
+    });
+    const FormulaField field([&](const Point&) { return Metric::isotropic(h); });
+    const MeshRun run =
+        mesh_with_gmsh(around_strips, field, {.part = std::make_shared<const Part>(part)});
+    // A prism over an equilateral triangle has 0.41 of the volume of its cylinder.
+    CHECK(volume(run.mesh) > 0.4 * M_PI * 30);
 }
 
 TEST_CASE("a .msh file holds the mesh, as Gmsh reads it") {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lengths as Gmsh's own size fields give them: of a grid that was written, and of the program
 // behind a pipe.
 #include <gmsh.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of meshes, read back by other means than they were written with.
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -12,6 +13,9 @@
 #include "sources/files.h"
 
 namespace controlspace::writers_test {
+
+using Catch::Matchers::Contains;
+
 namespace {
 
 const FormulaField skew(skew_metric);
@@ -55,6 +59,17 @@ TEST_CASE("Medit files hold vertices and Riemannian metrics, as their reader tak
         const Eigen::Matrix3d difference = sources[i].metric.matrix() - metrics[i].matrix();
         REQUIRE(difference.norm() < 1e-13);
     }
+}
+
+TEST_CASE("a Medit solution of isotropic metrics is one of sizes, unless tensors are kept") {
+    const ScratchDirectory folder;
+    const std::vector<Metric> sizes{Metric::isotropic(0.5), Metric::isotropic(0.25)};
+    const auto path = folder.path() / "a.sol";
+    write_medit_solution(path, sizes);
+    CHECK_THAT(read_text_file(path), Contains("1 1") && Contains("\n0.5 \n0.25 \n"));
+    CHECK(parse_medit_metrics(read_text_file(path), path) == sizes);
+    write_medit_solution(path, sizes, /*keep_tensors=*/true);
+    CHECK_THAT(read_text_file(path), Contains("1 3") && Contains("\n4 0 4 0 0 4 \n"));
 }
 
 TEST_CASE("a .vtu file holds the mesh, its metrics and its qualities") {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The algebra at the edges of what doubles can say, judged in long double.
 #include <Eigen/Dense>
 #include <array>

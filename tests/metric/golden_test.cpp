@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Golden numbers of the metric algebra: data/golden/metric_golden.csv, made in 60-digit arithmetic
 // by the script beside it.
 

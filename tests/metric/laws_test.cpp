@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How metrics behave when the unit of length or the names of the axes change.
 #include <catch2/catch.hpp>
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/metric/order_free_intersection.h"
 
 #include <algorithm>

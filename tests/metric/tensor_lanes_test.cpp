@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "metric/tensor_lanes.h"
 
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // To be run by mpirun with some ranks: all of them run all tests. Nothing may end a test early on
 // one rank alone (REQUIRE), or the others would wait for it.
 #define OMPI_SKIP_MPICXX 1

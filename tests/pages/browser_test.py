@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The report in a browser, where one is installed: nothing is wider than the page, narrow or wide,
 # light or dark.
 import html

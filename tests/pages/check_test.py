@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # bench/check: two runs of the same cases have the same results, but for times and rounding.
 import json
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The paper cell by cell: the page of kept results to the letter; what each rule, claim and rank says of
 # numbers that the kept results do not have; and what is refused.
 import csv

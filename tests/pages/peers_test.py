@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The page of foreign systems: that of kept results to the letter; every system is on it, with its numbers
 # or why it failed; its sentences follow from the numbers; its works are studies that the program can read.
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # End to end: a run of the program (the first argument), then both pages of its results.
 import json
 import subprocess

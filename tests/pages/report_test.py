@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # report.html: the numbers of its figures and tables are those of rows; it is well-formed, needs no
 # other file, and is written whole or not at all.
 import base64

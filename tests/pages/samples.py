@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Kept results, and rows like theirs with some numbers changed, for tests.
 import json
 import subprocess

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Laws that every foreign system keeps, whatever its own law of growth.
 #include <algorithm>
 #include <catch2/catch.hpp>

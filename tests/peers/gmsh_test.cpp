@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gmsh's fields as structures: each against its counterpart of the project, which another library
 // interpolates.
 #include <gmsh.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // controlspace-peers knows the rows of foreign systems in every command; controlspace does not.
 #include <catch2/catch.hpp>
 

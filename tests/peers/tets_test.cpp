@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Background meshes of CGAL's tetrahedra: laws of linear interpolation on them.
 #include <Eigen/Geometry>
 #include <algorithm>

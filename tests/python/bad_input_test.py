@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Python: what cannot be used is one ValueError that names it, and nothing crashes."""
 
 import pathlib

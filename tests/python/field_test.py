@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Python: fields answer as they were asked for, and the examples of the README run."""
 
 import copy

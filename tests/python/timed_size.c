@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Counts and times the calls of a size callback of Gmsh, for wheel_test.py. */
 #include <time.h>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The installed package with the gmsh and mmgpy of PyPI: meshes, and what a query costs.
 
 wheel_test.py LIBRARY    the compiled timed_size.c

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small random scenes over the whole catalogue, judged by sums in long double. CONTROLSPACE_SCENES
 // is the number of scenes for each structure (20 unless it is set), CONTROLSPACE_FIRST_SCENE the
 // seed of the first.

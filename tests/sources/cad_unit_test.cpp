@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The unit of length that CAD files say.
 #include "io/text/cad_unit.h"
 

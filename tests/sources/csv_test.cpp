@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/text/csv.h"
 
 #include <catch2/catch.hpp>
@@ -84,13 +85,55 @@ TEST_CASE("CSV in the ways that programs write it") {
           plain);
 }
 
+TEST_CASE("tables as ParaView, pandas, Excel and Fortran write them") {
+    const auto plain = parse("x,y,z,h\n1,2,3,0.5\n4,5,6,0.25\n");
+    const std::string text = GENERATE(
+        "\"h\",\"Points:0\",\"Points:1\",\"Points:2\"\n0.5,1,2,3\n0.25,4,5,6\n",
+        "\"Points_0\",\"Points_1\",\"Points_2\",\"h\"\n1,2,3,0.5\n4,5,6,0.25\n",
+        "x;y;z;h\n1;2,0;3;0,5\n4;5;6;0,25\n", "x;y;z;h\r\n1;2;3;0.5\r\n4;5;6;.25\r\n",
+        "x\ty\tz\th\n1\t2\t3\t0,5\n4\t5\t6\t0.25\n", ",x,y,z,h\n0,1,2,3,0.5\n1,4,5,6,0.25\n",
+        "index,x,y,z,name,h\n0,1,2,3,\"a, b\",0.5\n1,4,5,6,c,0.25\n",
+        "x,y,z,h\n1D0,2d+0,3.,5D-1\n4,5,6,0.025D1\n",
+        "x,y,z,h\n1,2,3,0.5\n,,,\n4,5,6,0.25\n , ,,\n", "x,y,z,h,\n1,2,3,0.5,\n4,5,6,0.25,\n",
+        "\"x\";\"y\";\"z\";\"h\"\n\"1\";\"2\";\"3\";\"0,5\"\n4;5;6;0,25");
+    CAPTURE(text);
+    CHECK(parse(text) == plain);
+    CHECK(parse_csv_points(text, "s.csv").size() == 2);
+}
+
+TEST_CASE("columns that are not read are named once") {
+    std::vector<std::string> said;
+    const auto read = [&](const std::string& text) {
+        said.clear();
+        parse_csv_sources(text, "s.csv",
+                          {.remark = [&](const std::string& r) { said.push_back(r); }});
+    };
+    read("id,x,y,z,h,g,\"a, b\"\n1,1,2,3,0.5,0,7\n2,1,2,3,0.5,0,7\n");
+    REQUIRE(said.size() == 1);
+    CHECK(said[0] == "s.csv: columns that are not read: 'id', 'a, b'");
+    read("x,y,z,h\n1,2,3,0.5\n");
+    CHECK(said.empty());
+    std::string wide = "x,y,z,h", row = "1,2,3,0.5";
+    for (int i = 0; i < 50; ++i) {
+        wide += ",c" + std::to_string(i);
+        row += ",0";
+    }
+    read(wide + "\n" + row + "\n");
+    CHECK_THAT(said.at(0), Catch::Matchers::EndsWith("'c19' and 30 more"));
+    CHECK_THAT(error_in("Points:0,Points:1,x,y,z,h\n1,2,1,2,3,1\n"), Contains("there twice"));
+    CHECK_THAT(error_in("x,y,z,h\n1,2,3,0,5\n"), Contains("5 columns instead of 4"));
+    CHECK_THAT(error_in("x;y;z;h\n1;2;3;0,5,1\n"), Contains("h = '0,5,1' is not a number"));
+    CHECK_THAT(error_in("x,y,z,h\n1,2,3,1d\n"), Contains("h = '1d' is not a number"));
+}
+
 TEST_CASE("CSV errors name the line and the fault") {
     CHECK_THAT(error_in(""), Contains("s.csv holds no sources"));
     CHECK_THAT(error_in("\n# nothing\n"), Contains("holds no sources"));
     CHECK_THAT(error_in("x,y,z,h\n"), Contains("holds no sources"));
-    CHECK_THAT(error_in("1,2,3,0.5\n"), Contains("s.csv:1: column '1' is none of x y z h"));
-    CHECK_THAT(error_in("x,y,z,size\n"), Contains("'size'"));
-    CHECK_THAT(error_in("x,y,z,h,\n"), Contains("column ''"));
+    CHECK_THAT(error_in("1,2,3,0.5\n"),
+               Contains("s.csv:1: column 'x' is missing: name the columns in the first line ('1', "
+                        "'2', '3', '0.5')"));
+    CHECK_THAT(error_in("x,y,z,size\n"), Contains("no metric") && Contains("'size'"));
     CHECK_THAT(error_in("x,y,h\n"), Contains("column 'z' is missing"));
     CHECK_THAT(error_in("x,y,z\n"), Contains("no metric"));
     CHECK_THAT(error_in("x,y,z,h,h\n"), Contains("'h' is there twice"));

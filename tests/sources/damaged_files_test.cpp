@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Readers of sources on files that were damaged.
 #include "damaged_files.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Binary Medit files against ASCII ones, and against bytes put together by hand.
 #include <catch2/catch.hpp>
 #include <limits>
@@ -129,8 +130,8 @@ TEST_CASE("what is wrong in a binary mesh is named with its place") {
     CHECK_THAT(error_in_mesh(MeditBytes(2).block(vertices_code, 4).integer(0).bytes()),
                Contains("Vertices 0: nothing to read"));
     std::string other_dimension = mesh_bytes(2, false);
-    other_dimension[16] = 2;
-    CHECK_THAT(error_in_mesh(other_dimension), Contains("Dimension is 2"));
+    other_dimension[16] = 4;
+    CHECK_THAT(error_in_mesh(other_dimension), Contains("Dimension is 4"));
     const auto with_first = [](double x) {
         return MeditBytes(2)
             .block(vertices_code, 32)

@@ -1,4 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/text/medit.h"
+
+#include <fmt/format.h>
 
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
@@ -57,6 +60,29 @@ TEST_CASE("a scalar of a solution is the size, a tensor the Riemannian metric") 
     CHECK(tensors[0].matrix().isApprox(m.matrix(), 1e-13));
 }
 
+TEST_CASE("planes, version 0 and capital letters, as BAMG writes them") {
+    const std::string head = GENERATE("MeshVersionFormatted 0\n\nDimension\n2\n\n",
+                                      "MESHVERSIONFORMATTED 1\nDIMENSION 2\nIdentifier\n\"a b\"\n");
+    CHECK(parse_medit_vertices(head + "Vertices\n2\n0 0.5 1\n-1 2e-3 7\nEnd\n", "m.mesh") ==
+          std::vector<Point>{{0, 0.5, 0}, {-1, 2e-3, 0}});
+    CHECK(parse_medit_vertices(head + "VERTICES 1 3 4 0 TRIANGLES 1 1 1 1 0 END", "m.mesh") ==
+          std::vector<Point>{{3, 4, 0}});
+    CHECK(parse_medit_metrics(head + "SolAtVertices 1 1 1 0.5 End", "m.sol") ==
+          std::vector{Metric::isotropic(0.5)});
+    // Lengths 0.5 along (0.6, 0.8) and 0.25 across it, in the plane.
+    const double a = 1 / 0.25, b = 1 / 0.0625;
+    const double xx = 0.36 * a + 0.64 * b, xy = 0.48 * (a - b), yy = 0.64 * a + 0.36 * b;
+    const auto tensors = parse_medit_metrics(
+        head + fmt::format("SOLATVERTICES 2 1 3 {} {} {} 4 0 4 END", xx, xy, yy), "m.sol");
+    REQUIRE(tensors.size() == 2);
+    CHECK(metric_length(tensors[0], {0.6, 0.8, 0}) == Approx(1 / 0.5));
+    CHECK(metric_length(tensors[0], {-0.8, 0.6, 0}) == Approx(1 / 0.25));
+    CHECK(metric_length(tensors[0], {0, 0, 1}) == Approx(1 / 0.5));
+    CHECK(tensors[1] == Metric::isotropic(0.5));
+    CHECK_THAT(error_in_solution(head + "SolAtVertices 1 1 3 1 2 1 End"),
+               Contains("is not positive definite"));
+}
+
 TEST_CASE("tensors in another order are found out") {
     // The same tensor in the order of MMG's programming interface, xx xy xz yy yz zz.
     const std::string text =
@@ -98,8 +124,8 @@ TEST_CASE("errors of a mesh name the place") {
     CHECK_THAT(error_in_mesh("solid stl\n"), Contains("m.mesh:1"));
     CHECK_THAT(error_in_mesh("MeshVersionFormatted 9\n"), Contains("1 to 4"));
     CHECK_THAT(error_in_mesh("MeshVersionFormatted two\n"), Contains("'two' instead of a count"));
-    CHECK_THAT(error_in_mesh("MeshVersionFormatted 2\nDimension 2\nVertices\n1\n0 0 0\n"),
-               Contains("m.mesh:2: Dimension is 2"));
+    CHECK_THAT(error_in_mesh("MeshVersionFormatted 2\nDimension 4\nVertices\n1\n0 0 0\n"),
+               Contains("m.mesh:2: Dimension is 4"));
     CHECK_THAT(error_in_mesh("MeshVersionFormatted 2\nVertices\n1\n0 0 0 0\n"),
                Contains("no Dimension before Vertices"));
     CHECK_THAT(error_in_mesh(mesh_head + "End\n"), Contains("m.mesh has no Vertices"));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/text/pos.h"
 
 #include <catch2/catch.hpp>
@@ -11,7 +12,7 @@ using Catch::Matchers::Contains;
 namespace {
 
 std::vector<PointSource> parsed(const std::string& text, const std::string& view = "") {
-    return parse_pos_sources(text, "v.pos", view);
+    return parse_pos_sources(text, "v.pos", {.array = view});
 }
 std::string error_in(const std::string& text, const std::string& view = "") {
     return error_of([&] { parsed(text, view); });
@@ -52,6 +53,37 @@ TEST_CASE("elements give a source at each corner, and shared corners one") {
               .size() == 4);
 }
 
+TEST_CASE("of several steps in time of a view the last is read, or the one that is named") {
+    std::string said;
+    const auto read = [&](const std::string& text, std::optional<std::uint64_t> step = {}) {
+        said.clear();
+        return parse_pos_sources(
+            text, "v.pos",
+            {.step = step, .remark = [&](const std::string& remark) { said += remark; }});
+    };
+    const std::string lines =
+        "View \"h\" {\nSL(0,0,0, 1,0,0){1,2, 3,4, 5,6};\nSP(2,0,0){7,8,9};\nTIME{0,0.5,1};\n};";
+    const auto source = [](double x, double h) {
+        return PointSource{{x, 0, 0}, Metric::isotropic(h)};
+    };
+    CHECK(read(lines) == std::vector{source(0, 5), source(1, 6), source(2, 9)});
+    CHECK_THAT(said, Contains("v.pos: view 'h' has 3 steps in time: the last is taken, number 2"));
+    CHECK(read(lines, 0) == std::vector{source(0, 1), source(1, 2), source(2, 7)});
+    CHECK(read(lines, 1) == std::vector{source(0, 3), source(1, 4), source(2, 8)});
+    CHECK(said.empty());
+    CHECK_THAT(error_of([&] { read(lines, 3); }),
+               Contains("v.pos: view 'h' has no step 3 in time: name one of 0, 1, 2"));
+    CHECK_THAT(error_in("View \"h\" {\nSP(0,0,0){1,1};\nSP(1,0,0){1};};"),
+               Contains("v.pos:3: 1 numbers instead of 2: of first order, and of 2 steps in time"));
+    CHECK_THAT(error_in("View \"h\" {\nSL(0,0,0,1,0,0){1,1,1};};"),
+               Contains("v.pos:2: 3 numbers instead of 2: of first order, and of 1 step"));
+    const std::string unit = "1,0,0,0,1,0,0,0,1", quarter = "4,0,0,0,4,0,0,0,4";
+    CHECK(parsed("View \"m\" {TP(0,0,0){" + unit + "," + quarter + "};};").front() ==
+          source(0, 0.5));
+    CHECK(read("View \"h\" {SP(0,0,0){1};};\n").size() == 1);
+    CHECK(said.empty());
+}
+
 TEST_CASE("of several views one is named") {
     const std::string two = "View \"a\" {SP(0,0,0){1};};\nView \"b\" {SP(0,0,0){2};};\n";
     CHECK(parsed(two, "b").front().metric == Metric::isotropic(2));
@@ -86,7 +118,6 @@ TEST_CASE("what is wrong in a view is named with its line") {
     };
     CHECK_THAT(element("VP(0,0,0){1,1,1};"), Contains("v.pos:2: 'VP' is no element"));
     CHECK_THAT(element("SP(0,0){1};"), Contains("2 numbers instead of 3"));
-    CHECK_THAT(element("SP(0,0,0){1,1};"), Contains("2 numbers instead of 1: of one step in time"));
     CHECK_THAT(element("SP(0,0,zero){1};"),
                Contains("v.pos:2: an element: 'zero' is not a number"));
     CHECK_THAT(element("SP(0,0,0){nan};"),

@@ -1,9 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files read in a child process first: what the child says, what it survives, what it may not do.
 #include "controlspace/io/require_readable.h"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <tbb/parallel_for.h>
 #include <unistd.h>
 
@@ -16,6 +19,7 @@
 #include <string>
 
 #include "controlspace/error.h"
+#include "files/child_process.h"
 #include "sources/files.h"
 
 namespace controlspace::require_readable_test {
@@ -68,6 +72,62 @@ TEST_CASE("A reader that crashes, ends or fails is an error that names the file"
     CHECK(error([] { std::abort(); }) == damaged);
     CHECK(error([] { std::_Exit(3); }) == damaged);
     CHECK(error([] { throw 1; }) == damaged);
+}
+
+TEST_CASE("How a child ends is known where the caller ignores or does not keep its children") {
+    const TextFile file;
+    struct sigaction before {};
+    struct sigaction ignoring {};
+    ignoring.sa_handler = GENERATE(true, false) ? SIG_IGN : SIG_DFL;
+    ignoring.sa_flags = SA_NOCLDWAIT;
+    ::sigaction(SIGCHLD, &ignoring, &before);
+    CHECK_NOTHROW(require_readable(file.path(), [] {}));
+    CHECK_THROWS_WITH(require_readable(file.path(), [] { throw InputError("no"); }), "no");
+    CHECK_THAT(error_of([&] { require_readable(file.path(), [] { std::abort(); }); }),
+               Catch::Matchers::Contains("is it damaged"));
+    const auto log = file.path().parent_path() / "log";
+    const auto ran = [&](const std::string& command) {
+        return run_child({"/bin/sh", "-c", command}, file.path().parent_path(), log, 60);
+    };
+    CHECK(ran("exit 0").succeeded());
+    CHECK(ran("exit 5").status == 5);
+    CHECK(ran("kill -SEGV $$").signal == SIGSEGV);
+    CHECK(run_child({"/bin/sleep", "60"}, file.path().parent_path(), log, 0.05).timed_out);
+    struct sigaction after {};
+    ::sigaction(SIGCHLD, &before, &after);
+    CHECK(after.sa_handler == ignoring.sa_handler);
+    CHECK((after.sa_flags & SA_NOCLDWAIT) != 0);
+}
+
+TEST_CASE("A child that another part of the program collects has not succeeded") {
+    const auto before = std::signal(SIGCHLD, [](int) {
+        while (::waitpid(-1, nullptr, WNOHANG) > 0) {
+        }
+    });
+    const TextFile file;
+    const ChildOutcome outcome = run_child({"/bin/sh", "-c", "exit 5"}, "/", file.path(), 60);
+    CHECK_FALSE(outcome.succeeded());
+    std::signal(SIGCHLD, before);
+}
+
+TEST_CASE("Pipes are refused, which libraries would wait for") {
+    const ScratchDirectory folder;
+    const auto pipe = folder.path() / "a.vtu";
+    REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+    CHECK_THAT(error_of([&] { require_readable(pipe, [] { FAIL("was read"); }); }),
+               Catch::Matchers::Contains("a.vtu: a pipe or a device"));
+}
+
+TEST_CASE("Where no file can be opened, the error says so") {
+    const TextFile file;
+    rlimit before{};
+    ::getrlimit(RLIMIT_NOFILE, &before);
+    const rlimit none{3, before.rlim_max};
+    ::setrlimit(RLIMIT_NOFILE, &none);
+    const std::string error = error_of([&] { require_readable(file.path(), [] {}); });
+    ::setrlimit(RLIMIT_NOFILE, &before);
+    CHECK_THAT(error, Catch::Matchers::Contains("a.txt: no process can be started to read it: Too "
+                                                "many open files"));
 }
 
 TEST_CASE("A reader that crashes ends, whatever the program does when it crashes itself") {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of lengths for meshers, read back by readers of our own that follow the formats'
 // descriptions. Gmsh, TetGen and Netgen themselves read them in tests/mesh and tests/cli.
 #include "io/text/size_files.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "files/text_file.h"
 
 #include <signal.h>
@@ -8,6 +9,7 @@
 #include <thread>
 
 #include "controlspace/io/read_sources.h"
+#include "files/output_file.h"
 #include "sources/files.h"
 
 namespace controlspace::text_file_test {
@@ -75,6 +77,36 @@ TEST_CASE("a zero byte is in no text, wherever it stands") {
     text.back() = '\0';
     CHECK_THAT(error_of([&] { read_text_file(scratch.file("late", text)); }),
                Contains("late holds a zero byte: give a text file"));
+}
+
+TEST_CASE("a file that is replaced leaves its mode to the new one") {
+    const ScratchDirectory folder;
+    const auto path = folder.path() / "a.txt";
+    const auto mode = [&] { return std::filesystem::status(path).permissions(); };
+    const auto write = [&](const std::filesystem::path& to) {
+        OutputFile file(to);
+        file.write("new");
+        file.commit();
+    };
+    using std::filesystem::perms;
+    for (const perms wanted : {perms(0600), perms(0640), perms(0666), perms(0755)}) {
+        std::ofstream(path) << "old";
+        std::filesystem::permissions(path, wanted);
+        write(path);
+        CHECK(mode() == wanted);
+        CHECK(read_text_file(path) == "new");
+    }
+    std::filesystem::create_symlink(path, folder.path() / "link");
+    std::filesystem::permissions(path, perms(0600));
+    write(folder.path() / "link");
+    CHECK(std::filesystem::is_symlink(folder.path() / "link"));
+    CHECK(mode() == perms(0600));
+
+    std::ofstream(path) << "old";
+    std::filesystem::permissions(path, perms(0444));
+    CHECK_THAT(error_of([&] { write(path); }), Contains("a.txt: it is write-protected"));
+    CHECK(read_text_file(path) == "old");
+    CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 2);
 }
 
 }  // namespace controlspace::text_file_test

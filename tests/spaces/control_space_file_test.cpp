@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/space/control_space_file.h"
 
 #include "case_of_each.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What gradation must not do: make the field longer, or forget a source.
 #include <Eigen/LU>
 #include <catch2/catch.hpp>

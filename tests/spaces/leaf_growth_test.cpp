@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Many sources at once, on any number of threads, make the tree that they make one by one: the same
 // nodes and metrics under the same numbers.
 #include <tbb/global_control.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A control space in one call, and the errors that a program can act on.
 #include "controlspace/space/make_control_space.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The paper's Tables 1 and 4 (Jurczyk & Głut), sphere at rho = 1 and rho = 0.2, and counts from an
 // independent rerun of its experiment (data/paper/reproduction.csv).
 #include <catch2/catch.hpp>

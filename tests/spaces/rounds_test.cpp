@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Insertion, gradation, building and queries over and over again on one builder take no memory that
 // is not given back. CONTROLSPACE_ROUNDS: how many rounds, 2000 unless given.
 #include <catch2/catch.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fields of structures as `compare` writes them, read back from their files.
 #include "study/sampled_fields.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sources of a study: primitives, files, limits of lengths.
 #include <catch2/catch.hpp>
 #include <cmath>

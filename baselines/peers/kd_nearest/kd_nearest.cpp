@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sources in nanoflann's kd-tree: what is written in an hour with SciPy's or nanoflann's
 // search.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "baselines/peers/nanovdb/dense_grid.h"
 
 #include <nanovdb/util/OpenToNanoVDB.h>

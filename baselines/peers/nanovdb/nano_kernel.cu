@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "baselines/peers/nanovdb/nano_kernel.h"
 #include "src/answer_on_gpu.cuh"
 

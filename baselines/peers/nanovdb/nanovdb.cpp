@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Dense grids of NanoVDB, in one block of memory each, which is only read; what renderers and GPUs
 // take: one of floats where a length is enough, two of vectors of floats, as those of
 // `openvdb-vec3s`, where metrics are needed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Netgen's LocalH: an octree of lengths, refined where sizes are restricted, one source after the
 // other, as Mesh::RestrictLocalH does. Its law is its own: a restriction counts only where it is
 // below 1/1.2 of what is held (a dead band of 20 %), and grows from box to box along the axes.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Control spaces for mesh generators in C and Fortran: a metric at every point of a box, built from
  * point sources.
  *

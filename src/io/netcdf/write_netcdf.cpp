@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/netcdf/write_netcdf.h"
 
 #include <netcdf.h>
@@ -15,10 +16,14 @@ namespace {
 /// A file of netCDF that is being written, by its functions that return a status.
 class NetcdfFile {
 public:
-    /// Of 64-bit data (CDF-5), which holds variables of more than 4 GB, without HDF5.
-    NetcdfFile(const std::filesystem::path& written, const std::filesystem::path& target)
+    /// Of 64-bit offsets (CDF-2), which SciPy opens too; of 64-bit data (CDF-5) where a variable
+    /// takes 4 GB or more. Neither is HDF5.
+    NetcdfFile(const std::filesystem::path& written, const std::filesystem::path& target,
+               std::size_t largest_variable)
         : target_(target) {
-        require(nc_create(written.string().c_str(), NC_CLOBBER | NC_64BIT_DATA, &id_));
+        constexpr std::size_t most = 4'000'000'000;
+        const int form = largest_variable < most ? NC_64BIT_OFFSET : NC_64BIT_DATA;
+        require(nc_create(written.string().c_str(), NC_CLOBBER | form, &id_));
     }
     ~NetcdfFile() {
         if (!is_closed_) nc_abort(id_);
@@ -57,7 +62,7 @@ void write_netcdf(const std::filesystem::path& path, const ControlSpace& space,
     require_room(path, raster.size() * sizeof(double));
     OutputFile output(path);
     output.finish();  // the library opens it itself
-    NetcdfFile file(output.written(), path);
+    NetcdfFile file(output.written(), path, raster.size() * sizeof(double));
     const int id = file.id();
     std::array<int, 2> dimensions{};  // rows, columns
     std::array<int, 2> of_axis{};

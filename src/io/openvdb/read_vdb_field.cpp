@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
 
@@ -129,8 +130,13 @@ std::string name_of(const Coord& voxel) {
     return fmt::format("({}, {}, {})", voxel.x(), voxel.y(), voxel.z());
 }
 
+/// As the grids are, or in the unit from which they were scaled.
 AnalyticField field_of(Grids grids, double elsewhere, double finest) {
-    return {std::make_shared<VoxelField>(std::move(grids), elsewhere), finest};
+    const double scale = scale_of(grids.base());
+    auto field = std::make_shared<VoxelField>(std::move(grids), elsewhere);
+    if (scale == 1) return {std::move(field), finest};
+    const std::shared_ptr<const ControlSpace> in_unit = scaled(*field, 1 / scale);
+    return {{in_unit.get(), [field, in_unit](const ControlSpace*) {}}, finest / scale};
 }
 
 AnalyticField tensor_field(const VdbFile& file) {
@@ -182,6 +188,8 @@ AnalyticField tensor_field(const VdbFile& file) {
 
 AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
     const auto grid = file.read_as<openvdb::FloatGrid>(what.grid);
+    // Lengths of densities are in the unit of the field, the others in that of the grid.
+    const double scale = scale_of(*grid);
     double finest = largest_magnitude;
     double coarsest = 0;
     for (auto value = grid->beginValueOn(); value; ++value) {
@@ -190,9 +198,9 @@ AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
             file.fail("grid '{}' holds {} at voxel {}: give finite numbers", what.grid, given,
                       name_of(value.getCoord()));
         }
-        const double h =
-            what.density ? length_of_density(given, what.density->finest, what.density->coarsest)
-                         : given;
+        const double h = what.density ? scale * length_of_density(given, what.density->finest,
+                                                                  what.density->coarsest)
+                                      : given;
         if (!is_length(h)) {
             file.fail("grid '{}' holds {} at voxel {}: lengths must be positive", what.grid, given,
                       name_of(value.getCoord()));
@@ -201,8 +209,8 @@ AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
         finest = std::min(finest, h);
         coarsest = std::max(coarsest, h);
     }
-    return field_of({grid, nullptr, nullptr}, what.density ? what.density->coarsest : coarsest,
-                    finest);
+    return field_of({grid, nullptr, nullptr},
+                    what.density ? scale * what.density->coarsest : coarsest, finest);
 }
 
 }  // namespace

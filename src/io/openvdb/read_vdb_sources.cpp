@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/VolumeToMesh.h>
@@ -78,6 +79,28 @@ void require_finite(const VdbFile& file, const openvdb::FloatGrid& grid) {
     }
 }
 
+/// Voxels that the surface crosses at the borders of tiles, each a cube of many voxels of one value
+/// that takes a few bytes of the file: by the values in the middle of what is beside their faces.
+double voxels_at_tiles(const openvdb::FloatGrid& grid, double isovalue) {
+    const auto values = grid.getConstAccessor();
+    double count = 0;
+    auto tile = grid.cbeginValueOn();
+    tile.setMaxDepth(openvdb::FloatGrid::ValueOnCIter::LEAF_DEPTH - 1);
+    for (; tile; ++tile) {
+        const openvdb::CoordBBox box = tile.getBoundingBox();
+        const openvdb::Coord middle = box.min() + (box.dim() >> 1);
+        for (int a = 0; a < 3; ++a) {
+            const double face = double(box.dim()[(a + 1) % 3]) * double(box.dim()[(a + 2) % 3]);
+            for (const int beside : {box.min()[a] - 1, box.max()[a] + 1}) {
+                openvdb::Coord voxel = middle;
+                voxel[a] = beside;
+                if ((values.getValue(voxel) < isovalue) != (*tile < isovalue)) count += face;
+            }
+        }
+    }
+    return count;
+}
+
 }  // namespace
 
 std::vector<PointSource> read_vdb_sources(const std::filesystem::path& path,
@@ -94,6 +117,14 @@ std::vector<PointSource> read_vdb_sources(const std::filesystem::path& path,
     const auto grid = file.read_as<openvdb::FloatGrid>(grid_of(file, surface));
     require_finite(file, *grid);
     const double isovalue = isovalue_of(file, *grid, surface);
+    constexpr double most =
+        2e6;  // a few seconds, and less than the memory of a small file's reader
+    if (const double count = voxels_at_tiles(*grid, isovalue); count > most) {
+        file.fail(
+            "grid '{}' has a surface of some {:.0f} million voxels at the borders of tiles, {:.0f} "
+            "can be read: resample it to larger voxels",
+            grid->getName(), count / 1e6, most / 1e6);
+    }
 
     std::vector<openvdb::Vec3s> vertices;
     std::vector<openvdb::Vec4I> quads;
@@ -130,6 +161,12 @@ std::vector<PointSource> read_vdb_sources(const std::filesystem::path& path,
                               sources[i] = {x, Metric::isotropic(h)};
                           }
                       });
+    const double scale = scale_of(*grid);
+    for (PointSource& source : sources) {
+        if (scale == 1) break;
+        source.position /= scale;
+        if (by_curvature) source.metric = (1 / scale) * source.metric;
+    }
     return sources;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Apart from vdb_points.cpp, as both take long to compile.
 #include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>

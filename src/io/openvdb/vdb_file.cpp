@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/openvdb/vdb_file.h"
 
 #include <fmt/format.h>
@@ -136,6 +137,35 @@ void VdbFile::require_usable(const openvdb::GridBase& grid) const {
         fail("grid '{}' lies where nothing can be computed ({}): resample it", grid.getName(),
              error.what());
     }
+}
+
+double scale_of(const openvdb::GridBase& grid) {
+    const auto note = grid.getMetadata<openvdb::DoubleMetadata>(scale_note);
+    const double scale = note ? note->value() : 1;
+    return scale > 0 && std::isfinite(scale) ? scale : 1;
+}
+
+std::unique_ptr<ControlSpace> scaled(const ControlSpace& field, double scale) {
+    class Scaled final : public ControlSpace {
+    public:
+        Scaled(const ControlSpace& field, double scale) : field_(field), scale_(scale) {}
+
+        void sample(std::span<const Point> x, std::span<Metric> out) const override {
+            std::vector<Point> places(x.begin(), x.end());
+            for (Point& p : places) p /= scale_;
+            field_.sample(places, out);
+            for (Metric& m : out) m = scale_ * m;
+        }
+        Box domain() const override {
+            const Box box = field_.domain();
+            return {scale_ * box.low, scale_ * box.high};
+        }
+
+    private:
+        const ControlSpace& field_;
+        const double scale_;
+    };
+    return std::make_unique<Scaled>(field, scale);
 }
 
 Box active_box(const openvdb::GridBase& grid) {

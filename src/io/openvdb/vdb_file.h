@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <fmt/format.h>
@@ -6,12 +7,14 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "controlspace/geometry/box.h"
 #include "controlspace/io/write_vdb.h"
+#include "controlspace/space/control_space.h"
 #include "refuse.h"
 
 namespace controlspace {
@@ -61,6 +64,15 @@ private:
     std::vector<std::string> names_;
     std::vector<std::string> types_;  ///< of values; "unknown type" where OpenVDB knows none
 };
+
+/// Metadatum of a grid whose places and lengths are multiplied by that number.
+inline constexpr const char* scale_note = "scale";
+
+/// That number; 1 where there is none.
+double scale_of(const openvdb::GridBase& grid);
+
+/// The field with places and lengths multiplied by `scale`; refers to `field`.
+std::unique_ptr<ControlSpace> scaled(const ControlSpace& field, double scale);
 
 /// Box of the active voxels, with their extent, in the world.
 Box active_box(const openvdb::GridBase& grid);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <openvdb/points/PointConversion.h>
 
 #include "io/openvdb/vdb_points.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/io/write_vdb.h"
 
 #include <fmt/format.h>
@@ -180,10 +181,34 @@ void share_trees(const std::vector<MetricGrid>& kinds, const openvdb::GridPtrVec
     }
 }
 
+/// The power of ten by which a voxel is multiplied: 1 where OpenVDB can have it as it is, whose
+/// transforms have a volume of more than 3e-15.
+double scale_of(double voxel) {
+    constexpr double smallest = 2e-5;
+    return voxel < smallest ? std::pow(10, std::ceil(-std::log10(voxel))) : 1;
+}
+
+VdbReport write_scaled(const std::filesystem::path& path, const ControlSpace& field,
+                       const Box& domain, VdbOptions options, double scale) {
+    const auto larger = scaled(field, scale);
+    std::vector<PointSource> sources(options.sources.begin(), options.sources.end());
+    for (PointSource& s : sources) s = {scale * s.position, scale * s.metric, s.growth};
+    options.sources = sources;
+    options.voxel *= scale;
+    options.notes.emplace_back(scale_note, scale);
+    VdbReport report = write_vdb(path, *larger, {scale * domain.low, scale * domain.high}, options);
+    report.scale = scale;
+    for (double* length : {&report.voxel, &report.finest, &report.coarsest}) *length /= scale;
+    return report;
+}
+
 }  // namespace
 
 VdbReport write_vdb(const std::filesystem::path& path, const ControlSpace& field, const Box& domain,
                     const VdbOptions& options) {
+    const double voxel = voxel_lattice(domain, options.voxel).voxel;
+    const double scale = scale_of(voxel);
+    if (scale != 1) return write_scaled(path, field, domain, options, scale);
     if (!std::isfinite(options.tolerance) || options.tolerance < 0) {
         refuse("a tolerance of {}: give a finite one, 0 or more", options.tolerance);
     }

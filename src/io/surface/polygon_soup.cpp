@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/surface/polygon_soup.h"
 
 #include <CGAL/IO/OFF.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/io/read_surface_sources.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/text/csv.h"
 
 #include <fmt/format.h>
@@ -6,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -41,10 +43,61 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(Scanner::blanks) - first + 1);
 }
 
-std::vector<std::string_view> fields_of(std::string_view line) {
-    std::vector<std::string_view> fields = split(line, ',');
-    for (std::string_view& field : fields) field = trimmed(field);
+/// The separator of a table, by its first line: the first of these that is not within quotes.
+char separator_of(std::string_view line) {
+    bool quoted = false;
+    for (const char c : line) {
+        if (c == '"') quoted = !quoted;
+        if (!quoted && (c == ',' || c == ';' || c == '\t')) return c;
+    }
+    return ',';
+}
+
+/// Without the quotes around them, within which separators are letters.
+std::vector<std::string_view> fields_of(std::string_view line, char separator) {
+    std::vector<std::string_view> fields;
+    if (line.find('"') == line.npos) {
+        fields = split(line, separator);
+    } else {
+        bool quoted = false;
+        std::size_t begin = 0;
+        for (std::size_t i = 0; i <= line.size(); ++i) {
+            if (i < line.size() && line[i] == '"') quoted = !quoted;
+            if (i < line.size() && (quoted || line[i] != separator)) continue;
+            fields.push_back(line.substr(begin, i - begin));
+            begin = i + 1;
+        }
+    }
+    for (std::string_view& field : fields) {
+        field = trimmed(field);
+        if (field.size() > 1 && field.front() == '"' && field.back() == '"') {
+            field = trimmed(field.substr(1, field.size() - 2));
+        }
+    }
     return fields;
+}
+
+/// A number as C++ reads it, or with Fortran's exponent (1D-3), or with a decimal comma where that
+/// is no separator.
+bool read_number(std::string_view field, char separator, double& value) {
+    if (parse_number(field, value)) return true;
+    std::string text(field);
+    for (char& c : text) {
+        if (c == 'd' || c == 'D') c = 'e';
+        if (c == ',' && separator != ',') c = '.';
+    }
+    return parse_number(text, value);
+}
+
+/// ParaView's names of coordinates.
+std::string plain_name(const std::string& name) {
+    constexpr std::array<std::string_view, 3> points{"points:", "points_", "point coordinates:"};
+    for (const std::string_view begin : points) {
+        if (name.size() != begin.size() + 1 || !name.starts_with(begin)) continue;
+        const char axis = name.back();
+        if (axis >= '0' && axis <= '2') return {static_cast<char>('x' + (axis - '0'))};
+    }
+    return name;
 }
 
 /// The rows of a table as values by name.
@@ -53,9 +106,11 @@ public:
     using Values = std::array<double, names.size()>;  ///< 0 where there is no such column
 
     /// Reads the names of the columns; those of metrics are passed over in a table of positions.
-    Table(std::string_view text, const std::filesystem::path& path, bool positions_alone)
+    /// `remark` is told the columns that are not read.
+    Table(std::string_view text, const std::filesystem::path& path, bool positions_alone,
+          const std::function<void(const std::string&)>& remark = {})
         : text_(text, path), positions_alone_(positions_alone) {
-        if (const auto line = next_line()) read_names(*line);
+        if (const auto line = next_line()) read_names(*line, remark);
     }
 
     const Columns& form() const { return form_; }
@@ -65,18 +120,22 @@ public:
         text_.fail(text, std::forward<Args>(args)...);
     }
 
-    /// The next row; none at the end.
+    /// The next row that is not blank; none at the end.
     const Values* next() {
-        const auto line = next_line();
-        if (!line) return nullptr;
-        const std::vector<std::string_view> fields = fields_of(*line);
+        std::vector<std::string_view> fields;
+        const auto is_blank = [](std::string_view field) { return field.empty(); };
+        do {
+            const auto line = next_line();
+            if (!line) return nullptr;
+            fields = fields_of(*line, separator_);
+        } while (std::ranges::all_of(fields, is_blank));
         if (fields.size() != name_of_column_.size()) {
             fail("{} columns instead of {}", fields.size(), name_of_column_.size());
         }
         for (std::size_t column = 0; column < fields.size(); ++column) {
             const std::size_t name = name_of_column_[column];
             if (name == absent) continue;
-            if (!parse_number(fields[column], values_[name])) {
+            if (!read_number(fields[column], separator_, values_[name])) {
                 fail("{} = {} is not a number", names[name], quote(fields[column]));
             }
             if (!is_coordinate(values_[name])) {
@@ -97,31 +156,35 @@ private:
         return std::nullopt;
     }
 
-    void read_names(std::string_view line) {
+    void read_names(std::string_view line, const std::function<void(const std::string&)>& remark) {
+        separator_ = separator_of(line);
         std::array<bool, names.size()> present{};
-        for (const std::string_view field : fields_of(line)) {
-            const std::string name = lower_case(std::string(field));
-            const auto index = static_cast<std::size_t>(
-                std::find(names.begin(), names.end(), name) - names.begin());
-            const bool ignored = positions_alone_ && index >= position.count;
-            name_of_column_.push_back(ignored ? absent : index);
-            if (ignored) continue;
+        std::vector<std::string> all, others;
+        for (const std::string_view field : fields_of(line, separator_)) {
+            const std::string name = plain_name(lower_case(std::string(field)));
+            auto index = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) -
+                                                  names.begin());
+            if (positions_alone_ && index >= position.count) index = absent;
+            name_of_column_.push_back(index);
+            all.push_back(quote(field));
             if (index == absent) {
-                fail("column {} is none of {}: name the columns in the first line", quote(name),
-                     fmt::join(names, " "));
+                others.push_back(quote(field));
+                continue;
             }
             if (present[index]) fail("column '{}' is there twice: drop one", name);
             present[index] = true;
         }
+        if (all.size() > most_named) all.resize(most_named);
         for (const Columns& c : {position, size, tensor, frame}) {
             const auto begin = present.begin() + static_cast<std::ptrdiff_t>(c.first);
             const auto end = begin + static_cast<std::ptrdiff_t>(c.count);
             if (c != position && std::find(begin, end, true) == end) continue;
             if (const auto missing = std::find(begin, end, false); missing != end) {
-                fail("column '{}' is missing{}",
+                fail("column '{}' is missing{} ({})",
                      names[static_cast<std::size_t>(missing - present.begin())],
                      c == position ? ": name the columns in the first line"
-                                   : " beside the others of its kind");
+                                   : " beside the others of its kind",
+                     fmt::join(all, ", "));
             }
             if (c == position) continue;
             if (form_.count > 0) {
@@ -130,12 +193,22 @@ private:
             form_ = c;
         }
         if (!positions_alone_ && form_.count == 0) {
-            fail("no metric: add a column h, or m_xx..m_yz, or h1..e2z");
+            fail("no metric: add a column h, or m_xx..m_yz, or h1..e2z ({})", fmt::join(all, ", "));
+        }
+        if (remark && !positions_alone_ && !others.empty()) {
+            const std::size_t left = others.size() - std::min(others.size(), most_named);
+            others.resize(others.size() - left);
+            remark(fmt::format("{}: columns that are not read: {}{}", text_.path().string(),
+                               fmt::join(others, ", "),
+                               left > 0 ? fmt::format(" and {} more", left) : ""));
         }
     }
 
+    static constexpr std::size_t most_named = 20;  ///< columns in a message
+
     Scanner text_;
     bool positions_alone_;
+    char separator_ = ',';
     std::vector<std::size_t> name_of_column_;  ///< index into `names`, or absent
     Columns form_{0, 0};
     Values values_{};
@@ -166,9 +239,9 @@ Metric metric_in_frame(std::span<const double> v, const Table& table) {
 
 }  // namespace
 
-std::vector<PointSource> parse_csv_sources(std::string_view text,
-                                           const std::filesystem::path& path) {
-    Table table(text, path, /*positions_alone=*/false);
+std::vector<PointSource> parse_csv_sources(std::string_view text, const std::filesystem::path& path,
+                                           const ReadOptions& options) {
+    Table table(text, path, /*positions_alone=*/false, options.remark);
     // In place, as there may be as many as fit into memory.
     std::vector<PointSource> sources;
     sources.reserve(static_cast<std::size_t>(std::ranges::count(text, '\n')));
@@ -201,8 +274,9 @@ std::vector<PointSource> parse_csv_sources(std::string_view text,
     return sources;
 }
 
-std::vector<PointSource> read_csv_sources(const std::filesystem::path& path) {
-    return parse_csv_sources(read_text_file(path), path);
+std::vector<PointSource> read_csv_sources(const std::filesystem::path& path,
+                                          const ReadOptions& options) {
+    return parse_csv_sources(read_text_file(path), path, options);
 }
 
 std::string csv_line_of(const std::filesystem::path& path, std::size_t index) {

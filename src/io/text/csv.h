@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -6,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "controlspace/io/read_sources.h"
 #include "controlspace/sources/point_source.h"
 
 namespace controlspace {
@@ -18,13 +20,17 @@ namespace controlspace {
 ///                                       lengths along e1, e2 and e1 x e2; the directions need not
 ///                                       be unit vectors but must be orthogonal to 1e-3.
 /// A column g, if there is one, gives each source a gradation ratio of its own (0: the field's).
-/// Separated by commas; blank lines and lines that start with # are skipped; lines end in LF or
-/// CRLF. Throws InputError "name:line: what is wrong".
-std::vector<PointSource> read_csv_sources(const std::filesystem::path& path);
+/// ParaView's names "Points:0" to "Points:2" stand for x, y, z. Other columns are not read, which
+/// `options.remark` is told. Separated by commas, or by semicolons or tabs, where numbers may have
+/// decimal commas; names and numbers may be quoted, exponents begin with e or d. Blank lines, rows
+/// of blanks and lines that start with # are skipped; lines end in LF or CRLF. Throws InputError
+/// "name:line: what is wrong".
+std::vector<PointSource> read_csv_sources(const std::filesystem::path& path,
+                                          const ReadOptions& options = {});
 
 /// The same from `text`; `path` is used in messages.
-std::vector<PointSource> parse_csv_sources(std::string_view text,
-                                           const std::filesystem::path& path);
+std::vector<PointSource> parse_csv_sources(std::string_view text, const std::filesystem::path& path,
+                                           const ReadOptions& options = {});
 
 /// The line (from 1) of the source of index `index` (from 0) in a file that was read.
 std::string csv_line_of(const std::filesystem::path& path, std::size_t index);

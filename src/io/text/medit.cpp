@@ -1,6 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/text/medit.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -26,13 +29,21 @@ void write_solution(MeditWriter& file, std::span<const Metric> metrics, bool siz
     file.finish();
 }
 
+/// A Riemannian metric of the plane, xx xy yy, with the longer of its lengths across the plane.
+std::vector<double> in_space(const std::vector<double>& m) {
+    const double mean = (m[0] + m[2]) / 2;
+    return {m[0], m[1], m[2], 0, 0, mean - std::hypot((m[0] - m[2]) / 2, m[1])};
+}
+
 }  // namespace
 
 std::vector<Point> parse_medit_vertices(std::string_view bytes, const std::filesystem::path& path) {
     MeditReader file(bytes, path);
-    std::vector<Point> vertices(file.find(medit_vertices, 3, 1));
+    std::vector<Point> vertices(file.find(medit_vertices, 2, 1), Point::Zero());
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-        for (double& x : vertices[i]) x = file.number({"vertex", i});
+        for (std::size_t a = 0; a < file.dimension(); ++a) {
+            vertices[i][static_cast<Axis>(a)] = file.number({"vertex", i});
+        }
         require_coordinates(vertices[i], "vertex", i + 1, [&] { return file.where(); });
         file.skip_reference({"vertex", i});
     }
@@ -50,11 +61,12 @@ std::vector<Metric> parse_medit_metrics(std::string_view bytes, const std::files
                   type);
     }
     const char* const what = type == scalar ? "size" : "tensor";
-    std::vector<double> numbers(type == scalar ? 1 : medit_tensor.numbers);
+    const bool is_plane = type == symmetric_tensor && file.dimension() == 2;
+    std::vector<double> numbers(type == scalar ? 1 : is_plane ? 3 : medit_tensor.numbers);
     MetricRows metrics([&] { return file.where(); }, medit_tensor);
     for (std::size_t i = 0; i < rows; ++i) {
         for (double& x : numbers) x = file.number({what, i});
-        metrics.add(numbers);
+        metrics.add(is_plane ? in_space(numbers) : numbers);
     }
     return metrics.take();
 }
@@ -111,9 +123,11 @@ std::vector<PointSource> parse_medit_required_edges(std::string_view bytes,
     return sources;
 }
 
-void write_medit_solution(const std::filesystem::path& path, std::span<const Metric> metrics) {
+void write_medit_solution(const std::filesystem::path& path, std::span<const Metric> metrics,
+                          bool keep_tensors) {
+    const bool sizes = !keep_tensors && std::ranges::all_of(metrics, is_isotropic);
     MeditWriter file(path, metrics.size() * medit_tensor.numbers * sizeof(double));
-    write_solution(file, metrics, /*sizes=*/false);
+    write_solution(file, metrics, sizes);
     file.commit();
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
@@ -31,8 +32,10 @@ std::vector<Point> parse_medit_vertices(std::string_view bytes, const std::files
 std::vector<Metric> parse_medit_metrics(std::string_view bytes, const std::filesystem::path& path);
 
 /// Writes `metrics`, those of a mesh's vertices in their order, as a solution of tensors, as MMG
-/// and refine read it. Throws InputError if that fails; no part of a file is left.
-void write_medit_solution(const std::filesystem::path& path, std::span<const Metric> metrics);
+/// and refine read it; of sizes where all are isotropic, unless tensors are to be kept. Throws
+/// InputError if that fails; no part of a file is left.
+void write_medit_solution(const std::filesystem::path& path, std::span<const Metric> metrics,
+                          bool keep_tensors = false);
 
 /// Writes `sources` as two files, of which `path` names one (.mesh, .sol, .meshb or .solb): a mesh
 /// of vertices alone and its solution, of sizes where all sources are isotropic and of tensors

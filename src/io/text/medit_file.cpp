@@ -1,5 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/text/medit_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -10,7 +12,7 @@ namespace controlspace {
 namespace {
 
 constexpr std::int32_t cookie = 1, swapped_cookie = 1 << 24;
-constexpr MeditKeyword dimension{"Dimension", 3}, end{"End", 54};
+constexpr MeditKeyword dimension_word{"Dimension", 3}, end{"End", 54};
 
 std::int32_t first_word(std::string_view bytes) {
     std::int32_t word = 0;
@@ -23,6 +25,12 @@ bool is_binary(std::string_view bytes) {
     return word == cookie || word == swapped_cookie;
 }
 
+/// In capital letters or not: without a copy, as all words of a file are compared.
+bool are_same_words(std::string_view a, std::string_view b) {
+    const auto small = [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 'a' - 'A') : c; };
+    return a.size() == b.size() && std::ranges::equal(a, b, {}, small, small);
+}
+
 }  // namespace
 
 MeditReader::MeditReader(std::string_view bytes, const std::filesystem::path& path)
@@ -31,11 +39,14 @@ MeditReader::MeditReader(std::string_view bytes, const std::filesystem::path& pa
         data_.set_binary(true, first_word(bytes) == swapped_cookie);
         data_.number<std::int32_t>("the cookie");
         next_ = 2 * sizeof cookie;
-    } else if (data_.word() != "MeshVersionFormatted") {
+    } else if (!are_same_words(data_.word(), "MeshVersionFormatted")) {
         fail("does not start with MeshVersionFormatted: give a Medit file");
     }
     version_ = integer(false, "the version");
-    if (version_ < 1 || version_ > 4) fail("the version is {}: only 1 to 4 can be read", version_);
+    // BAMG writes version 0, in text alone.
+    if (version_ < (data_.is_binary() ? 1 : 0) || version_ > 4) {
+        fail("the version is {}: only 1 to 4 can be read", version_);
+    }
 }
 
 bool MeditReader::next_block() {
@@ -59,20 +70,20 @@ bool MeditReader::next_block() {
 }
 
 bool MeditReader::is_at(const MeditKeyword& keyword) const {
-    return data_.is_binary() ? code_ == keyword.code : word_ == keyword.word;
+    return data_.is_binary() ? code_ == keyword.code : are_same_words(word_, keyword.word);
 }
 
 std::size_t MeditReader::find(const MeditKeyword& keyword, std::size_t reals,
                               std::size_t integers) {
-    bool is_3d = false;
+    dimension_ = 0;
     while (next_block()) {
-        if (is_at(dimension)) {
+        if (is_at(dimension_word)) {
             const std::int64_t n = integer(false, "Dimension");
-            if (n != 3) fail("Dimension is {}: only 3 can be read", n);
-            is_3d = true;
+            if (n != 2 && n != 3) fail("Dimension is {}: only 2 and 3 can be read", n);
+            dimension_ = static_cast<std::size_t>(n);
         }
         if (!is_at(keyword)) continue;
-        if (!is_3d) fail("no Dimension before {}: add 'Dimension 3'", keyword.word);
+        if (dimension_ == 0) fail("no Dimension before {}: add 'Dimension 3'", keyword.word);
         const std::int64_t rows = integer(version_ >= 4, keyword.word);
         if (rows <= 0) fail("{} {}: nothing to read", keyword.word, rows);
         const std::size_t row_bytes =
@@ -128,7 +139,7 @@ MeditWriter::MeditWriter(const std::filesystem::path& path, std::size_t data_byt
     file_.write_raw(cookie);
     file_.write_raw(std::int32_t{wide_ ? 3 : 2});
     size_ = 2 * sizeof cookie;
-    begin_block(dimension.code, sizeof(std::int32_t));
+    begin_block(dimension_word.code, sizeof(std::int32_t));
     file_.write_raw(std::int32_t{3});
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -28,13 +29,17 @@ inline constexpr MeditKeyword medit_vertices{"Vertices", 4}, medit_edges{"Edges"
 inline constexpr std::size_t medit_vertex_bytes = 3 * sizeof(double) + sizeof(std::int32_t);
 
 /// Reads a Medit mesh or solution, which the first bytes show to be text (.mesh, .sol: words
-/// between white space, whatever the lines; # starts a comment) or binary (.meshb, .solb; versions
-/// 1 to 4 in either byte order: blocks of a keyword's number, where the next block begins, and
-/// data). Counts, indices and offsets are checked against the file's size before they are used.
+/// between white space, whatever the lines and the case of letters; # starts a comment) or binary
+/// (.meshb, .solb; versions 1 to 4 in either byte order: blocks of a keyword's number, where the
+/// next block begins, and data). Counts, indices and offsets are checked against the file's size
+/// before they are used.
 class MeditReader {
 public:
     /// Reads the head; `bytes` and `path` must outlive this.
     MeditReader(std::string_view bytes, const std::filesystem::path& path);
+
+    /// 2 or 3, of what `find` went to.
+    std::size_t dimension() const { return dimension_; }
 
     /// Goes behind `keyword`, whatever stands before, and returns the count of its rows, which is
     /// positive. A row has so many real numbers and integers, or more.
@@ -65,9 +70,10 @@ private:
     std::string_view bytes_;
     Scanner data_;
     std::int64_t version_ = 1;
-    std::string_view word_;  ///< the keyword that was read last, in text
-    std::int64_t code_ = 0;  ///< the same, in binary data
-    std::size_t next_ = 0;   ///< where the next binary block begins
+    std::size_t dimension_ = 0;  ///< 0: not known yet
+    std::string_view word_;      ///< the keyword that was read last, in text
+    std::int64_t code_ = 0;      ///< the same, in binary data
+    std::size_t next_ = 0;       ///< where the next binary block begins
 };
 
 /// The numbers of the vertices, of which there are so many, of all elements of a kind, from 0.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/text/metric_rows.h"
 
 #include <fmt/format.h>
@@ -6,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "controlspace/sources/riemannian.h"
 #include "refuse.h"
@@ -89,6 +91,14 @@ std::vector<PointSource> sources_from(std::span<const Point> positions,
     std::vector<PointSource> sources(positions.size());
     for (std::size_t i = 0; i < sources.size(); ++i) sources[i] = {positions[i], metrics[i]};
     return sources;
+}
+
+void drop_repeated(std::vector<PointSource>& sources) {
+    std::set<std::array<double, 9>> seen;
+    std::erase_if(sources, [&](const PointSource& source) {
+        const auto& [p, m, growth] = source;
+        return !seen.insert({p.x(), p.y(), p.z(), m.xx, m.yy, m.zz, m.xy, m.xz, m.yz}).second;
+    });
 }
 
 }  // namespace controlspace

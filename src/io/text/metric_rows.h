@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -94,5 +95,8 @@ void require_coordinates(const Point& x, std::string_view what, std::size_t numb
 /// Both have the same size.
 std::vector<PointSource> sources_from(std::span<const Point> positions,
                                       std::span<const Metric> metrics);
+
+/// Of sources with the same place and metric only the first is kept.
+void drop_repeated(std::vector<PointSource>& sources);
 
 }  // namespace controlspace

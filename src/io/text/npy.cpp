@@ -1,7 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/text/npy.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cerrno>
@@ -59,6 +61,7 @@ std::string_view value_of(std::string_view header, std::string_view key, std::st
 
 struct Shape {
     std::size_t rows = 0, columns = 0;
+    bool is_float = false;  ///< of 32 bits
 };
 
 Shape read_header(Bytes& bytes, const std::filesystem::path& path) {
@@ -72,13 +75,14 @@ Shape read_header(Bytes& bytes, const std::filesystem::path& path) {
     constexpr std::uint32_t most = 1 << 16;
     if (size > most) refuse_at(path, "its header is damaged: save it again by numpy.save");
     const std::string header = bytes.text(size);
-    if (value_of(header, "descr", ",") != "'<f8'") {
-        refuse_at(path, "it holds no doubles: save array.astype('<f8')");
+    const std::string_view type = value_of(header, "descr", ",");
+    if (type != "'<f8'" && type != "'<f4'") {
+        refuse_at(path, "it holds no floats or doubles: save array.astype('<f8')");
     }
     if (value_of(header, "fortran_order", ",") != "False") {
         refuse_at(path, "it is stored by columns: save numpy.ascontiguousarray(array)");
     }
-    Shape shape;
+    Shape shape{.is_float = type == "'<f4'"};
     const std::string_view both = value_of(header, "shape", ")");  // "(2, 5"
     const std::size_t comma = both.find(", ");
     const bool are_two = both.starts_with('(') && comma != both.npos &&
@@ -121,11 +125,12 @@ std::string npy_header(std::string_view shape) {
 }
 
 std::vector<PointSource> read_npy_sources(const std::filesystem::path& path) {
+    require_no_stream(path);
     Bytes bytes(path);
-    const auto [rows, columns] = read_header(bytes, path);
+    const auto [rows, columns, is_float] = read_header(bytes, path);
     // Before memory is allocated for them.
-    const std::uintmax_t numbers =
-        (std::filesystem::file_size(path) - bytes.position()) / sizeof(double);
+    const std::uintmax_t numbers = (std::filesystem::file_size(path) - bytes.position()) /
+                                   (is_float ? sizeof(float) : sizeof(double));
     if (numbers / columns < rows) {
         refuse_at(path, "it has {} of {} rows: save it again by numpy.save", numbers / columns,
                   rows);
@@ -134,8 +139,14 @@ std::vector<PointSource> read_npy_sources(const std::filesystem::path& path) {
     sources.reserve(rows);
     std::array<double, 5> row{};
     const std::span<double> used = std::span(row).first(columns);
+    std::array<float, 5> narrow{};
     for (std::size_t i = 0; i < rows; ++i) {
-        bytes.read(used.data(), used.size_bytes());
+        if (is_float) {
+            bytes.read(narrow.data(), columns * sizeof(float));
+            std::copy_n(narrow.begin(), columns, row.begin());
+        } else {
+            bytes.read(used.data(), used.size_bytes());
+        }
         sources.push_back(source_of(used, i, path));
     }
     return sources;

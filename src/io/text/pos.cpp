@@ -1,10 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/text/pos.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <set>
+#include <cstdint>
+#include <numeric>
 
 #include "files/output_file.h"
 #include "files/text_file.h"
@@ -25,9 +27,9 @@ std::size_t corners_of(char letter) {
 
 class Parser {
 public:
-    Parser(std::string_view text, const std::filesystem::path& path, const std::string& view)
+    Parser(std::string_view text, const std::filesystem::path& path, const ReadOptions& options)
         : text_(text, path, "//"),
-          view_(view),
+          options_(options),
           metrics_([&] { return text_.where(); }, matrix_rows) {}
 
     std::vector<PointSource> sources() {
@@ -36,7 +38,7 @@ public:
             read_view();
         }
         if (names_.empty()) text_.fail("no View: give a list view of Gmsh");
-        chosen_array(text_.path(), "views", names_, view_);
+        chosen_array(text_.path(), "views", names_, options_.array);
         if (places_.empty()) refuse("{} holds no sources: add some", text_.path().string());
         return sources_from(places_, metrics_.take());
     }
@@ -47,9 +49,17 @@ private:
         if (std::find(names_.begin(), names_.end(), its_name) == names_.end()) {
             names_.push_back(its_name);
         }
-        const bool is_chosen = view_.empty() ? names_.size() == 1 : its_name == view_;
+        const std::string& wanted = options_.array;
+        const bool is_chosen = wanted.empty() ? names_.size() == 1 : its_name == wanted;
         text_.expect("{");
-        while (!text_.accept("}")) read_element(is_chosen);
+        while (!text_.accept("}")) {
+            if (text_.accept("TIME")) {
+                read_numbers("{", "}", values_);
+                text_.expect(";");
+            } else {
+                read_element(is_chosen);
+            }
+        }
         text_.accept(";");
     }
 
@@ -63,33 +73,44 @@ private:
         }
         text_.expect(word);
         const std::size_t numbers = is_scalar ? 1 : matrix_rows.numbers;
-        read_numbers("(", ")", coordinates_, 3 * corners);
-        read_numbers("{", "}", values_, numbers * corners);
+        read_numbers("(", ")", coordinates_);
+        require_count(coordinates_, 3 * corners);
+        read_numbers("{", "}", values_);
+        const std::size_t in_step = numbers * corners;
+        if (is_chosen && steps_ == 0) choose_step(values_.size() / in_step);
+        if (is_chosen) require_count(values_, in_step * steps_);
         const auto where = [&] { return text_.where(); };
         for (std::size_t i = 0; i < corners; ++i) {
             const Point x(&coordinates_[3 * i]);
             require_coordinates(x, "corner", i + 1, where);
             if (!is_chosen) continue;
             places_.push_back(x);
-            metrics_.add(std::span(values_).subspan(numbers * i, numbers));
+            metrics_.add(std::span(values_).subspan(in_step * step_ + numbers * i, numbers));
         }
         text_.expect(";");
     }
 
-    void read_numbers(std::string_view open, std::string_view close, std::vector<double>& numbers,
-                      std::size_t count) {
+    /// Of the first element of the chosen view, which has values in so many steps in time.
+    void choose_step(std::size_t count) {
+        steps_ = std::max<std::size_t>(count, 1);
+        std::vector<std::uint64_t> numbers(steps_);
+        std::iota(numbers.begin(), numbers.end(), 0);
+        step_ = chosen_step(text_.path(), names_.back(), numbers, options_.step, options_.remark);
+    }
+
+    void read_numbers(std::string_view open, std::string_view close, std::vector<double>& numbers) {
         numbers.clear();
         text_.expect(open);
         do {
             numbers.push_back(text_.number<double>("an element", ",(){}; \t\r\n"));
         } while (text_.accept(","));
         text_.expect(close);
-        if (numbers.size() != count) {
-            text_.fail(
-                "{} numbers instead of {}: of one step in time, and of first "
-                "order",
-                numbers.size(), count);
-        }
+    }
+
+    void require_count(const std::vector<double>& numbers, std::size_t count) const {
+        if (numbers.size() == count) return;
+        text_.fail("{} numbers instead of {}: of first order, and of {} {} in time", numbers.size(),
+                   count, std::max<std::size_t>(steps_, 1), steps_ > 1 ? "steps" : "step");
     }
 
     std::string name() {
@@ -102,9 +123,11 @@ private:
     }
 
     Scanner text_;
-    const std::string& view_;
+    const ReadOptions& options_;
     std::vector<std::string> names_;
     std::vector<double> coordinates_, values_;  ///< of one element
+    std::size_t steps_ = 0;                     ///< of the chosen view; 0: not known yet
+    std::size_t step_ = 0;                      ///< place of the chosen one
     std::vector<Point> places_;
     MetricRows metrics_;
 };
@@ -112,19 +135,15 @@ private:
 }  // namespace
 
 std::vector<PointSource> parse_pos_sources(std::string_view text, const std::filesystem::path& path,
-                                           const std::string& view) {
-    std::vector<PointSource> sources = Parser(text, path, view).sources();
-    std::set<std::array<double, 9>> seen;
-    std::erase_if(sources, [&](const PointSource& source) {
-        const auto& [p, m, growth] = source;
-        return !seen.insert({p.x(), p.y(), p.z(), m.xx, m.yy, m.zz, m.xy, m.xz, m.yz}).second;
-    });
+                                           const ReadOptions& options) {
+    std::vector<PointSource> sources = Parser(text, path, options).sources();
+    drop_repeated(sources);
     return sources;
 }
 
 std::vector<PointSource> read_pos_sources(const std::filesystem::path& path,
-                                          const std::string& view) {
-    return parse_pos_sources(read_text_file(path), path, view);
+                                          const ReadOptions& options) {
+    return parse_pos_sources(read_text_file(path), path, options);
 }
 
 void write_pos_sources(const std::filesystem::path& path, std::span<const PointSource> sources) {

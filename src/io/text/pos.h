@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <filesystem>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
+#include "controlspace/io/read_sources.h"
 #include "controlspace/sources/point_source.h"
 #include "controlspace/space/control_space.h"
 
@@ -16,14 +17,14 @@ namespace controlspace {
 /// (second letter P L T Q S H I Y). Scalars (S) are sizes h; tensors (T), nine numbers by rows, are
 /// Riemannian metrics M^-2. Corners that elements share, with the same value, make one source.
 ///
-/// `view` names the view; empty: the only one. Throws InputError "name:line: what is wrong", or
-/// naming the tensor that is not positive definite.
+/// `options` name the view and its step in time (from 0; TIME{...} is passed over). Throws
+/// InputError "name:line: what is wrong", or naming the tensor that is not positive definite.
 std::vector<PointSource> read_pos_sources(const std::filesystem::path& path,
-                                          const std::string& view = {});
+                                          const ReadOptions& options = {});
 
 /// The same from `text`; `path` is used in messages.
 std::vector<PointSource> parse_pos_sources(std::string_view text, const std::filesystem::path& path,
-                                           const std::string& view = {});
+                                           const ReadOptions& options = {});
 
 /// Writes `sources` as such a view: points with sizes where all are isotropic, with tensors
 /// otherwise. Throws InputError if that fails; no part of a file is left.

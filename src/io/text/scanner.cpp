@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "io/text/scanner.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lengths on regular grids (Gmsh's Structured, JIGSAW's EUCLIDEAN-GRID), and at points (Netgen).
 #include "io/text/size_files.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include <optional>
@@ -57,24 +58,25 @@ std::string lower_case_extension(const std::filesystem::path& path) {
     return lower_case(path.extension().string());
 }
 
-std::vector<PointSource> read_sources(const std::filesystem::path& path, const std::string& array) {
+std::vector<PointSource> read_sources(const std::filesystem::path& path,
+                                      const ReadOptions& options) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) refuse_at(path, "no such file");
     if (std::filesystem::is_directory(path, ignored)) {
         refuse("{} is a directory: name a file", path.string());
     }
     const std::string extension = lower_case_extension(path);
-    if (extension == ".csv") return read_csv_sources(path);
+    if (extension == ".csv") return read_csv_sources(path, options);
     if (extension == ".npy") return read_npy_sources(path);
     if (extension == ".mesh") return read_medit_mesh(path, ".sol", ".solb");
     if (extension == ".sol") return read_medit_sources(mesh_of(path, ".mesh", ".meshb"), path);
     if (extension == ".meshb") return read_medit_mesh(path, ".solb", ".sol");
     if (extension == ".solb") return read_medit_sources(mesh_of(path, ".meshb", ".mesh"), path);
-    if (extension == ".pos") return read_pos_sources(path, array);
-    if (extension == ".msh") return read_msh_sources(path, array);
+    if (extension == ".pos") return read_pos_sources(path, options);
+    if (extension == ".msh") return read_msh_sources(path, options);
     // A pipe, as of <(command), has a name that says nothing.
     if (path == "/dev/stdin" || !std::filesystem::is_regular_file(path, ignored)) {
-        return read_csv_sources(path);
+        return read_csv_sources(path, options);
     }
     refuse_at(path, "name a .csv, a .npy, a .mesh beside a .sol, a .pos or a .msh");
 }

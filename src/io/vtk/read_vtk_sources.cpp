@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/io/read_vtk_sources.h"
 
 #include <fmt/format.h>
@@ -7,27 +8,39 @@
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
+#include <vtkDataSetAttributes.h>
+#include <vtkDataSetReader.h>
 #include <vtkExecutive.h>
 #include <vtkGenericCell.h>
 #include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkLogger.h>
+#include <vtkMatrix3x3.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkPointSet.h>
+#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkStaticCellLocator.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <memory>
 #include <new>
+#include <numeric>
 #include <span>
 #include <string_view>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "controlspace/io/read_sources.h"
 #include "files/text_file.h"
@@ -71,17 +84,35 @@ private:
 };
 
 template <class Reader>
-vtkSmartPointer<vtkDataSet> read_data_set(const std::filesystem::path& path) {
+vtkSmartPointer<vtkDataSet> read_data_set(const std::filesystem::path& path,
+                                          const ReadOptions& options) {
     vtkNew<Reader> reader;
     ErrorLog errors;
     for (const auto event : {vtkCommand::ErrorEvent, vtkCommand::WarningEvent}) {
         reader->AddObserver(event, errors.command());
         reader->GetExecutive()->AddObserver(event, errors.command());
     }
-    reader->SetReaderErrorObserver(errors.command());
-    reader->SetParserErrorObserver(errors.command());
+    if constexpr (std::is_same_v<Reader, vtkDataSetReader>) {
+        reader->ReadAllScalarsOn();  // not the first array alone
+        reader->ReadAllTensorsOn();
+        reader->ReadAllFieldsOn();
+    } else {
+        reader->SetReaderErrorObserver(errors.command());
+        reader->SetParserErrorObserver(errors.command());
+    }
     reader->SetFileName(path.c_str());
     try {
+        if constexpr (!std::is_same_v<Reader, vtkDataSetReader>) {
+            reader->UpdateInformation();
+            std::vector<std::uint64_t> steps(
+                static_cast<std::size_t>(std::max(1, reader->GetNumberOfTimeSteps())));
+            std::iota(steps.begin(), steps.end(), 0);
+            const std::string name = options.array.empty() ? path.stem().string() : options.array;
+            if (errors.first().empty()) {
+                reader->SetTimeStep(
+                    static_cast<int>(chosen_step(path, name, steps, options.step, options.remark)));
+            }
+        }
         reader->Update();
     } catch (const std::bad_alloc&) {
         refuse_at(path, "an array is said to hold more than memory does: is it cut off?");
@@ -144,24 +175,56 @@ Point centre_of(const std::filesystem::path& path, vtkDataSet& grid, vtkIdType c
     return sum / static_cast<double>(n);
 }
 
+Eigen::Matrix3d axes_of(vtkImageData& image) {
+    return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(
+        image.GetDirectionMatrix()->GetData());
+}
+
 /// The metrics at the points or centres of cells of a file.
 struct VtkMetrics {
     vtkSmartPointer<vtkDataSet> grid;
     bool at_points;
     std::vector<Point> positions;
     std::vector<Metric> metrics;
+    std::size_t hidden = 0;  ///< points or cells that are left out: ParaView does not show them
 };
 
-VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& name,
+/// Whether point or cell `i` is marked as none, for which VTK has bits in an array of the grid.
+bool is_hidden(vtkDataSet& grid, bool at_points, vtkIdType i) {
+    constexpr int hidden_points = vtkDataSetAttributes::HIDDENPOINT;
+    constexpr int hidden_cells =
+        vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL;
+    vtkDataSetAttributes* data = grid.GetPointData();
+    if (!at_points) data = grid.GetCellData();
+    const auto* marks =
+        vtkUnsignedCharArray::SafeDownCast(data->GetArray(vtkDataSetAttributes::GhostArrayName()));
+    return marks != nullptr &&
+           (marks->GetValue(i) & (at_points ? hidden_points : hidden_cells)) != 0;
+}
+
+VtkMetrics read_metrics(const std::filesystem::path& path, const ReadOptions& options,
                         const char* option) {
-    if (read_binary_file(path).find("<VTKFile") == std::string::npos) {
-        refuse_at(path, "no VTKFile element: give a file in VTK's XML format");
-    }
     const std::string ending = lower_case_extension(path);
-    const auto grid = ending == ".vtp"   ? read_data_set<vtkXMLPolyDataReader>(path)
-                      : ending == ".vti" ? read_data_set<vtkXMLImageDataReader>(path)
-                                         : read_data_set<vtkXMLUnstructuredGridReader>(path);
-    const auto [array, at_points] = array_named(path, *grid, name, option);
+    const bool is_legacy = ending == ".vtk";
+    if (read_binary_file(path).find(is_legacy ? "# vtk DataFile" : "<VTKFile") ==
+        std::string::npos) {
+        refuse_at(path, "{}",
+                  is_legacy ? "does not start with '# vtk DataFile': give a file of VTK"
+                            : "no VTKFile element: give a file in VTK's XML format");
+    }
+    const auto grid = ending == ".vtp"   ? read_data_set<vtkXMLPolyDataReader>(path, options)
+                      : ending == ".vti" ? read_data_set<vtkXMLImageDataReader>(path, options)
+                      : is_legacy        ? read_data_set<vtkDataSetReader>(path, options)
+                                  : read_data_set<vtkXMLUnstructuredGridReader>(path, options);
+    if (grid == nullptr) refuse_at(path, "it holds no data set that VTK knows: save it again");
+    if (auto* image = vtkImageData::SafeDownCast(grid)) {
+        const double volume = axes_of(*image).determinant();
+        constexpr double least = 1e-6;  // of unit vectors
+        if (!(std::abs(volume) > least)) {
+            refuse_at(path, "its Direction is no basis of space: give three independent axes");
+        }
+    }
+    const auto [array, at_points] = array_named(path, *grid, options.array, option);
     vtkDataArray& values = *array;
     const vtkIdType count = at_points ? grid->GetNumberOfPoints() : grid->GetNumberOfCells();
     const char* what = at_points ? "point" : "cell";
@@ -177,10 +240,15 @@ VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& na
     }
     const auto where = [&] { return path.string(); };
     MetricRows metrics(where, components == vtk_tensor.numbers ? vtk_tensor : matrix_rows);
-    std::vector<Point> positions(static_cast<std::size_t>(count));
+    std::vector<Point> positions;
     std::array<double, 9> numbers{};
+    std::size_t hidden = 0;
     for (vtkIdType i = 0; i < count; ++i) {
-        Point& x = positions[static_cast<std::size_t>(i)];
+        if (is_hidden(*grid, at_points, i)) {
+            ++hidden;
+            continue;
+        }
+        Point& x = positions.emplace_back();
         if (at_points) {
             grid->GetPoint(i, x.data());
         } else {
@@ -190,16 +258,22 @@ VtkMetrics read_metrics(const std::filesystem::path& path, const std::string& na
         values.GetTuple(i, numbers.data());
         metrics.add(std::span(numbers).first(components));
     }
-    return {grid, at_points, std::move(positions), metrics.take()};
+    if (positions.empty()) refuse_at(path, "all {}s are hidden: nothing to read", what);
+    return {grid, at_points, std::move(positions), metrics.take(), hidden};
+}
+
+Box bounds_of(vtkDataSet& grid) {
+    std::array<double, 6> bounds{};
+    grid.GetBounds(bounds.data());
+    return {{bounds[0], bounds[2], bounds[4]}, {bounds[1], bounds[3], bounds[5]}};
 }
 
 /// Constant in each cell, or by the cells' shape functions between points.
 class CellField final : public ControlSpace {
 public:
-    explicit CellField(VtkMetrics data) : data_(std::move(data)) {
-        std::array<double, 6> bounds{};
-        data_.grid->GetBounds(bounds.data());
-        domain_ = {{bounds[0], bounds[2], bounds[4]}, {bounds[1], bounds[3], bounds[5]}};
+    CellField(VtkMetrics data, double finest) : data_(std::move(data)), finest_(finest) {
+        domain_ = bounds_of(*data_.grid);
+        move_to_unit_box();
         locator_->SetDataSet(data_.grid);
         locator_->BuildLocator();
         largest_cell_ = static_cast<std::size_t>(data_.grid->GetMaxCellSize());
@@ -209,12 +283,40 @@ public:
         const vtkNew<vtkGenericCell> cell;
         std::vector<double> weights(largest_cell_);
         for (std::size_t i = 0; i < x.size(); ++i) {
-            out[i] = at(nearest_in(domain_, x[i]), cell, weights);
+            const Point p = to_grid_ * (x[i] - origin_);
+            out[i] = at(nearest_in(grid_box_, p), cell, weights);
         }
     }
     Box domain() const override { return domain_; }
 
 private:
+    /// Moves the grid to the origin, scales it to a longest edge of 1 and turns an image's axes to
+    /// the coordinates'; places will be moved with it. VTK's tolerances are absolute, and its
+    /// voxels are along the coordinates' axes even where those of their image are not.
+    void move_to_unit_box() {
+        const double unit = 1 / domain_.edges().maxCoeff();
+        origin_ = domain_.low;
+        to_grid_ = unit * Eigen::Matrix3d::Identity();
+        if (auto* image = vtkImageData::SafeDownCast(data_.grid)) {
+            origin_ = Point(image->GetOrigin());
+            to_grid_ = unit * axes_of(*image).inverse();
+            const Vector spacing = unit * Vector(image->GetSpacing());
+            image->SetDirectionMatrix(1, 0, 0, 0, 1, 0, 0, 0, 1);
+            image->SetOrigin(0, 0, 0);
+            image->SetSpacing(spacing.data());
+        } else if (auto* set = vtkPointSet::SafeDownCast(data_.grid)) {
+            const vtkNew<vtkPoints> points;
+            points->SetDataTypeToDouble();
+            points->SetNumberOfPoints(set->GetNumberOfPoints());
+            for (vtkIdType i = 0; i < set->GetNumberOfPoints(); ++i) {
+                const Point p = to_grid_ * (Point(set->GetPoint(i)) - origin_);
+                points->SetPoint(i, p.data());
+            }
+            set->SetPoints(points);
+        }
+        grid_box_ = bounds_of(*data_.grid);
+    }
+
     Metric at(Point x, vtkGenericCell* cell, std::vector<double>& weights) const {
         Point inside;
         int part = 0;
@@ -227,11 +329,26 @@ private:
                                    weights.data());
         }
         if (!data_.at_points) return data_.metrics[static_cast<std::size_t>(id)];
+        const auto count = static_cast<std::size_t>(cell->GetNumberOfPoints());
+        const std::span<double> used = std::span(weights).first(count);
+        // Shape functions of higher order are negative in places, and values may be smaller there
+        // than any at a point, down to none: then they are a mean.
+        if (std::ranges::min(used) < 0) {
+            const Metric sum = weighted(cell, used);
+            if (is_source_metric(sum) && eigen_frame(sum).lengths[0] >= finest_) return sum;
+            for (double& weight : used) weight = std::max(0.0, weight);
+        }
+        return weighted(cell, used);
+    }
+
+    /// The mean of the metrics at the points of a cell.
+    Metric weighted(vtkGenericCell* cell, std::span<const double> weights) const {
         Metric sum{0, 0, 0, 0, 0, 0};
         double all = 0;
-        for (int k = 0; k < static_cast<int>(cell->GetNumberOfPoints()); ++k) {
-            const double weight = std::max(0.0, weights[static_cast<std::size_t>(k)]);
-            const Metric& m = data_.metrics[static_cast<std::size_t>(cell->GetPointId(k))];
+        for (std::size_t k = 0; k < weights.size(); ++k) {
+            const double weight = weights[k];
+            const Metric& m =
+                data_.metrics[static_cast<std::size_t>(cell->GetPointId(static_cast<int>(k)))];
             sum = {sum.xx + weight * m.xx, sum.yy + weight * m.yy, sum.zz + weight * m.zz,
                    sum.xy + weight * m.xy, sum.xz + weight * m.xz, sum.yz + weight * m.yz};
             all += weight;
@@ -241,7 +358,11 @@ private:
     }
 
     VtkMetrics data_;
+    double finest_;  ///< length at a point or in a cell
     Box domain_;
+    Box grid_box_;  ///< of the moved grid
+    Point origin_;
+    Eigen::Matrix3d to_grid_;
     std::size_t largest_cell_ = 0;  ///< points of a cell, at most
     vtkNew<vtkStaticCellLocator> locator_;
 };
@@ -249,14 +370,21 @@ private:
 }  // namespace
 
 std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
-                                          const std::string& name) {
-    const VtkMetrics data = read_metrics(path, name, "--source-array");
+                                          const ReadOptions& options) {
+    const VtkMetrics data = read_metrics(path, options, "--source-array");
+    if (data.hidden > 0 && options.remark) {
+        options.remark(fmt::format("{}: {} hidden {} are left out (vtkGhostType)", path.string(),
+                                   data.hidden, data.at_points ? "points" : "cells"));
+    }
     return sources_from(data.positions, data.metrics);
 }
 
 AnalyticField read_vtk_field(const std::filesystem::path& path, const std::string& name) {
-    VtkMetrics data = read_metrics(path, name, "--field-grid");
+    VtkMetrics data = read_metrics(path, {.array = name}, "--field-grid");
     for (vtkIdType i = 0; i < data.grid->GetNumberOfCells(); ++i) {
+        if (data.hidden > 0 || is_hidden(*data.grid, /*at_points=*/false, i)) {
+            refuse_at(path, "some of it is hidden (vtkGhostType): save the field without that");
+        }
         if (data.grid->GetCell(i)->GetCellDimension() == 3) continue;
         refuse_at(path,
                   "cell {} has no volume, so that nothing is between points: leave "
@@ -264,10 +392,16 @@ AnalyticField read_vtk_field(const std::filesystem::path& path, const std::strin
                   i + 1);
     }
     if (data.grid->GetNumberOfCells() == 0) refuse_at(path, "no cells: nothing to read");
+    if (data.grid->IsA("vtkRectilinearGrid") != 0) {
+        refuse_at(path, "a rectilinear grid: save it as an unstructured one");
+    }
+    if (!(bounds_of(*data.grid).edges().maxCoeff() > 0)) {
+        refuse_at(path, "all points are at one place: nothing is between them");
+    }
     double finest = largest_magnitude;
     for (const Metric& m : data.metrics) finest = std::min(finest, eigen_frame(m).lengths[0]);
     std::vector<Point> places = data.positions;
-    return {std::make_shared<CellField>(std::move(data)), finest, std::move(places)};
+    return {std::make_shared<CellField>(std::move(data), finest), finest, std::move(places)};
 }
 
 }  // namespace controlspace

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Size and metric fields for mesh generation: built from point sources, queried as NumPy arrays.
 
 A metric is six numbers, xx yy zz xy xz yz, of the symmetric positive definite tensor M whose

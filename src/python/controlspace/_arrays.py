@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Arguments as the C library reads them; ValueError for what cannot be used."""
 
 from __future__ import annotations

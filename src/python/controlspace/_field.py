@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fields: how they are built, and what they answer."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The C library, whose functions controlspace.h describes."""
 
 from __future__ import annotations

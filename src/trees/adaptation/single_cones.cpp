@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/trees/detail/single_cones.h"
 
 #include <algorithm>

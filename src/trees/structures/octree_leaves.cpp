@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/trees/leaf_metrics.h"
 #include "controlspace/trees/tree_row.h"
 #include "trees/structures/rows.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "trees/source_tree.h"
 #include "trees/structures/rows.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "controlspace/trees/tree_row.h"
 #include "trees/structures/rows.h"
 #include "trees/values/vertex_values.h"

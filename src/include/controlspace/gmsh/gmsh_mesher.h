@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -34,6 +35,7 @@ struct GmshOptions {
     /// With one, Delaunay makes the same mesh every time; HXT does in a program's first call only.
     int threads = 1;
     double max_tets = 5e7;  ///< a field that requests more, by estimate, is refused
+    bool reports = false;   ///< Gmsh writes warnings and errors to standard error
     /// What is filled, within the domain; none: the domain.
     std::shared_ptr<const Part> part = {};
 };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -43,6 +44,7 @@ struct VdbOptions {
 /// What was written.
 struct VdbReport {
     double voxel = 0;                      ///< edge [length]
+    double scale = 1;                      ///< of places and lengths in the file
     std::array<std::int32_t, 3> counts{};  ///< voxels along x, y, z
     double finest = 0, coarsest = 0;       ///< of the smallest length
     double kept = 0;          ///< share of voxels stored in leaves rather than in tiles of 8^3
@@ -52,6 +54,8 @@ struct VdbReport {
 
 /// Samples `field` over `domain` at the centres of cubic voxels and writes metric_grids() to the
 /// .vdb file `path`, in the units of the domain; tensors are M, whose eigenvalues are lengths.
+/// OpenVDB has no voxels below some 1e-5: of smaller ones places and lengths are multiplied by a
+/// power of ten, the metadatum `scale` of each grid, which read_vdb_field divides by.
 /// The lengths of every active voxel are those of the field at its centre within a factor of
 /// 1 + tolerance; 8^3 voxels that share a metric become a tile. Runs on all of TBB's threads; the
 /// grids do not depend on their number.

@@ -1,5 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -44,7 +46,8 @@ struct FileSources {
     double scale = 1;                     ///< of coordinates and lengths in files of all formats
     std::optional<LengthUnit> unit = {};  ///< that CAD files are converted into; none: millimetres
     std::string array = {};               ///< .vtu, .vtp, .vti, .msh, .pos; empty: the only one
-    CurvatureSizes curvature = {};        ///< .stl, .obj, .ply, .off
+    std::optional<std::uint64_t> step = {};  ///< in time, of the same but .vtk; none: the last
+    CurvatureSizes curvature = {};           ///< .stl, .obj, .ply, .off
 
     bool operator==(const FileSources&) const = default;
 };

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <functional>
@@ -18,6 +19,8 @@ namespace controlspace {
 
 /// Readers of file formats, provided by the program that links their libraries.
 struct FileReaders {
+    /// Receives remarks on what was read (ReadOptions); may be empty.
+    std::function<void(const std::string&)> remark;
     /// Sources of kind `file`, by the ending of the file's name in small letters (".vdb"); of parts
     /// in the units of the field (FileSources), of others in those of the file.
     std::map<std::string, std::function<std::vector<PointSource>(const std::filesystem::path&,
