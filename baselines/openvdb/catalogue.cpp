@@ -15,6 +15,10 @@ std::vector<CatalogueEntry> openvdb_rows() {
     rows[0].former_id = "openvdb-nearest";
     rows[1].former_id = "openvdb-trilinear";
     for (CatalogueEntry& row : rows) row.capabilities.push_back(Pruning());
+    rows.push_back({.id = "openvdb-tiles",
+                    .description = "OpenVDB tree, sparse: K_oL's leaves as tiles and voxels",
+                    .construct = make_openvdb_tiles,
+                    .capabilities = {SourceLeaves(), MetricNodes(), CompactForm()}});
     rows.push_back({.id = "openvdb-vec3s-trilinear",
                     .description = "two of OpenVDB's Vec3S trees, dense, in floats, trilinear",
                     .order = 1,

@@ -62,14 +62,14 @@ void fill_densely(Tree& tree, const Lattice& lattice, ValueOf&& value_of) {
 /// register or to keep for each thread. Where there are several such nodes, beyond 4096 voxels
 /// along an axis, it asks the root.
 template <class Tree>
-class DenseReader {
+class TreeReader {
     using Value = typename Tree::ValueType;
     using Leaf = typename Tree::LeafNodeType;
     using Upper = typename Tree::RootNodeType::ChildNodeType;
     using Lower = typename Upper::ChildNodeType;
 
 public:
-    explicit DenseReader(const Tree& tree) : root_(&tree.root()) {
+    explicit TreeReader(const Tree& tree) : root_(&tree.root()) {
         if (root_->getTableSize() != 1) return;
         const auto only = root_->cbeginChildOn();
         if (only && only->origin() == openvdb::Coord()) top_ = &*only;

@@ -6,47 +6,12 @@
 #include "baselines/lattice/grid_space.h"
 #include "baselines/openvdb/catalogue.h"
 #include "baselines/openvdb/dense_tree.h"
-#include "baselines/openvdb/openvdb_value.h"
 #include "baselines/openvdb/prune.h"
+#include "baselines/openvdb/stored_value.h"
 
 namespace controlspace {
 
 namespace {
-
-/// What stands for a metric that is stored as `M` in a tree, and back.
-template <class M>
-struct VdbValue {  // a tensor
-    using Type = VdbTensor<M>;
-
-    static Type of(const M& m) { return Type(m); }
-    const M& operator()(const Type& value) const { return value.metric; }
-
-    [[no_unique_address]] Packing<M> packing = {};
-};
-template <class Number>
-requires std::is_floating_point_v<Number>
-struct VdbValue<StoredLength<Number>> {
-    using Type = Number;
-
-    static Type of(const StoredLength<Number>& length) { return length.h; }
-    StoredLength<Number> operator()(Number h) const {
-        StoredLength<Number> length;
-        length.h = h;
-        return length;
-    }
-
-    [[no_unique_address]] Packing<StoredLength<Number>> packing = {};
-};
-template <class Code>
-requires std::is_integral_v<Code>
-struct VdbValue<StoredLength<Code>> {
-    using Type = Code;
-
-    static Type of(Code code) { return code; }
-    StoredLength<Code> operator()(Code code) const { return packing(code); }
-
-    Packing<StoredLength<Code>> packing;
-};
 
 template <class M>
 class VdbTree {
@@ -75,25 +40,8 @@ public:
 
     static double bytes_for(const Vector& nodes) { return dense_bytes<Tree>(nodes); }
 
-    class Reader : public DenseReader<Tree> {
-        using Base = DenseReader<Tree>;
-
-    public:
-        explicit Reader(const VdbTree& grid) : Base(grid.tree_), value_(grid.value()) {}
-
-        decltype(auto) operator()(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
-            return value_(Base::operator()(i, j, k));
-        }
-        template <std::size_t corners>
-        decltype(auto) metric(const std::array<const typename Value::Type*, corners>& at,
-                              std::size_t corner) const {
-            return value_(*at[corner]);
-        }
-
-    private:
-        Value value_;
-    };
-    Reader reader() const { return Reader(*this); }
+    using Reader = StoredReader<M, Tree>;
+    Reader reader() const { return {tree_, value()}; }
 
     void add_to(Footprint& footprint) const {
         add_dense_bytes(tree_, footprint);
@@ -101,7 +49,7 @@ public:
     }
 
 private:
-    static constexpr bool is_code = std::is_integral_v<typename Value::Type>;
+    static constexpr bool is_code = Value::is_code;
 
     static std::vector<Metric> joined(const std::shared_ptr<const LatticeData>& data) {
         const VdbTree<StoredLength<double>> tree(data);
@@ -123,16 +71,9 @@ private:
                           [value = value()](const auto& v) { return Metric(value(v)); });
         }
     }
-    Value value() const {
-        if constexpr (std::is_same_v<M, Metric>) {
-            return {};
-        } else {
-            return {stored_->packing()};
-        }
-    }
+    Value value() const { return vdb_value<M>(stored_); }
 
-    using Items = std::conditional_t<std::is_same_v<M, Metric>, StoredLength<double>, M>;
-    std::optional<StoredMetrics<Items>> stored_;  // how codes are packed, without items
+    VdbStored<M> stored_;  // how codes are packed, without items
     Tree tree_{typename Value::Type(0)};
 };
 

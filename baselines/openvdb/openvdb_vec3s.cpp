@@ -34,7 +34,7 @@ public:
 
     class Reader {
     public:
-        using Nodes = DenseReader<Vec3sTree>;
+        using Nodes = TreeReader<Vec3sTree>;
         using Leaf = Vec3sTree::LeafNodeType;
         using Leaves = std::pair<const Leaf*, const Leaf*>;
 

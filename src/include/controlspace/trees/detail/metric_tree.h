@@ -36,6 +36,8 @@ concept HasCursor = requires(const Storage& s, const Topology<Node>& tree) {
 template <class Node, class Storage>
 class MetricTree : public GrowingTree<Node, Storage> {
     using Base = GrowingTree<Node, Storage>;
+
+protected:
     using Base::is_finished_, Base::options_, Base::storage_, Base::topology_;
 
 public:
