@@ -79,13 +79,12 @@ public:
         }
     }
 
+protected:
     /// The cell that `x` was found in, up to the place itself where rounding puts it outside.
     Box widened(const Box& cell, const Point& x) const {
         const Point place = nearest_in(domain_, x);
         return {cell.low.cwiseMin(place), cell.high.cwiseMax(place)};
     }
-
-protected:
     /// `x` along axis `a` in units of cells, within [0, cells].
     double in_cells(const Point& x, Axis a) const {
         return in_cells(x[a], domain_.low[a], domain_.high[a], per_length_[a], cells_[a]);

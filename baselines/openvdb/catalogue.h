@@ -23,14 +23,13 @@ std::unique_ptr<ControlSpaceBuilder> make_openvdb_grid(const SpaceOptions& optio
                                                        Interpolation interpolation);
 
 /// A sparse tree of OpenVDB that follows the error: the leaves of an octree, K_oL's, as voxels of
-/// the finest of them, or as tiles where they are as large as a node. So it answers as K_oL does,
-/// but for rounding at faces, where the high side answers, and its insertion, gradation, adaptation
-/// and proof are K_oL's: what is compared is how the field is held. Metrics and lengths in doubles
-/// or floats lie in the standard 5-4-3 tree, as every program reads it; codes in one of 8^3
-/// children a node (3-3-3). Voxels have the shape of the domain's octants: an axis is halved as the
-/// octree halves it. Beyond 4096 voxels along an axis (codes: 512) a query asks the root, which is
-/// slower, and the footprint says so; at 2^30 adaptation misses its target. Throws MemoryLimitError
-/// before nodes outgrow the cap on memory.
+/// the finest of them, or as tiles where they are as large as a node. It answers as K_oL does, to
+/// the bit, and its insertion, gradation, adaptation and proof are K_oL's: what is compared is how
+/// the field is held. That is the standard 5-4-3 tree, as every program reads it; for codes, up to
+/// 512 voxels along an axis, one of 8^3 children a node (3-3-3). Voxels have the shape of the
+/// domain's octants: an axis is halved as the octree halves it. Beyond 4096 voxels along an axis a
+/// query asks the root, which is slower, and the footprint says so; leaves are cut to level 16 at
+/// most. Throws MemoryLimitError before nodes outgrow the cap on memory.
 std::unique_ptr<ControlSpaceBuilder> make_openvdb_tiles(const SpaceOptions& options);
 
 /// The form in which other programs could read a field of metrics: two of OpenVDB's own Vec3S

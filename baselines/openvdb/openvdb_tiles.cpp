@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -22,8 +23,9 @@ namespace controlspace {
 
 namespace {
 
-/// As deep as the coordinates of OpenVDB have bits, but for their sign and a last one beyond.
-constexpr int deepest_level = 30;
+/// The root holds what is outside of its children as tiles of the same size, however large a leaf
+/// is: at this level 16 along each axis in the standard tree.
+constexpr int deepest_level = 16;
 
 using Octants = Topology<OctreeNode>;
 
@@ -35,13 +37,22 @@ public:
     explicit Octree(SpaceOptions options) : Base(with_indices(options)) {}
 
     AdaptationReport adapt(const AdaptationGoal& goal) {
-        options_.octree_depth = options_.octree_depth.value_or(deepest_level);
-        return Base::adapt(goal);
+        const bool is_free = !options_.octree_depth;
+        if (is_free) options_.octree_depth = deepest_level;
+        AdaptationReport report = Base::adapt(goal);
+        if (is_free) options_.octree_depth.reset();
+        if (report.shortfall == depth_shortfall(deepest_level)) {
+            report.shortfall = fmt::format(
+                "leaves of level {} are not cut, since the root of OpenVDB has no "
+                "levels of its own: raise target_delta (within), or choose K_oL",
+                deepest_level);
+        }
+        return report;
     }
     const Octants& octants() const { return topology_; }
     std::span<const Metric> metrics() const { return storage_.metrics().field(); }
 
-    static std::unique_ptr<ControlSpace> finished(std::shared_ptr<const Octree> octree,
+    static std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const Octree>& octree,
                                                   std::optional<Precision> precision);
 
 private:
@@ -110,7 +121,7 @@ class Cuts {
 public:
     explicit Cuts(const Octants& tree) {
         cuts_.reserve(tree.leaves() + tree.inner_nodes());
-        note(tree, tree.root());
+        note(tree, tree.root(), 0);
     }
     /// The octree, its leaves numbered depth first.
     Octants octants(const Box& domain) const {
@@ -131,22 +142,119 @@ public:
         make(make, domain, 0);
         return {domain, std::move(nodes)};
     }
-    std::size_t bytes() const { return cuts_.capacity() / 8; }
+    /// The leaf that holds a place in the domain.
+    Box leaf_at(const Point& x, const Box& domain) const {
+        Box box = domain;
+        std::size_t next = 0;
+        for (std::size_t level = 0; cuts_[next++]; ++level) {
+            const Subdivision parts =
+                OctreeNode::even_subdivision(domain, static_cast<int>(level), box);
+            const OctreeNode node(parts);
+            int c = 0;
+            for (; node.slot(c) != node.child_with(x); ++c) pass(level + 1, next);
+            box = parts.child(c);
+        }
+        return box;
+    }
+    std::size_t bytes() const {
+        return cuts_.capacity() / 8 + children_.capacity() * sizeof(children_[0]);
+    }
 
 private:
-    void note(const Octants& tree, Ref ref) {
+    void note(const Octants& tree, Ref ref, std::size_t level) {
         cuts_.push_back(!ref.is_leaf());
         if (ref.is_leaf()) return;
         const OctreeNode& node = tree.node(ref);
-        for (int c = 0; c < node.count(); ++c) note(tree, node.children[node.slot(c)]);
+        if (level == children_.size()) children_.push_back(node.count());
+        for (int c = 0; c < node.count(); ++c) {
+            note(tree, node.children[node.slot(c)], level + 1);
+        }
+    }
+    // Goes on behind the part that begins at `next`.
+    void pass(std::size_t level, std::size_t& next) const {
+        if (!cuts_[next++]) return;
+        for (int c = 0; c < children_[level]; ++c) pass(level + 1, next);
     }
 
     std::vector<bool> cuts_;
+    std::vector<int> children_;  // of a part that is cut, by level
+};
+
+/// The voxel that answers for a place: the one whose leaf the octree would find, on a face the low
+/// one.
+class VoxelOfPlace {
+public:
+    VoxelOfPlace(const Box& domain, const Cell& voxels) : domain_(domain), voxels_(voxels) {
+        constexpr double epsilon = std::numeric_limits<double>::epsilon();
+        for (Axis a = 0; a < 3; ++a) {
+            const double n = voxels[static_cast<std::size_t>(a)];
+            const double edge = domain.edges()[a];
+            per_length_[a] = edge > 0 ? n / edge : 0;
+            const double reach = std::max(std::abs(domain.low[a]), std::abs(domain.high[a]));
+            near_[a] = 8 * epsilon * (n + reach * per_length_[a]);
+        }
+    }
+
+    const Box& domain() const { return domain_; }
+
+    Cell operator()(const Point& x) const {
+        Cell cell;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double t = in_voxels(x[static_cast<Axis>(a)], a);
+            cell[a] = is_near_face(t, a) ? by_halving(x[static_cast<Axis>(a)], a)
+                                         : static_cast<std::int32_t>(t);
+        }
+        return cell;
+    }
+    /// The same of at most CellBatch::most places.
+    void locate(std::span<const Point> x, CellBatch& batch) const {
+        std::array<bool, CellBatch::most> is_near;
+        for (std::size_t a = 0; a < 3; ++a) {
+            bool any = false;
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                const double t = in_voxels(x[i][static_cast<Axis>(a)], a);
+                batch.cell[a][i] = static_cast<std::int32_t>(t);
+                is_near[i] = is_near_face(t, a);
+                any |= is_near[i];
+            }
+            for (std::size_t i = 0; any && i < x.size(); ++i) {
+                if (is_near[i]) batch.cell[a][i] = by_halving(x[i][static_cast<Axis>(a)], a);
+            }
+        }
+    }
+
+private:
+    [[gnu::always_inline]] double in_voxels(double x, std::size_t axis) const {
+        const auto a = static_cast<Axis>(axis);
+        const double above = x > domain_.low[a] ? x : domain_.low[a];
+        const double place = above < domain_.high[a] ? above : domain_.high[a];
+        return (place - domain_.low[a]) * per_length_[a];
+    }
+    // So near that rounding counts: the octree has halved its boxes, and rounded each middle.
+    [[gnu::always_inline]] bool is_near_face(double t, std::size_t a) const {
+        return std::abs(t - std::nearbyint(t)) <= near_[static_cast<Axis>(a)];
+    }
+    std::int32_t by_halving(double x, std::size_t axis) const {
+        const auto a = static_cast<Axis>(axis);
+        double low = domain_.low[a], high = domain_.high[a];
+        std::int32_t i = 0;
+        for (std::int32_t n = voxels_[axis]; n > 1; n /= 2) {
+            const double middle = 0.5 * (low + high);
+            const bool is_above = x > middle;
+            (is_above ? low : high) = middle;
+            i = 2 * i + (is_above ? 1 : 0);
+        }
+        return i;
+    }
+
+    Box domain_;
+    Cell voxels_;
+    Vector per_length_, near_;
 };
 
 /// Bytes of the nodes that voxels and tiles in these boxes take, as the tree counts its memory.
 template <class Tree>
-std::size_t bytes_for(std::span<const VoxelBox> leaves) {
+std::size_t bytes_for(const std::vector<VoxelBox>& leaves, const Cell& voxels) {
     using Leaf = typename Tree::LeafNodeType;
     using Upper = typename Tree::RootNodeType::ChildNodeType;
     using Lower = typename Upper::ChildNodeType;
@@ -172,21 +280,22 @@ std::size_t bytes_for(std::span<const VoxelBox> leaves) {
         const auto again = std::ranges::unique(origins);
         return static_cast<std::size_t>(again.begin() - origins.begin());
     };
-    return nodes(Leaf::TOTAL) * (sizeof(Leaf) + leaf_values_bytes<Tree>)+nodes(Lower::TOTAL) *
+    // What lies outside of all children is a tile of the root, in a map.
+    constexpr std::size_t root_entry = 80;
+    std::size_t in_root = 1;
+    for (const std::int32_t n : voxels)
+        in_root *= (static_cast<std::size_t>(n) >> Upper::TOTAL) + 1;
+    return in_root * root_entry +
+           nodes(Leaf::TOTAL) * (sizeof(Leaf) + leaf_values_bytes<Tree>)+nodes(Lower::TOTAL) *
                sizeof(Lower) +
            nodes(Upper::TOTAL) * sizeof(Upper) + sizeof(Tree);
 }
 
 /// The metrics of an octree's leaves, stored as `M`, in a tree of OpenVDB: a leaf that is as large
 /// as a node becomes a tile, others voxels.
-template <class M>
+template <class M, class Tree>
 class VdbTiles final : public ControlSpace, public HasControlNodes, public Saved {
     using Value = VdbValue<M>;
-    // Codes are small: in the nodes of the standard tree most of its memory would be pointers.
-    using Tree =
-        std::conditional_t<Value::is_code,
-                           typename openvdb::tree::Tree4<typename Value::Type, 3, 3, 3>::Type,
-                           VdbTree543<typename Value::Type>>;
     static constexpr bool are_lengths = is_stored_length<M>;
 
 public:
@@ -197,21 +306,19 @@ public:
     }
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
-        stencil_.template sample<Metric>(x, reader(), out);
+        answer(x, out, [](const auto& m) -> Metric { return m; });
     }
     void sample_lengths(std::span<const Point> x, std::span<double> out) const override {
         if constexpr (are_lengths) {
-            stencil_.template sample<double>(x, reader(), out);
+            answer(x, out, [](const auto& m) { return length_of(m); });
         } else {
             ControlSpace::sample_lengths(x, out);
         }
     }
-    Metric metric_at(const Point& x) const override {
-        return stencil_.template at<Metric>(x, reader());
-    }
+    Metric metric_at(const Point& x) const override { return value_at(voxel_of_(x)); }
     double length_at(const Point& x) const override {
         if constexpr (are_lengths) {
-            return stencil_.template at<double>(x, reader());
+            return length_of(value_at(voxel_of_(x)));
         } else {
             return ControlSpace::length_at(x);
         }
@@ -219,25 +326,11 @@ public:
     std::unique_ptr<Cursor> cursor() const override {
         return std::make_unique<PlainCursor<VdbTiles>>(*this);
     }
-    Box domain() const override { return stencil_.domain(); }
+    Box domain() const override { return voxel_of_.domain(); }
 
-    /// A voxel, or a tile.
+    /// A leaf of the octree, by a walk through all before it.
     std::optional<Box> cell_at(const Point& x) const override {
-        CellBatch batch;
-        stencil_.locate({&x, 1}, batch);
-        const Cell cell = batch[0];
-        const int depth = tree_.getValueDepth({cell[0], cell[1], cell[2]});
-        const std::int32_t edge = depth <= 0   ? Upper::DIM
-                                  : depth == 1 ? Lower::DIM
-                                  : depth == 2 ? Leaf::DIM
-                                               : 1;
-        Cell low, last;
-        for (std::size_t a = 0; a < 3; ++a) {
-            low[a] = cell[a] & ~(edge - 1);
-            const auto voxels = static_cast<std::int32_t>(stencil_.cells()[static_cast<Axis>(a)]);
-            last[a] = std::min(low[a] + edge, voxels) - 1;
-        }
-        return stencil_.widened({stencil_.box_of(low).low, stencil_.box_of(last).high}, x);
+        return cuts_.leaf_at(nearest_in(domain(), x), domain());
     }
 
     Footprint footprint() const override {
@@ -277,10 +370,10 @@ private:
     using Lower = typename Upper::ChildNodeType;
 
     VdbTiles(const Octree& octree, const VoxelBoxes& boxes)
-        : stencil_(octree.domain(), Vector(boxes.voxels[0], boxes.voxels[1], boxes.voxels[2])),
+        : voxel_of_(octree.domain(), boxes.voxels),
           cuts_(octree.octants()),
           control_nodes_(boxes.leaves.size()) {
-        const std::size_t bytes = bytes_for<Tree>(boxes.leaves);
+        const std::size_t bytes = bytes_for<Tree>(boxes.leaves, boxes.voxels);
         if (bytes > octree.options().max_bytes) fail_too_large(bytes, octree.options().max_bytes);
         std::vector<LeafIndex> order;
         octree.octants().depth_first(order);
@@ -299,20 +392,38 @@ private:
         }
     }
     StoredReader<M, Tree> reader() const { return {tree_, vdb_value<M>(stored_)}; }
+    auto value_at(const Cell& voxel) const {
+        return reader()(static_cast<std::uint32_t>(voxel[0]), static_cast<std::uint32_t>(voxel[1]),
+                        static_cast<std::uint32_t>(voxel[2]));
+    }
+    // Some at a time, so that values are on their way while those before them are read.
+    template <class Value>
+    void answer(std::span<const Point> x, std::span<Value> out, const auto& of) const {
+        const auto read = reader();
+        CellBatch batch;
+        std::array<const typename Tree::LeafNodeType*, CellBatch::most> leaves;
+        std::array<std::array<const typename VdbValue<M>::Type*, 1>, CellBatch::most> at;
+        for (std::size_t first = 0; first < x.size(); first += CellBatch::most) {
+            const std::size_t count = std::min(CellBatch::most, x.size() - first);
+            voxel_of_.locate(x.subspan(first, count), batch);
+            for (std::size_t i = 0; i < count; ++i) leaves[i] = read.prepare(batch[i]);
+            for (std::size_t i = 0; i < count; ++i) {
+                at[i] = read.template find<1>(batch[i], leaves[i]);
+            }
+            for (std::size_t i = 0; i < count; ++i) out[first + i] = of(read.metric(at[i], 0));
+        }
+    }
     /// Of the leaves in depth-first order, as queries read them.
     std::vector<Metric> metrics(const Octants& octants) const {
-        const auto read = reader();
         std::vector<Metric> metrics;
         metrics.reserve(control_nodes_);
         for (const VoxelBox& leaf : VoxelBoxes(octants).leaves) {
-            const auto [i, j, k] = leaf.low;
-            metrics.push_back(read(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j),
-                                   static_cast<std::uint32_t>(k)));
+            metrics.push_back(value_at(leaf.low));
         }
         return metrics;
     }
 
-    NearestStencil stencil_;
+    VoxelOfPlace voxel_of_;
     VdbStored<M> stored_;  // how codes are packed, without items
     Tree tree_{typename Value::Type(0)};
     Cuts cuts_;
@@ -320,19 +431,23 @@ private:
     std::shared_ptr<const Octree> octree_;
 };
 
-std::unique_ptr<ControlSpace> Octree::finished(std::shared_ptr<const Octree> octree,
+std::unique_ptr<ControlSpace> Octree::finished(const std::shared_ptr<const Octree>& octree,
                                                std::optional<Precision> precision) {
-    if (!octree->is_finished()) {
-        const auto copy = std::make_shared<Octree>(*octree);
-        copy->finish();
-        octree = copy;
-    }
-    if (!precision) return std::make_unique<VdbTiles<Metric>>(octree, false);
+    if (!precision) return std::make_unique<VdbTiles<Metric, VdbTree543<VdbMetric>>>(octree, false);
     return with_stored<true>(
         *precision, octree->metrics(),
         [&]<class M>(std::type_identity<M>) -> std::unique_ptr<ControlSpace> {
             using Kept = std::conditional_t<std::is_same_v<M, StoredMetric<double>>, Metric, M>;
-            return std::make_unique<VdbTiles<Kept>>(octree, true);
+            using Number = typename VdbValue<Kept>::Type;
+            if constexpr (VdbValue<Kept>::is_code) {
+                // In the nodes of the standard tree most of their memory would be pointers.
+                using Small = typename openvdb::tree::Tree4<Number, 3, 3, 3>::Type;
+                const Cell voxels = VoxelBoxes(octree->octants()).voxels;
+                if (std::ranges::max(voxels) <= 512) {
+                    return std::make_unique<VdbTiles<Kept, Small>>(octree, true);
+                }
+            }
+            return std::make_unique<VdbTiles<Kept, VdbTree543<Number>>>(octree, true);
         });
 }
 

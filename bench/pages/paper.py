@@ -67,11 +67,19 @@ for _line in (DATA / "paper" / "octree_links.csv").read_text(encoding="utf-8").s
         OCTREE_LINKS[_run.rho, _run.tau, _run.links] = _run
 
 
+def max_depth(setting):
+    """Of leaves that are cut for sources; that of the paper where a case has none."""
+    return setting.get("max_depth") or paper_depth(setting)
+
+
+def paper_depth(setting):
+    return 42 if "split" in setting else 14
+
+
 def paper_row(setting):
     """The paper's row for a case; None where the paper has no such structure or setting."""
-    depth = 42 if "split" in setting else 14
     if any(setting.get(k) != v for k, v in AS_PUBLISHED.items() if k not in
-           ("law", "schedule", "reference")) or setting.get("max_depth") != depth:
+           ("law", "schedule", "reference")) or max_depth(setting) != paper_depth(setting):
         return None
     return PAPER_BY_SETTING.get((setting["structure"], setting.get("split", ""),
                                  setting["rho"], setting["tau"]))
@@ -169,10 +177,10 @@ class Evidence:
 
     def other_depths(self, row):
         """The same with other depth limits, the deepest last."""
-        depth = row.setting["max_depth"]
+        depth = row.setting.get("max_depth")
         found = [other for other in self.by_key.values()
                  if other.key != row.key and other.key_with(max_depth=depth) == row.key]
-        return sorted(found, key=lambda other: other.setting["max_depth"])
+        return sorted(found, key=lambda other: max_depth(other.setting))
 
 
 # ---- Verdicts on cells

@@ -74,6 +74,7 @@ void write_job(const fs::path& folder, const Box& domain, const GmshOptions& opt
     if (options.optimize) job["optimize"] = *options.optimize;
     if (options.part) {
         job["crease"] = options.part->crease;
+        job["scale"] = options.part->scale;
         job["cad"] = options.part->cad.empty() ? "" : fs::absolute(options.part->cad).string();
         if (options.part->cad.empty()) {
             write_rows(folder / vertices_file, options.part->vertices);
@@ -93,7 +94,7 @@ GmshOptions options_of(const Json& job, const fs::path& folder) {
     if (job.contains("optimize")) options.optimize = job.at("optimize").get<double>();
     if (job.contains("crease")) {
         const std::string cad = job.at("cad");
-        Part part{.crease = job.at("crease"), .cad = cad};
+        Part part{.crease = job.at("crease"), .cad = cad, .scale = job.at("scale")};
         if (cad.empty()) {
             part.vertices = read_rows<Point>(folder / vertices_file);
             part.triangles = read_rows<Triangle>(folder / triangles_file);

@@ -49,10 +49,11 @@ bool is_cut_by_rule(const CatalogueEntry& entry, const Case& c) {
     return entry.has<SplitRules>() && !c.target_delta;
 }
 
-/// The deepest level of trees of one kind. Both stand under one key in results, so that the range
-/// is that of both; SpaceOptions has those of each.
+/// The deepest level of trees of one kind.
 Access<Case> depth_if(bool with_split) {
-    Access<Case> depth = number<Case>(&Case::max_depth, within(0, deepest_kd_level), Zero::is_none);
+    Access<Case> depth = number<Case>(
+        &Case::max_depth, within(0, with_split ? deepest_kd_level : deepest_octree_level),
+        Zero::is_none);
     depth.get = [get = depth.get, with_split](const Case& c) {
         return c.split.has_value() == with_split ? get(c) : Values{};
     };

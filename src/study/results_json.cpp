@@ -160,10 +160,15 @@ Row row_from_json(const Json& json, const StudyRows& rows, const SourcesChoice& 
     Row row;
     row.setting.sources = sources;
     row.setting.structure = json.at("structure");
+    const CatalogueEntry* entry = find_entry(rows.structures, row.setting.structure);
     for (const CaseParameter& p : rows.parameters) {
         // A setting that an earlier program did not have is left out.
         const auto found = json.find(result_key(p));
         if (p.is_form() || found == json.end() || found->is_null()) continue;
+        // Two parameters may stand under one key, each for structures of its own.
+        if (entry != nullptr && result_key(p) != p.key && p.fits && !p.fits(*entry, row.setting)) {
+            continue;
+        }
         try {
             set_checked(p.access, row.setting, values_from(*found));
         } catch (const InputError& error) {

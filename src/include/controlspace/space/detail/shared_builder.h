@@ -195,13 +195,14 @@ public:
         }
     }
     std::unique_ptr<ControlSpace> build(const BuildOptions& options) override {
-        if constexpr (requires { Data::finished(data_, options.precision); }) {
+        constexpr bool has_forms = requires { Data::finished(data_, options.precision); };
+        if (options.precision && !has_forms) return pack(*options.precision);
+        if constexpr (requires(Data & data) { data.finish(); }) {
+            if (!data_->is_finished()) edit().finish();
+        }
+        if constexpr (has_forms) {
             return described(Data::finished(data_, options.precision), options.precision);
         } else {
-            if (options.precision) return pack(*options.precision);
-            if constexpr (requires(Data & data) { data.finish(); }) {
-                if (!data_->is_finished()) edit().finish();
-            }
             return described(std::make_unique<SharedSpace<Data>>(data_));
         }
     }
