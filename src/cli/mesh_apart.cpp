@@ -18,8 +18,10 @@
 #include <string>
 #include <vector>
 
+#include "cli/filled_space.h"
 #include "controlspace/error.h"
 #include "controlspace/mesh/mesh_files.h"
+#include "controlspace/space/control_space_file.h"
 #include "files/child_process.h"
 #include "files/output_file.h"
 #include "files/text_file.h"
@@ -34,7 +36,7 @@ using Json = nlohmann::json;
 // Files in the folder of a job.
 constexpr const char *job_file = "job.json", *vertices_file = "vertices",
                      *triangles_file = "triangles", *mesh_file = "out.meshb",
-                     *cost_file = "cost.json", *log_file = "log";
+                     *cost_file = "cost.json", *log_file = "log", *field_file = "field.ctrl";
 
 using Question = std::array<double, 3>;  ///< a place
 using Answer = std::array<double, 6>;    ///< the metric there; NaN: the field has failed
@@ -128,6 +130,18 @@ private:
     mutable std::mutex mutex_;
 };
 
+/// Whether the field is now in a file, for the other process to load: asking this one costs some
+/// microseconds a place. Exact fields and foreign systems cannot be saved.
+bool save_field(const fs::path& folder, const ControlSpace& field) {
+    if (!recipe_of(field)) return false;
+    try {
+        save_control_space(folder / field_file, field);
+    } catch (const InputError&) {
+        return false;
+    }
+    return true;
+}
+
 /// What went wrong in the other process, on one line.
 std::string reason(const ChildOutcome& outcome, const fs::path& log, double time_limit_s) {
     constexpr std::size_t enough = 2;
@@ -156,9 +170,9 @@ MeshRun mesh_apart(const Box& domain, const ControlSpace& field, const GmshOptio
                    const fs::path& folder, double time_limit_s) {
     const TemporaryFolder files(folder, "gmsh");
     write_job(files.path(), domain, options);
+    const bool is_saved = save_field(files.path(), field);
     const std::unique_ptr<Cursor> cursor = field.cursor();
     std::exception_ptr failure;
-    std::size_t queries = 0;
     std::chrono::steady_clock::duration time{};
     const auto answer = [&](const std::byte* question, std::byte* to) {
         Question x;
@@ -173,25 +187,27 @@ MeshRun mesh_apart(const Box& domain, const ControlSpace& field, const GmshOptio
             failure = std::current_exception();
         }
         time += std::chrono::steady_clock::now() - start;
-        ++queries;
         std::memcpy(to, numbers.data(), sizeof numbers);
     };
     const Conversation conversation{sizeof(Question), sizeof(Answer), answer};
     const fs::path log = files.path() / log_file;
     const ChildOutcome outcome =
         run_child({fs::read_symlink("/proc/self/exe").string(), gmsh_job, files.path().string()},
-                  files.path(), log, time_limit_s, &conversation);
+                  files.path(), log, time_limit_s, is_saved ? nullptr : &conversation);
     if (failure) std::rethrow_exception(failure);
     if (!outcome.succeeded()) throw InputError(reason(outcome, log, time_limit_s));
     MeshRun run;
     run.mesh = read_medit_mesh(files.path() / mesh_file);
     const Json cost = Json::parse(read_text_file(files.path() / cost_file));
-    const double in_field = std::chrono::duration<double>(time).count();
     run.cost = {.seconds = cost.at("seconds"),
-                .processor_seconds = cost.at("processor_seconds").get<double>() + in_field,
-                .queries = queries,
-                .query_seconds = in_field,
+                .processor_seconds = cost.at("processor_seconds"),
+                .queries = cost.at("queries"),
+                .query_seconds = cost.at("query_seconds"),
                 .peak_bytes = outcome.peak_bytes};
+    if (!is_saved) {
+        run.cost.query_seconds = std::chrono::duration<double>(time).count();
+        run.cost.processor_seconds += run.cost.query_seconds;
+    }
     run.anisotropic = cost.at("anisotropic");
     return run;
 }
@@ -199,10 +215,15 @@ MeshRun mesh_apart(const Box& domain, const ControlSpace& field, const GmshOptio
 int run_gmsh_job(const fs::path& folder) {
     const Json job = Json::parse(read_text_file(folder / job_file));
     const Box domain{point_of(job.at("low")), point_of(job.at("high"))};
-    const MeshRun run = mesh_with_gmsh(domain, RemoteField(domain), options_of(job, folder));
+    const fs::path saved = folder / field_file;
+    const std::unique_ptr<ControlSpace> field =
+        fs::exists(saved) ? load_saved(saved) : std::make_unique<RemoteField>(domain);
+    const MeshRun run = mesh_with_gmsh(domain, *field, options_of(job, folder));
     write_medit_mesh(folder / mesh_file, run.mesh);
     const Json cost{{"seconds", run.cost.seconds},
                     {"processor_seconds", run.cost.processor_seconds},
+                    {"queries", run.cost.queries},
+                    {"query_seconds", run.cost.query_seconds},
                     {"anisotropic", run.anisotropic}};
     write_text(folder / cost_file, cost.dump());
     return 0;
