@@ -49,8 +49,8 @@ Box with_margin(const Box& cell, const Box& domain) {
 }  // namespace
 
 LatticeFit::LatticeFit(const GoalField& field, const AdaptationGoal& goal, const Box& domain,
-                       const GridKind& kind)
-    : field_(field), domain_(domain), kind_(kind) {
+                       const GridKind& kind, int* stop)
+    : field_(field), domain_(domain), kind_(kind), stop_{.stop = stop} {
     constexpr std::size_t most_suspects = 4096;
     const auto sources = goal.sources;
     const std::size_t step = sources.size() / most_suspects + 1;
@@ -61,7 +61,7 @@ LatticeFit::LatticeFit(const GoalField& field, const AdaptationGoal& goal, const
     std::vector<Point> x = field.probes(domain);
     for (const PointSource& source : sources) x.push_back(source.position);
     for (const Point& place : goal.places) x.push_back(nearest_in(domain, place));
-    at_probes_ = sample_parallel(field, x);
+    at_probes_ = sample_parallel(UntilLate(field, stop_), x);
     probes_ = std::move(x);
 }
 
@@ -74,7 +74,7 @@ FittedLattice LatticeFit::fitted(const Voxels& voxels, const GrowthLimit* trial)
         return fit.nodes[lattice.index(i, j, k)];
     };
     const auto set_to_field = [&] {
-        const UntilLate field(field_, trial != nullptr ? *trial : GrowthLimit{});
+        const UntilLate field(field_, trial != nullptr ? *trial : stop_);
         fit.nodes = sample_parallel(field, positions(lattice));
         kind_.keep(fit.nodes);
     };
@@ -241,6 +241,7 @@ FittedLattice LatticeFit::coarsest(
             (is_enough(middle) ? most : refused) = middle;
         }
     } catch (const GrowthStopped&) {
+        require_in_time(stop_);
         is_stopped = true;
     }
     if (!best) best = at(finest);

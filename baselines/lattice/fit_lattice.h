@@ -28,8 +28,9 @@ struct FittedLattice {
 /// domain, at sources and beside them.
 class LatticeFit {
 public:
+    /// Where `stop` (GrowthLimit) is set, this and all below throw GrowthStopped.
     LatticeFit(const GoalField& field, const AdaptationGoal& goal, const Box& domain,
-               const GridKind& kind);
+               const GridKind& kind, int* stop);
 
     /// Lattices of tensors and continuous fields are tried up to so many cells: each node takes a
     /// search of its own.
@@ -55,6 +56,7 @@ private:
     const GoalField& field_;
     Box domain_;
     GridKind kind_;
+    GrowthLimit stop_;             ///< no deadline
     std::vector<Point> suspects_;  ///< where lattices that are too coarse mostly show it
     std::vector<Point> probes_;    ///< where there are no bounds, and the field there
     std::vector<Metric> at_probes_;

@@ -155,7 +155,7 @@ AdaptationReport LatticeData::adapt(const AdaptationGoal& goal) {
             "voxels are joined by what bounds nothing along each direction of a tensor: give "
             "voxels, or prune_delta 0");
     }
-    const LatticeFit fit(field, goal, domain(), kind_);
+    const LatticeFit fit(field, goal, domain(), kind_, options_.growth.stop);
     GrowthStop stop = GrowthStop::none;
     const auto next = [&](double voxel) -> std::optional<Voxels> {
         SpaceOptions options = options_;

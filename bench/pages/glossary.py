@@ -24,6 +24,11 @@ def address_of(name):
     return re.sub(r"[^A-Za-z0-9_-]", lambda match: f".{ord(match[0])}", name)
 
 
+def one_spelling(text):
+    """δ_R, as pages spell what programs write in ASCII; names of measures stay, as delta_R_max."""
+    return re.sub(r"\bdelta_R\b", "δ_R", text)
+
+
 def not_described(kind):
     return f"a {kind} of these results, whose program did not describe it: see `controlspace list`"
 
@@ -68,5 +73,5 @@ class Glossary:
             + escape(text[len(name):])
 
     def meaning(self, name):
-        entry = self.by_name.get(name)
+        entry = self.by_name.get(one_spelling(name))
         return entry.meaning if entry else None

@@ -8,7 +8,7 @@ import jinja2
 
 from . import compare_runs, fields, figures, paper_page
 from .command import OK
-from .glossary import Glossary
+from .glossary import Glossary, one_spelling
 from .paper import Evidence
 from .paper_command import evidence_in
 from .results import grouped, own_measures, read_results, write_file
@@ -20,7 +20,7 @@ Fold = namedtuple("Fold", "title parts is_open")
 
 
 def tables(items):
-    return [("table", table) for table in items]
+    return [("table", table) for table in items if table.rows]
 
 
 def titled(title, parts):
@@ -33,8 +33,9 @@ def drawn(specs, prefix):
 
 
 def folds(items):
-    """The first one open."""
-    return [("fold", Fold(title, parts, i == 0)) for i, (title, parts) in enumerate(items)]
+    """Those that hold something, the first one open."""
+    filled = [(title, parts) for title, parts in items if parts]
+    return [("fold", Fold(title, parts, i == 0)) for i, (title, parts) in enumerate(filled)]
 
 
 def origin_table(results):
@@ -44,7 +45,7 @@ def origin_table(results):
         ["program", results.version], *([key, head[key]] for key in ("commit", "compiler", "flags")),
         ["processor", head["cpu"]], ["cores, threads", f"{head['cores']}, {head['threads']}"],
         ["date (UTC)", head["date"]], ["command", head["command_line"]],
-        ["sources, seed", f"{settings.get('sources')}, {settings.get('seed')}"],
+        ["sources, seed", f"{compare_runs.shown(settings.get('sources'))}, {settings.get('seed')}"],
         ["rows", f"{len(results.rows)}, {failed} failed"
          f"{'' if results.complete else '; not complete: cases are missing'}"]])
 
@@ -64,7 +65,7 @@ def compared(results):
     failed = len(rows) - len(results.measured)
     return (f"{counted(structures, 'structure')} in {counted(len(rows), 'row')}"
             f"{f', of which {failed} failed' if failed else ''}, on {sources} "
-            f"({settings.get('sources')}) under {counted(works, 'requested field')}: memory, "
+            f"({compare_runs.shown(settings.get('sources'))}) under {counted(works, 'requested field')}: memory, "
             f"creation and access times, and the error at {settings.get('probe_grid')}³ and "
             f"{settings.get('fine_probe_grid')}³ probes. Measured with controlspace "
             f"{results.version} on {head['cpu']}, {head['date']}."
@@ -145,7 +146,7 @@ def front_parts(rows, styles, prefix):
     parts = []
     for i, (work, table) in enumerate(front_tables(rows)):
         largest, mean = (found[each * k:each * (k + 1)] for k in (2 * i, 2 * i + 1))
-        parts.append((work, [("figures", largest), ("table", table),
+        parts.append((work, [("figures", largest), *tables([table]),
                              ("fold", Fold("By mean errors", [("figures", mean)], False))]))
     return folds(parts)
 
@@ -169,7 +170,7 @@ def accuracy_parts(sampled, prefix):
     return [("paragraph", "Of the structures of the first setting, each with its first split: "
              f"{sampled[2][0].row.group}."),
             ("beside", [*drawn(fields.delta_figure(sampled), prefix),
-                        ("table", fields.delta_table(sampled))]),
+                        *tables([fields.delta_table(sampled)])]),
             *drawn(fields.cross_validation(sampled), prefix),
             ("fold", Fold("δ between any two structures, in numbers",
                           tables([fields.pairs_table(sampled)]), False))]
@@ -235,9 +236,9 @@ def numbered(sections):
 def page(title, sections, all_results=()):
     """The page, well-formed XML too; control characters, which it must not hold, become blanks."""
     def clean(value):
-        if not isinstance(value, str) or all(c >= " " for c in value):
+        if not isinstance(value, str):
             return value
-        return type(value)("".join(c if c >= " " else " " for c in value))
+        return type(value)("".join(c if c >= " " else " " for c in one_spelling(value)))
 
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(Path(__file__).parent),
                                      autoescape=True, finalize=clean, trim_blocks=True,

@@ -16,6 +16,7 @@
 #include "c/option_text.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/space/control_space_file.h"
+#include "controlspace/space/detail/until_late.h"
 #include "controlspace/space/make_control_space.h"
 #include "controlspace/trees/octree_pieces.h"
 #include "controlspace/version.h"
@@ -100,7 +101,9 @@ SpaceOptions space_options(const double* domain, const cspace_options& options) 
     };
     add("g_r", options.growth);
     add("max_memory", options.max_memory);
-    return options_from_text({point_at(domain, 0), point_at(domain, 1)}, text);
+    SpaceOptions result = options_from_text({point_at(domain, 0), point_at(domain, 1)}, text);
+    result.growth.stop = options.stop;
+    return result;
 }
 
 }  // namespace
@@ -171,6 +174,7 @@ cspace_status cspace_build(const char* structure, const double* domain,
         AdaptationReport report;
         const CatalogueEntry& entry = entry_named(structures(), structure);
         auto builder = make_filled_builder(entry, all, making, target, &report);
+        require_in_time(making.growth);
         auto built = builder->build(to_be_read(entry, making));
         if (!making.takes_later_sources) builder.reset();
         *space = new cspace(std::move(builder), std::move(built), making.ratio);

@@ -48,6 +48,8 @@ cspace_status guarded(Action&& action) noexcept {
         return fail(CSPACE_BAD_INPUT, error.what(), error.index());
     } catch (const MemoryLimitError& error) {
         return fail(CSPACE_BAD_INPUT, error.what(), no_index, error.bytes());
+    } catch (const GrowthStopped&) {  // there is no other limit in C
+        return fail(CSPACE_FAILURE, "stopped by the caller: the number at `stop` was set");
     } catch (const InputError& error) {
         return fail(CSPACE_BAD_INPUT, error.what());
     } catch (const std::bad_alloc&) {

@@ -29,7 +29,7 @@ Action add_convert(Options& options) {
     return [job](const std::string&) {
         const std::filesystem::path& output = job->out.empty() ? job->output : job->out;
         if (output.empty()) refuse("no OUT: name the file to write");
-        require_no_input(output, files_named(job->input));
+        require_output(output, files_named(job->input));
         StepProgress progress(job->quiet, output);
         progress.started("reading");
         const auto sources = sources_of_input(job->input, given_settings(job->given));

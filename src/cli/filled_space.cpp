@@ -65,7 +65,7 @@ double largest_factor(const Origin& made, const ControlSpace& space) {
 
 FilledSpace made_or_loaded(const std::filesystem::path& input, const std::filesystem::path& output,
                            const GivenSettings& given, const StudyObserver& observer) {
-    require_no_input(output, {input});
+    require_output(output, {input});
     FilledSpace filled;
     if (observer.phase_started) observer.phase_started("reading");
     if (is_control_space(input)) {
@@ -82,7 +82,7 @@ FilledSpace made_or_loaded(const std::filesystem::path& input, const std::filesy
         return filled;
     }
     Study study = study_of_input(input, given);
-    require_no_input(output, input_files_of(study.sources));
+    require_output(output, input_files_of(study.sources));
     filled.threads = limit_threads(study.threads);
     Case c = only_case(study);
     Workload workload = make_workload(study, c.sources, file_readers());

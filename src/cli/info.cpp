@@ -221,7 +221,7 @@ Action add_info(Options& options) {
         "  1    the program or the system failed\n"
         "  2    the file cannot be read, or a setting does not fit");
     return [job](const std::string&) {
-        require_no_input(job->output, files_named(job->input));
+        require_output(job->output, files_named(job->input));
         std::string text;
         {
             StepProgress progress(job->quiet, job->output);

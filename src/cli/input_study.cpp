@@ -13,6 +13,7 @@
 #include "cli/paper_reference.h"
 #include "controlspace/io/read_sources.h"
 #include "controlspace/metric/nonconformity.h"
+#include "files/output_file.h"
 #include "refuse.h"
 
 namespace controlspace {
@@ -157,8 +158,8 @@ std::vector<std::filesystem::path> with_partner(const std::filesystem::path& fil
 
 }  // namespace
 
-void require_no_input(const std::filesystem::path& output,
-                      const std::vector<std::filesystem::path>& inputs) {
+void require_output(const std::filesystem::path& output,
+                    const std::vector<std::filesystem::path>& inputs) {
     for (const std::filesystem::path& written : with_partner(output)) {
         std::error_code none;  // terminals and pipes are read and written alike
         if (!std::filesystem::is_regular_file(written, none)) continue;
@@ -169,6 +170,7 @@ void require_no_input(const std::filesystem::path& output,
             }
         }
     }
+    if (!output.empty()) require_writable(output);
 }
 
 std::vector<PointSource> sources_of_input(const std::filesystem::path& input,

@@ -58,10 +58,10 @@ Case only_case(const Study& study);
 std::vector<PointSource> sources_of_input(const std::filesystem::path& input,
                                           const GivenSettings& given);
 
-/// Throws InputError if `output` is one of the files that are read. A Medit mesh and its solution
-/// are read and written together.
-void require_no_input(const std::filesystem::path& output,
-                      const std::vector<std::filesystem::path>& inputs);
+/// Throws InputError if `output`, unless empty, is one of the files that are read, or cannot be
+/// written. A Medit mesh and its solution are read and written together.
+void require_output(const std::filesystem::path& output,
+                    const std::vector<std::filesystem::path>& inputs);
 
 /// Throws InputError where voxels are to be chosen by trial, which only `compare` does.
 void require_set_voxels(const Case& c);

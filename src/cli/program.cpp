@@ -26,6 +26,7 @@
 #include "cli/standard_output.h"
 #include "controlspace/error.h"
 #include "controlspace/study/provenance.h"
+#include "files/text_file.h"
 #include "refuse.h"
 
 namespace controlspace {
@@ -79,8 +80,26 @@ constexpr const char* statuses =
 void require_command(const std::string& word) {
     std::vector<std::string> names;
     for (const CommandRow& row : commands) names.emplace_back(row.name);
-    if (std::find(names.begin(), names.end(), word) != names.end()) return;
-    refuse("unknown command '{}': give one of {}", word, fmt::join(names, ", "));
+    if (std::ranges::count(names, word) > 0) return;
+    names.emplace_back("help");
+    const std::string nearest = did_you_mean(word, names);
+    refuse("unknown command '{}'{}", word,
+           nearest.empty() ? fmt::format(": give one of {}", fmt::join(names, ", ")) : nearest);
+}
+
+/// Throws InputError for the first option that `command` does not have. CLI11 puts other errors
+/// first, of what is missing without it.
+void require_options(const CLI::App& command) {
+    for (std::string word : command.remaining()) {
+        if (word.size() < 2 || word[0] != '-') continue;
+        word = word.substr(0, word.find('='));
+        std::vector<std::string> names;
+        for (const CLI::Option* option : command.get_options()) {
+            for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        }
+        refuse("unknown option {}{} (see controlspace {}--help)", word, did_you_mean(word, names),
+               command.get_parent() == nullptr ? "" : command.get_name() + " ");
+    }
 }
 
 /// The command line, quoted for a shell.
@@ -109,7 +128,7 @@ int run(int argc, const char* const* argv) {
     app.require_subcommand(1);
     app.footer(std::string("Examples:\n"
                            "  controlspace build part.stl -o part.ctrl\n"
-                           "  controlspace COMMAND --help\n\n") +
+                           "  controlspace help COMMAND\n\n") +
                statuses);
     set_help(app);
     std::deque<Options> options;
@@ -120,9 +139,15 @@ int run(int argc, const char* const* argv) {
         options.back().set_footer(row.examples, statuses);
     }
 
-    if (argc > 1 && argv[1][0] != '-') require_command(argv[1]);
+    std::vector<std::string> words(argv + 1, argv + argc);
+    if (!words.empty() && words.front() == "help") {
+        std::erase(words, "help");
+        words.emplace_back("--help");
+    }
+    if (!words.empty() && !words.front().starts_with('-')) require_command(words.front());
+    std::ranges::reverse(words);  // as CLI11 takes them
     try {
-        app.parse(argc, argv);
+        app.parse(words);
     } catch (const CLI::CallForHelp&) {
         print(app.help());
         return 0;
@@ -131,6 +156,7 @@ int run(int argc, const char* const* argv) {
         return 0;
     } catch (const CLI::ParseError& error) {
         const auto given = app.get_subcommands();
+        require_options(given.empty() ? app : *given.front());
         refuse("{} (see controlspace {}--help)", error.what(),
                given.empty() ? "" : given.front()->get_name() + " ");
     }

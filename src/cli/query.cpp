@@ -109,7 +109,7 @@ int query(const Query& job) {
     if (job.points.empty()) {
         refuse("no POINTS: name a .csv, or give --pipe (see controlspace query --help)");
     }
-    require_no_input(job.output, {job.input, job.points});
+    require_output(job.output, {job.input, job.points});
     if (is_control_space(job.output)) {
         refuse_at(job.output, "metrics are written as .csv: name such a file");
     }

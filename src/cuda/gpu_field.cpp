@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "controlspace/metric/stored_metrics.h"
 #include "cuda/octree_arrays.h"
 #include "cuda/octree_kernels.h"
 #include "refuse.h"
@@ -57,6 +58,7 @@ struct GpuField::Copy {
 };
 
 GpuField::GpuField(const ControlSpace& field, Precision precision) {
+    require_valid(precision);
     if (precision == Precision::log16 || precision == Precision::log8) {
         refuse("a GPU holds no codes of lengths: use floats or doubles");
     }

@@ -15,16 +15,22 @@ int main(void) {
     const double positions[6] = {0.3, 0.2, 0, -1, -1, -1};
     const double lengths[2] = {0.02, 0.05};
     const double places[6] = {0.3, 0.2, 0, 0.9, 0.9, 0.9};
+    const cspace_sources sources = {
+        .struct_size = sizeof(cspace_sources), .n = 2, .positions = positions, .lengths = lengths};
+    /* Lengths within 2.5 %: delta = sqrt(3) (k + 1/k - 2) for a factor k of two lengths. */
+    const cspace_options options = {
+        .struct_size = sizeof(cspace_options), .growth = 1.25, .delta = 0.001};
     double metrics[12];
     double again[12];
     cspace* space = NULL;
     int i;
 
-    if (cspace_create("K_oV", domain, "tau=1", &space) != CSPACE_OK) return fail(space);
-    if (cspace_insert_lengths(space, 2, positions, lengths) != CSPACE_OK) return fail(space);
-    if (cspace_grade(space, 1.25) != CSPACE_OK) return fail(space);
+    if (cspace_build("K_oV", domain, &sources, &options, NULL, &space) != CSPACE_OK) {
+        return fail(space);
+    }
     if (cspace_sample(space, 2, places, metrics) != CSPACE_OK) return fail(space);
-    printf("length at the source: %.3f, far from it: %.3f\n", metrics[0], metrics[6]);
+    printf("length at the source: %.3f, requested: %.3f, far from it: %.3f\n", metrics[0],
+           lengths[0], metrics[6]);
 
     if (cspace_save(space, "field.ctrl") != CSPACE_OK) return fail(space);
     cspace_free(space);

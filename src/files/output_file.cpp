@@ -22,6 +22,15 @@ std::filesystem::path without_links(const std::filesystem::path& path) {
     return resolved.empty() ? path : resolved;
 }
 
+constexpr const char* standard_output = "/dev/stdout";
+
+/// Written to directly. A file that standard output is sent to may hold other things already.
+bool is_special(const std::filesystem::path& path) {
+    std::error_code ignored;
+    return path == standard_output || (std::filesystem::exists(path, ignored) &&
+                                       !std::filesystem::is_regular_file(path, ignored));
+}
+
 /// Gives a new file the owner, as far as that is allowed, and the mode of the one that it replaces.
 void keep_rights(int file, const struct stat& before) {
     [[maybe_unused]] const int ignored = ::fchown(file, before.st_uid, before.st_gid);
@@ -46,29 +55,38 @@ void require_room(const std::filesystem::path& path, std::uintmax_t bytes) {
            static_cast<double>(bytes) / mb, static_cast<double>(space.available) / mb);
 }
 
+void require_writable(const std::filesystem::path& path) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) {
+        refuse("cannot write {}: it is a directory, name a file", path.string());
+    }
+    if (is_special(path)) return;
+    const std::filesystem::path target = without_links(path);
+    struct stat before {};
+    if (::stat(target.c_str(), &before) == 0 &&
+        ((before.st_mode & 0222) == 0 || ::access(target.c_str(), W_OK) != 0)) {
+        refuse("cannot write {}: it is write-protected (chmod u+w), or name another file",
+               path.string());
+    }
+    const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
+    if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+        refuse("cannot write {}: {}", path.string(), std::strerror(errno));
+    }
+}
+
 std::filesystem::path OutputFile::partial(const std::filesystem::path& path) {
     static const unsigned process = std::random_device{}();
     return without_links(path) += fmt::format(".{}.partial", process);
 }
 
 OutputFile::OutputFile(const std::filesystem::path& path) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored)) {
-        refuse("cannot write {}: it is a directory, name a file", path.string());
-    }
-    // A file that standard output is sent to may hold other things already.
-    const bool standard_output = path == "/dev/stdout";
-    const bool special = standard_output || (std::filesystem::exists(path, ignored) &&
-                                             !std::filesystem::is_regular_file(path, ignored));
+    require_writable(path);
+    const bool special = is_special(path);
     target_ = special ? path : without_links(path);
     written_ = special ? path : partial(path);
     struct stat before {};
     const bool replaces = !special && ::stat(target_.c_str(), &before) == 0;
-    if (replaces && ((before.st_mode & 0222) == 0 || ::access(target_.c_str(), W_OK) != 0)) {
-        refuse("cannot write {}: it is write-protected (chmod u+w), or name another file",
-               path.string());
-    }
-    file_ = standard_output ? stdout : std::fopen(written_.string().c_str(), "wb");
+    file_ = path == standard_output ? stdout : std::fopen(written_.string().c_str(), "wb");
     if (file_ == nullptr) fail();
     if (replaces) keep_rights(::fileno(file_), before);
 }

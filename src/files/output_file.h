@@ -15,6 +15,11 @@ namespace controlspace {
 /// known, it is left to writing.
 void require_room(const std::filesystem::path& path, std::uintmax_t bytes);
 
+/// Throws InputError where OutputFile would refuse `path`: a folder, a write-protected file, or in
+/// a folder that is not there or is write-protected. Writes nothing, for programs to call it before
+/// work that takes long.
+void require_writable(const std::filesystem::path& path);
+
 /// A file that is written whole or not at all: the bytes go to a temporary file beside it, which is
 /// renamed by `commit`, once the disk has it, and removed without it. A file that is replaced
 /// leaves its mode to the new one, and is refused if it is write-protected. Every writer of this

@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <numeric>
+#include <utility>
 
 #include "refuse.h"
 
@@ -107,6 +109,36 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
         parts.push_back(text.substr(begin, text.find(separator, begin) - begin));
     }
     return parts;
+}
+
+std::string did_you_mean(std::string_view word, std::span<const std::string> names) {
+    // Changes from the beginning of `word` to that of `name`: the last three rows of the table of
+    // the optimal string alignment distance.
+    const auto changes = [&](std::string_view name) {
+        std::vector<std::size_t> before, last, now(name.size() + 1);
+        std::iota(now.begin(), now.end(), std::size_t{0});
+        for (std::size_t i = 1; i <= word.size(); ++i) {
+            before = std::exchange(last, now);
+            now[0] = i;
+            for (std::size_t j = 1; j <= name.size(); ++j) {
+                const std::size_t other = word[i - 1] == name[j - 1] ? 0 : 1;
+                now[j] = std::min({last[j] + 1, now[j - 1] + 1, last[j - 1] + other});
+                if (i > 1 && j > 1 && word[i - 1] == name[j - 2] && word[i - 2] == name[j - 1]) {
+                    now[j] = std::min(now[j], before[j - 2] + 1);
+                }
+            }
+        }
+        return now.back();
+    };
+    std::size_t fewest = word.size() / 3 + 1;
+    std::string_view nearest;
+    for (const std::string& name : names) {
+        if (const std::size_t n = changes(name); n < fewest) {
+            fewest = n;
+            nearest = name;
+        }
+    }
+    return nearest.empty() ? "" : fmt::format(", did you mean {}?", nearest);
 }
 
 std::size_t chosen_array(const std::filesystem::path& path, std::string_view kind,

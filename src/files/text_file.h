@@ -44,6 +44,10 @@ std::string lower_case(std::string text);
 /// The parts of `text` between separators: one more than there are separators.
 std::vector<std::string_view> split(std::string_view text, char separator);
 
+/// ", did you mean NAME?", for the name that `word` was most likely to be: at most a third of its
+/// letters are wrong, missing, too many or exchanged with the next one. Otherwise empty.
+std::string did_you_mean(std::string_view word, std::span<const std::string> names);
+
 /// Index in `names` of the array that is called `wanted`; of the only one, if that is empty. Throws
 /// InputError that lists them if there is none, or more than one. `kind` is "views", for messages.
 std::size_t chosen_array(const std::filesystem::path& path, std::string_view kind,

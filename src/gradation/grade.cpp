@@ -11,8 +11,8 @@
 #include "controlspace/geometry/detail/large_pages.h"
 #include "controlspace/geometry/point.h"
 #include "geometry/threads.h"
-#include "gradation/require_known.h"
 #include "gradation/schedules.h"
+#include "require_known.h"
 
 namespace controlspace {
 

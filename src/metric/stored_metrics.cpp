@@ -13,6 +13,7 @@
 
 #include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
+#include "require_known.h"
 
 namespace controlspace {
 
@@ -136,7 +137,10 @@ StoredMetrics<M>::StoredMetrics(std::span<const Metric> metrics,
     store(numbers.size(), [&](std::size_t i) -> const Metric& { return metrics[numbers[i]]; });
 }
 
+void require_valid(Precision precision) { require_known("precision", precision, Precision::log8); }
+
 double rounding_of(Precision precision, bool are_lengths, double shortest, double longest) {
+    require_valid(precision);
     constexpr double of_float = 1 + 6e-8;  // half a unit in its last place
     switch (precision) {
         case Precision::floats:

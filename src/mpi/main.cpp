@@ -209,7 +209,7 @@ int print_checksum(Ranks& ranks, const ParallelJob& job) {
 int sample(Ranks& ranks, const ParallelJob& job) {
     std::vector<Point> points;
     ranks.together([&] {
-        require_no_input(job.output, {job.input, job.points});
+        require_output(job.output, {job.input, job.points});
         if (ranks.rank() == 0) points = read_csv_points(job.points);
     });
     const Made made = make(ranks, job);

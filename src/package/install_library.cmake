@@ -9,6 +9,14 @@ set(controlspace_modules_folder ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/${controlspace
 # The public headers, which include nothing but each other.
 set(controlspace_headers ${PROJECT_SOURCE_DIR}/src/include)
 
+# `cmake --install` builds what is missing: bench/run, for one, builds nothing but the program.
+add_custom_target(controlspace_installed)
+foreach(component IN ITEMS Unspecified program library)
+    install(CODE "execute_process(
+        COMMAND \"${CMAKE_COMMAND}\" --build \"${CMAKE_BINARY_DIR}\" --target controlspace_installed
+        COMMAND_ERROR_IS_FATAL ANY)" COMPONENT ${component})
+endforeach()
+
 # install_library(TARGET COMPONENT NAME [SHARES_STATICS]): TARGET is installed as
 # controlspace::NAME, which comes with the component COMPONENT of the package. SHARES_STATICS: its
 # inline variables are those of a shared library that it
@@ -29,6 +37,7 @@ function(install_library target)
     endif()
     precompile(${group} ${target})
     add_library(controlspace::${ARG_NAME} ALIAS ${target})
+    add_dependencies(controlspace_installed ${target})
     install(TARGETS ${target} EXPORT controlspace-${ARG_COMPONENT} COMPONENT library)
     get_property(components GLOBAL PROPERTY controlspace_components)
     if(NOT ARG_COMPONENT IN_LIST components)

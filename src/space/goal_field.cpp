@@ -10,10 +10,12 @@
 #include "controlspace/error.h"
 #include "controlspace/geometry/detail/place_sequence.h"
 #include "controlspace/metric/nonconformity.h"
+#include "controlspace/metric/stored_metrics.h"
 #include "controlspace/sources/cone.h"
 #include "controlspace/space/control_space_builder.h"
 #include "controlspace/space/sample_parallel.h"
 #include "controlspace/space/space_options.h"
+#include "require_known.h"
 #include "space/goal_cache.h"
 
 namespace controlspace {
@@ -22,6 +24,8 @@ namespace {
 
 const AdaptationGoal& require_valid(const AdaptationGoal& goal, const Box& domain) {
     require_valid(GradationOptions{.ratio = goal.ratio});
+    require_known("intersection", goal.intersection, IntersectionRule::in_turn);
+    controlspace::require_valid(goal.precision);
     if (!(goal.target > 0) || !std::isfinite(goal.target)) {
         throw InputError(
             fmt::format("target_delta is {}: give a positive non-conformity", goal.target));

@@ -9,7 +9,7 @@
 #include "controlspace/geometry/extent.h"
 #include "controlspace/gradation/grade.h"
 #include "controlspace/sources/point_source.h"
-#include "gradation/require_known.h"
+#include "require_known.h"
 
 namespace controlspace {
 

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "controlspace/geometry/extent.h"
 #include "measure/stopwatch.h"
+#include "refuse.h"
 #include "study/text_table.h"
 #include "study/time_estimate.h"
 
@@ -30,10 +32,16 @@ struct Trial {
     double query_seconds = 0;  ///< for each place
 };
 
+/// Throws InputError where the trial takes too long to be one.
 Trial try_case(const PreparedStudy& prepared, const Case& c, const Workload& workload) {
+    constexpr auto longest = std::chrono::seconds(5);
+    RowLimits limits;
+    limits.growth.deadline = GrowthLimit::Clock::now() + longest;
     const Stopwatch time;
-    const auto space = make_and_fill(prepared.study(), c, prepared.rows(), workload).space;
+    const Filled filled = make_and_fill(prepared.study(), c, prepared.rows(), workload, {}, limits);
+    if (!filled.creation.stopped.empty()) refuse("the trial was stopped");
     const double seconds = time.seconds();
+    const auto& space = filled.space;
     const auto places = random_points(workload.domain, 1000, 1);
     return {{seconds, static_cast<double>(space->footprint().bytes_total())},
             1e-9 * access_time(*space, places, 3).median_ns()};
@@ -58,15 +66,16 @@ Trial forecast_grid(const PreparedStudy& prepared, Case c, const Workload& workl
 
 /// Anything else, from two patches of sources: what they have in common does not grow.
 Trial forecast_patches(const PreparedStudy& prepared, const Case& c, const Workload& workload) {
-    constexpr std::size_t sources_of_trial = 4000;
+    // Trees that follow tensors take a hundred times as long for each.
+    const std::size_t sources_of_trial = c.target_delta && has_tensors(workload) ? 400 : 4000;
     Workload patch = workload;
     std::vector<PointSource> sources = patch_of(workload.sources.all(), sources_of_trial);
     patch.sources = columns_of(sources);
     Trial trial = try_case(prepared, c, patch);
     if (patch.sources.size() == workload.sources.size()) return trial;
     patch.sources = columns_of(patch_of(std::move(sources), sources_of_trial / 2));
-    const double steps =
-        static_cast<double>(workload.sources.size() - sources_of_trial) / (sources_of_trial / 2.0);
+    const double steps = static_cast<double>(workload.sources.size() - sources_of_trial) /
+                         (static_cast<double>(sources_of_trial) / 2);
     trial.cost += steps * (trial.cost - try_case(prepared, c, patch).cost).max(0);
     return trial;
 }
@@ -88,14 +97,15 @@ double cubed(int n) { return std::pow(n, 3); }
 std::optional<Forecast> forecast_case(const PreparedStudy& prepared, std::size_t i) {
     const Study& study = prepared.study();
     const Case& c = prepared.cases()[i];
-    if (c.target_delta || c.equal_delta || c.equal_memory || has_field(c.sources)) return {};
+    if (c.equal_delta || c.equal_memory || has_field(c.sources)) return {};
     const Workload& workload = prepared.workload(c);
     const double probes = cubed(study.probe_grid) + cubed(study.fine_probe_grid);
     const double timed =  // each run is preceded by one that is not timed
         2 * study.access_repeats *
         ((has_tensors(workload) ? 4.0 : 6.0) * static_cast<double>(study.access_points) +
          cubed(study.probe_grid));
-    const Trial trial = prepared.entry(c).has<VoxelSize>()
+    // Grids that choose their voxels for a target choose them by a patch, too.
+    const Trial trial = prepared.entry(c).has<VoxelSize>() && (!c.target_delta || c.voxel)
                             ? forecast_grid(prepared, c, workload)
                             : forecast_patches(prepared, c, workload);
     Forecast forecast{

@@ -16,9 +16,10 @@ struct Forecast {
 };
 
 /// Forecasts for all cases of a study, extrapolated from small trials: of trees with some thousand
-/// neighbouring sources, of grids with fewer voxels. Usually correct within a factor of two or
-/// three. None for cases that cannot be predicted (adaptation to a target, a search for voxels),
-/// and for those that fail. Costs some ten milliseconds a case.
+/// neighbouring sources (adapted to tensors, some hundred), of grids with fewer voxels. Usually
+/// correct within a factor of two or three. None for cases that cannot be predicted (voxels for an
+/// equal error or memory, continuous fields), and for those whose trial fails or takes over 5 s.
+/// Costs some ten milliseconds a case, adapted to a small target up to some seconds.
 std::vector<std::optional<Forecast>> forecast(const PreparedStudy& prepared);
 
 /// The cases, their forecasts and the sum, as a table.

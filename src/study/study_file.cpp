@@ -22,6 +22,49 @@ namespace {
     refuse("{}:{}: {}", place.string(), source.begin.line, what);
 }
 
+/// The value in a line that is a text without quotes; empty where there is none.
+std::string_view unquoted_text(std::string_view line) {
+    char quote = 0;
+    // In a line of an array's values alone there is no key.
+    bool is_value = line.find('=') == line.npos;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const char c = line[i];
+        if (quote != 0) {
+            if (c == quote) quote = 0;
+        } else if (c == '"' || c == '\'') {
+            quote = c;
+            is_value = false;
+        } else if (c == '#') {
+            break;
+        } else if (c == '=' || c == '[' || c == ',') {
+            is_value = true;
+        } else if (is_value && c != ' ' && c != '\t' && c != ']') {
+            std::string_view text = line.substr(i, line.find_first_of(",]#\r", i) - i);
+            text = text.substr(0, text.find_last_not_of(" \t") + 1);
+            double number = 0;
+            if (!parse_number(text, number) && text != "true" && text != "false") return text;
+            is_value = false;
+        }
+    }
+    return {};
+}
+
+[[noreturn]] void fail_parsing(std::string_view text, const std::filesystem::path& place,
+                               const toml::parse_error& error) {
+    const std::string_view what = error.description();
+    const std::size_t line = error.source().begin.line;
+    if (what.find("key") == what.npos && what.find("table") == what.npos && line > 0) {
+        const auto lines = split(text, '\n');
+        const std::string_view value =
+            unquoted_text(lines[std::min<std::size_t>(line, lines.size()) - 1]);
+        if (!value.empty()) {
+            fail(place, error.source(),
+                 fmt::format("{0} is neither a number nor true or false: quote it, '{0}'", value));
+        }
+    }
+    fail(place, error.source(), std::string(what));
+}
+
 /// The keys and values of one table of the file.
 class Section {
 public:
@@ -47,8 +90,11 @@ public:
     void require_known(const std::vector<std::string>& known) const {
         for (const auto& [key, node] : table_) {
             if (std::ranges::count(known, key.str()) > 0) continue;
+            const std::string nearest = did_you_mean(key.str(), known);
             fail(place_, key.source(),
-                 fmt::format("unknown key '{}': known are {}", key.str(), fmt::join(known, ", ")));
+                 fmt::format("unknown key '{}'", key.str()) +
+                     (nearest.empty() ? fmt::format(": known are {}", fmt::join(known, ", "))
+                                      : nearest));
         }
     }
 
@@ -128,7 +174,7 @@ Study parse_study(std::string_view text, const std::filesystem::path& place,
     try {
         table = toml::parse(text, place.string());
     } catch (const toml::parse_error& error) {
-        fail(place, error.source(), std::string(error.description()));
+        fail_parsing(text, place, error);
     }
     std::vector<std::string> run_keys{structures_key};
     for (const CaseParameter& p : parameters) run_keys.push_back(p.key);

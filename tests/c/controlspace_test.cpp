@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -307,6 +309,37 @@ TEST_CASE("C: a field built in one step is only read, unless it takes later sour
         CHECK(cspace_grade(growing, 0) == CSPACE_OK);
         CHECK(cspace_size(growing, elsewhere[0], elsewhere[1], elsewhere[2]) < 0.75 * size);
         cspace_free(growing);
+    }
+}
+
+TEST_CASE("C: the caller can stop a field that is being built", "[threads]") {
+    const std::vector<Point> x = random_points(domain, 200'000, 5);
+    const std::vector<double> lengths(x.size(), 1e-4);
+    const cspace_sources sources{sizeof sources, x.size(),       x.front().data(),
+                                 nullptr,        lengths.data(), nullptr};
+    for (const char* structure : {"K_oV", "K_L", "uniform-nearest"}) {
+        for (const double delta : {0.0, 1e-6}) {
+            if (delta == 0 && structure[0] == 'u') continue;  // takes no time
+            for (const bool at_once : {true, false}) {
+                CAPTURE(structure, delta, at_once);
+                int stop = at_once ? 1 : 0;
+                cspace_options given{};
+                given.struct_size = sizeof given;
+                given.delta = delta;
+                given.further = "tau=0.01";
+                given.stop = &stop;
+                std::thread other([&] {
+                    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+                    std::atomic_ref(stop).store(1);
+                });
+                cspace* space = nullptr;
+                CHECK(cspace_build(structure, corners.data(), &sources, &given, nullptr, &space) ==
+                      CSPACE_FAILURE);
+                CHECK_THAT(cspace_last_error(), Contains("stopped by the caller"));
+                CHECK(space == nullptr);
+                other.join();
+            }
+        }
     }
 }
 

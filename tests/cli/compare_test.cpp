@@ -154,6 +154,9 @@ TEST_CASE("help, version and list") {
     CHECK_THAT(help.out, Contains("--tau") && Contains("(default: 1.25)"));
     CHECK_THAT(box.run("--version").out, Catch::Matchers::StartsWith("controlspace 0."));
     CHECK(box.run("--help").status == 0);
+    CHECK(box.run("help").out == box.run("--help").out);
+    CHECK(box.run("help compare").out == help.out);
+    CHECK(box.run("help help").out == box.run("--help").out);
     const Outcome list = box.run("list");
     CHECK(list.status == 0);
     CHECK_THAT(list.out, Contains("K_Li") && Contains("s_M") && Contains("published-sphere"));
@@ -180,9 +183,17 @@ TEST_CASE("bad input ends with one line and status 2, and writes nothing") {
         {"compare --structures K_X", "unknown structure 'K_X'"},
         {"compare --kd-depth 1000", "depth"},
         {"compare no.toml", "no.toml"},
-        {"compare bad.toml", "bad.toml:2: unknown key 'taus'"},
+        {"compare bad.toml", "bad.toml:2: unknown key 'taus', did you mean tau?"},
         {"compare a.toml b.toml", "b.toml"},
-        {"comapre s.csv", "unknown command 'comapre': give one of compare, info, "},
+        {"comapre s.csv", "unknown command 'comapre', did you mean compare?"},
+        {"help comapre", "unknown command 'comapre', did you mean compare?"},
+        {"measure s.csv", "unknown command 'measure': give one of compare, info, "},
+        {"compare --strutures K_oV s.csv",
+         "unknown option --strutures, did you mean --structures?"},
+        {"build s.csv --ouput=a.ctrl", "unknown option --ouput, did you mean --output?"},
+        {"build s.csv -o a.ctrl --colour",
+         "unknown option --colour (see controlspace build --help)"},
+        {"--verison", "unknown option --verison, did you mean --version?"},
         {"compare --sources no.csv", "no.csv"},
         {"compare --sources nan.csv", "nan.csv:3"},
         {"compare --sources .", "."},

@@ -107,6 +107,26 @@ TEST_CASE("sources that are converted there and back are the same") {
     }
 }
 
+TEST_CASE("an output that cannot be written is noticed before the input is read") {
+    const Sandbox box("protected");
+    box.write("broken.csv", "x,y,z,h\n0,0,0,none\n");
+    const std::string out =
+        GENERATE("build broken.csv -o out.ctrl", "export broken.csv -o out.vtu",
+                 "export broken.csv -o out.npy", "convert broken.csv out.mesh",
+                 "convert broken.csv -o out.csv", "query broken.csv broken.csv -o out.csv",
+                 "info broken.csv -o out.txt");
+    CAPTURE(out);
+    const std::string name = out.substr(out.find("out."));
+    box.write(name, "kept");
+    check_refused(box.run(out, "chmod a-w " + name + "; "), name + ": it is write-protected");
+    CHECK(file_text(box / name) == "kept");
+    check_refused(box.run(out, "rm -f " + name + "; mkdir " + name + "; "),
+                  name + ": it is a directory");
+    const std::string elsewhere = std::string(out).replace(out.find(name), 0, "none/");
+    check_refused(box.run(elsewhere), "cannot write none/" + name + ": No such file or directory");
+    check_refused(box.run(out, "rm -rf " + name + "; "), "broken.csv:2");
+}
+
 TEST_CASE("query writes what a structure answers, as a table of sources") {
     const Sandbox box("query");
     box.write("s.csv", sizes_csv);

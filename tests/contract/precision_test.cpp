@@ -155,6 +155,23 @@ STRUCTURE_CASE(is_linear, "what is stopped at once says so, in every precision")
     CHECK_FALSE(report.shortfall.empty());
 }
 
+STRUCTURE_CASE(every_structure, "a number that names no precision or rule is refused") {
+    const Work work = isotropic_sphere();
+    AdaptationGoal goal{.sources = work.sources, .continuous = nullptr, .target = 0.05};
+    for (const int number : {-1, 4, 255}) {
+        CAPTURE(number);
+        const auto space = structure.make(work.options());
+        const auto precision = static_cast<Precision>(number);
+        CHECK_THROWS_AS(space->build({.precision = precision}), InputError);
+        AdaptationGoal wrong = goal;
+        wrong.precision = precision;
+        CHECK_THROWS_AS(space->adapt(wrong), InputError);
+        wrong = goal;
+        wrong.intersection = static_cast<IntersectionRule>(number);
+        CHECK_THROWS_AS(space->adapt(wrong), InputError);
+    }
+}
+
 bool is_quadratic(const CatalogueEntry& structure) {
     return has_compact_form(structure) && structure.order == 2;
 }

@@ -107,6 +107,47 @@ TEST_CASE(
     }
 }
 
+TEST_CASE(
+    "order-free intersection: rounding is what the header states, up to its largest anisotropy") {
+    const double anisotropy = GENERATE(1e2, 1e4, 1e6, 1e7, 5e7);
+    const double rounding = 2e-14 * anisotropy * (1 + anisotropy / 1e6);
+    const double tolerance = GENERATE(1e-6, 1e-10);
+    Draw draw(51);
+    std::size_t answers = 0;
+    for (int i = 0; i < 100; ++i) {
+        for (const std::size_t count : {2, 3, 5, 12, 40}) {
+            Metrics close;  // layers that are nearly parallel
+            for (std::size_t k = 0; k < count; ++k) {
+                const Vector normal = (Vector(1, 2, 3) + 1e-3 * draw.vector()).normalized();
+                close.push_back(layer_metric(normal, 1, anisotropy));
+            }
+            for (const Metrics& metrics :
+                 {drawn(draw, count, anisotropy), drawn(draw, count, anisotropy, 100),
+                  layers(draw, count, anisotropy), close}) {
+                CAPTURE(anisotropy, tolerance, count, i);
+                OrderFreeIntersection answer;
+                try {
+                    answer = order_free_intersection(metrics, tolerance);
+                } catch (const InputError&) {  // of lengths that rounding hides
+                    CHECK(anisotropy > 1e7);
+                    continue;
+                }
+                ++answers;
+                const LongMatrix m = long_matrix(answer.metric());
+                long double longest = 0;
+                for (const Metric& other : metrics) {
+                    const LongMatrix k = long_matrix(other).inverse() * m;
+                    longest = std::max(longest, LongSolver(k.transpose() * k).eigenvalues()[2]);
+                }
+                CHECK(std::sqrt(longest) <= 1 + rounding);
+                CHECK(answer.gap <= tolerance + rounding);
+                CHECK(proven_gap(answer, metrics) <= answer.gap + rounding);
+            }
+        }
+    }
+    CHECK(answers >= 400);
+}
+
 TEST_CASE("order-free intersection: agrees with a solver that works in another way") {
     Draw draw(42);
     for (int i = 0; i < 60; ++i) {

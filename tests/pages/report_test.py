@@ -283,6 +283,19 @@ class Page(InFolder):
         self.assertTrue("no memory" in self.page_of([failed_row("no memory", structure="direct")]))
         self.page_of([])
 
+    def test_nothing_is_shown_as_python_writes_it_and_no_table_is_empty(self):
+        for rows, sources in ((QUICK["rows"], ["a.csv", "ball:0,0,0,r=1,h=0.1"]), ([], []),
+                              ([failed_row("no memory", structure="direct")], ["a.csv"])):
+            tree = parsed(self.page_of(rows, sources=sources))
+            text = " ".join(tree.find("body").itertext())
+            self.assertIn(f"({', '.join(sources) or 'not set'})", text)
+            self.assertNotIn("['", text)
+            self.assertEqual(re.findall(r"\bdelta_R\b", text), [])
+            for table in tree.iter("tbody"):
+                self.assertGreater(len(table), 0)
+            for fold in tree.iter("details"):
+                self.assertGreater(len(fold), 1)
+
     def test_texts_of_results_stand_in_the_page_as_texts(self):
         figure = figures.Figure(HOSTILE, HOSTILE, HOSTILE, 10, 10, "svg", b"foobar")
         table = Table(HOSTILE, HOSTILE, [f"<{HOSTILE}", "n"], [[HOSTILE, "1"]])

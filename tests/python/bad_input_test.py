@@ -56,6 +56,20 @@ class BadInput(unittest.TestCase):
         self.refused("shape (3, 5)", build, P, np.ones((3, 5)))
         self.refused("shape ()", build, P, 0.1)
 
+    def test_masked_arrays(self):
+        build = controlspace.build
+        hidden = np.ma.masked_greater(P, 1)
+        controlspace.build(hidden, H)  # nothing is
+        hidden[1, 2] = np.ma.masked
+        self.refused("points has masked entries", build, hidden, H)
+        self.refused("h has masked entries", build, P, np.ma.masked_equal([1, 2, 3], 2))
+        self.refused("growth has masked entries", build, P, H, growth=np.ma.masked_less(H, 1))
+        self.refused("box has masked entries", build, P, H, box=np.ma.masked_equal(BOX, 1))
+        field = controlspace.build(P, H, box=BOX)
+        for action in (field.size, field.metric, field.riemannian):
+            self.refused("x has masked entries", action, hidden)
+        self.refused("a has masked entries", field.edge_length, hidden, P)
+
     def test_tensors(self):
         build = controlspace.build
         self.refused("h[2] is", build, P, tensors(np.diag((1, 1, -1))))

@@ -3,10 +3,13 @@
 
 import copy
 import doctest
+import os
 import pathlib
 import pickle
+import signal
 import tempfile
 import threading
+import time
 import unittest
 import warnings
 
@@ -166,6 +169,28 @@ class Fields(unittest.TestCase):
         field = controlspace.build([(0, 0, 0)], [0.1])
         for attempt in (copy.copy, copy.deepcopy, pickle.dumps, lambda _: controlspace.Field()):
             self.assertRaises(TypeError, attempt, field)
+
+    def test_ctrl_c_ends_a_build(self):
+        points, h = sources(300000)
+        for name in ("K_oV", "K_L"):
+            for options in ({"delta": 1e-5}, {"tau": 0.01, "max_memory": 8}):
+                with self.subTest(name, **options):
+                    pressed = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+                    before = time.monotonic()
+                    pressed.start()
+                    with self.assertRaises(KeyboardInterrupt):
+                        controlspace.build(points, 1e-3 * h, name, BOX, **options)
+                    pressed.join()
+                    self.assertLess(time.monotonic() - before, 20)
+        # What comes after is built as if nothing had happened, in other threads, too.
+        built = []
+        thread = threading.Thread(target=lambda: built.append(controlspace.build(points[:9], h[:9])))
+        thread.start()
+        thread.join()
+        x = random.uniform(-0.5, 0.5, (100, 3))
+        np.testing.assert_array_equal(
+            built[0].size(x), controlspace.build(points[:9], h[:9]).size(x)
+        )
 
     def test_threads_read_at_the_same_time(self):
         points, h = sources()

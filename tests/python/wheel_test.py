@@ -10,6 +10,7 @@ import re
 import sys
 import time
 import unittest
+import weakref
 
 import controlspace
 import gmsh
@@ -148,6 +149,39 @@ class Meshes(unittest.TestCase):
         controlspace.build([(0.5, 0.5, 0.5)], [0.1], box=BOX).gmsh()  # and is dropped
         gmsh.model.mesh.generate(3)
         self.assertGreater(len(mesh_of_model()[1]), 1000)
+
+    def test_gmsh_keeps_the_fields_of_models_of_one_name(self):
+        alive = []
+        for h in (0.1, 0.2):
+            start_box(DELAUNAY)  # "box" each time
+            field = controlspace.build([(0.5, 0.5, 0.5)], [h], box=BOX)
+            field.gmsh()
+            alive.append(weakref.ref(field))
+            del field
+        self.assertEqual([field() is None for field in alive], [False, False])
+
+    def test_gmsh_frees_the_fields_that_no_model_asks(self):
+        start_box(DELAUNAY)
+        alive = []
+        for h in (0.1, 0.2):
+            field = controlspace.build([(0.5, 0.5, 0.5)], [h], box=BOX)
+            field.gmsh()
+            alive.append(weakref.ref(field))
+            del field
+        self.assertEqual([field() is None for field in alive], [True, False])
+        gmsh.model.remove()
+        gmsh.model.add("another")
+        controlspace.build([(0.5, 0.5, 0.5)], [0.3], box=BOX).gmsh()
+        self.assertIsNone(alive[1]())
+
+    def test_gmsh_that_is_not_initialized_is_an_error(self):
+        gmsh.finalize()
+        try:
+            for factor in (None, 1.0):
+                with self.assertRaisesRegex(RuntimeError, "gmsh.initialize"):
+                    self.field.gmsh(factor)
+        finally:
+            gmsh.initialize()
 
     def test_mmg(self):
         points, normals = sphere(1000)

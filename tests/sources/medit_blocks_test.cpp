@@ -147,6 +147,37 @@ TEST_CASE("what is wrong in a binary mesh is named with its place") {
     CHECK_THAT(error_in_mesh(with_first(1e99)), Contains("vertex 1 has a coordinate 1e+99"));
 }
 
+TEST_CASE("rows that are longer than the dimension says are refused") {
+    const int version = GENERATE(1, 2, 3, 4);
+    const bool swapped = GENERATE(false, true);
+    CAPTURE(version, swapped);
+    const std::string_view why = "more numbers than the rows of Dimension 2 have";
+    const auto of_the_plane = [&](std::string bytes) {
+        bytes[swapped ? (version < 3 ? 19u : 23u) : (version < 3 ? 16u : 20u)] = 2;
+        return bytes;
+    };
+    CHECK_THAT(error_in_mesh(of_the_plane(mesh_bytes(version, swapped))),
+               Contains(std::string(why)));
+    CHECK_THAT(
+        error_in_solution(of_the_plane(solution_bytes(
+            version, swapped, symmetric_tensor, {4, 0.5, 3, -0.75, 0.25, 2, 8, 1, 16, -2, 3, 32}))),
+        Contains(std::string(why)));
+    // Sizes have one number in any dimension, and the last block need not name a next one.
+    CHECK(parse_medit_metrics(of_the_plane(solution_bytes(version, swapped, scalar, {0.5, 0.25})),
+                              "m.solb") ==
+          std::vector{Metric::isotropic(0.5), Metric::isotropic(0.25)});
+    const auto last = [&](bool has_end) {
+        MeditBytes file(version, swapped);
+        file.word(vertices_code).place(0).integer(1);
+        file.real(1).real(2).real(3).integer(8);
+        return has_end ? file.end().bytes() : file.bytes();
+    };
+    for (const bool has_end : {false, true}) {
+        CHECK(parse_medit_vertices(last(has_end), "m.meshb") == std::vector<Point>{{1, 2, 3}});
+        CHECK_THAT(error_in_mesh(of_the_plane(last(has_end))), Contains(std::string(why)));
+    }
+}
+
 TEST_CASE("what is wrong in a binary solution is named with its place") {
     const double infinite = std::numeric_limits<double>::infinity();
     CHECK_THAT(error_in_solution(mesh_bytes(2, true)), Contains("m.solb has no SolAtVertices"));

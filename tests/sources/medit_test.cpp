@@ -83,6 +83,18 @@ TEST_CASE("planes, version 0 and capital letters, as BAMG writes them") {
                Contains("is not positive definite"));
 }
 
+TEST_CASE("rows that are longer than the dimension says are refused in text, too") {
+    const std::string head = "MeshVersionFormatted 2\nDimension 2\n";
+    CHECK_THAT(error_in_mesh(head + "Vertices 2\n0 0 0 1\n1 1 1 2\nEnd\n"),
+               Contains("m.mesh:5: more numbers than the rows of Dimension 2 have"));
+    CHECK_THAT(error_in_solution(head + "SolAtVertices 2 1 3\n1 0 1 0 0 1\n4 0 4 0 0 4\nEnd"),
+               Contains("more numbers"));
+    CHECK_THAT(error_in_solution(head + "SolAtVertices 2 1 1 0.5 0.25 -.5"),
+               Contains("more numbers"));
+    CHECK(parse_medit_vertices(head + "Vertices 1\n3 4 0  # 5\n", "m.mesh") ==
+          std::vector<Point>{{3, 4, 0}});
+}
+
 TEST_CASE("tensors in another order are found out") {
     // The same tensor in the order of MMG's programming interface, xx xy xz yy yz zz.
     const std::string text =

@@ -51,24 +51,41 @@ TEST_CASE("shorter leaves take more memory, and what cannot be predicted has no 
     Study study = small_sphere();
     study.runs[0]["structures"] = {"K_oL"};
     study.runs[0]["tau"] = {1, 0.25};
-    study.runs[0]["target_delta"] = {0, 0.1};
     const PreparedStudy prepared(study, {structures()});
     const auto forecasts = forecast(prepared);
-    std::vector<double> bytes;
-    for (std::size_t i = 0; i < forecasts.size(); ++i) {
-        CHECK(forecasts[i].has_value() != prepared.cases()[i].target_delta.has_value());
-        if (forecasts[i]) bytes.push_back(forecasts[i]->bytes);
-    }
-    REQUIRE(bytes.size() == 2);
-    CHECK(2.5 * bytes[0] < bytes[1]);
-    CHECK_THAT(forecast_text(prepared, forecasts),
-               Contains("4 cases: about ") && Contains("2 of them (–) not counted"));
-    study.runs[0]["target_delta"] = {0.1};
-    const PreparedStudy adapted(study, {structures()});
-    CHECK_THAT(forecast_text(adapted, forecast(adapted)), Contains("2 cases: no trial predicts"));
+    REQUIRE((forecasts.size() == 2 && forecasts[0] && forecasts[1]));
+    CHECK(2.5 * forecasts[0]->bytes < forecasts[1]->bytes);
+    CHECK_THAT(forecast_text(prepared, forecasts), Contains("2 cases: about "));
+    // Voxels that are searched for by all probes.
+    study.runs[0]["structures"] = {"uniform-nearest"};
     study.runs[0]["tau"] = {1};
+    study.runs[0]["equal_delta"] = {0, 0.5};
+    const PreparedStudy searched(study, {structures()});
+    CHECK_THAT(forecast_text(searched, forecast(searched)),
+               Contains("2 cases: about ") && Contains("1 of them (–) not counted"));
+    study.runs[0]["equal_delta"] = {0.5};
     const PreparedStudy one(study, {structures()});
     CHECK_THAT(forecast_text(one, forecast(one)), Contains("\n1 case: no trial predicts"));
+}
+
+TEST_CASE("adapted structures are foretold by patches of sources, too") {
+    Study study = small_sphere();
+    study.runs[0]["structures"] = {"K_L", "K_V", "K_oL", "K_oV", "K_oLA", "uniform-nearest"};
+    study.runs[0]["target_delta"] = {0.1};
+    PreparedStudy prepared(study, {structures()});
+    const auto forecasts = forecast(prepared);
+    const std::vector<Row> rows = std::move(prepared).run();
+    REQUIRE(rows.size() == forecasts.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        INFO(structure_label(rows[i].setting));
+        REQUIRE(rows[i].is_measured());
+        REQUIRE(forecasts[i]);
+        const double bytes = rows[i].number("bytes_total");
+        // Of a patch the rim, far from the rest of the sources, has leaves as well.
+        CHECK(forecasts[i]->bytes > bytes / 3);
+        CHECK(forecasts[i]->bytes < bytes * 3);
+        CHECK(forecasts[i]->seconds > 0);
+    }
 }
 
 TEST_CASE("a grid that outgrows the cap on memory is foretold at the cap") {

@@ -129,7 +129,17 @@ TEST_CASE("a file of sources is looked for beside the study file") {
 
 TEST_CASE("what is wrong in a study file is named with its line") {
     const auto [text, expected] = GENERATE(table<std::string, std::string>({
-        {"tau = 1\ntaus = 1", "folder/my-study.toml:2: unknown key 'taus': known are "},
+        {"tau = 1\ntaus = 1", "folder/my-study.toml:2: unknown key 'taus', did you mean tau?"},
+        {"structurs = 'K_L'", ":1: unknown key 'structurs', did you mean structures?"},
+        {"tau = 1\nsomething = 1", "folder/my-study.toml:2: unknown key 'something': known are "},
+        {"tau = 1\nstructures = K_oV",
+         ":2: K_oV is neither a number nor true or false: quote it, 'K_oV'"},
+        {"structures = ['x, y', K_oV, 'z'] # = z", ":1: K_oV is neither"},
+        {"sources = [\n'x',\nmy file.csv\n]", ":3: my file.csv is neither"},
+        {"sources = 2D.csv # two", "quote it, '2D.csv'"},
+        {"isotropic = truely", "quote it, 'truely'"},
+        {"tau = 1 # K_oV\nb", ":2: Error while parsing key-value pair"},
+        {"[[runs]", ":1: Error while parsing table header"},
         {"[[runs]]\nseed = 1", ":2: unknown key 'seed': known are structures, "},
         {"tau = [1", "folder/my-study.toml:1: "},
         {"threads = t\n", "folder/my-study.toml:1: "},

@@ -86,6 +86,9 @@ typedef struct cspace_options {
     double max_memory;  /**< [GiB] (default: 4) */
     const char* further; /**< others, as of cspace_create(); may be NULL. Growth is g_r there, and
                             is given once */
+    int* stop; /**< NULL, or a number, 0 at first: soon after another thread or a signal handler has
+                    set it to 1, cspace_build() ends with CSPACE_FAILURE. With takes_later_sources=1
+                    it must outlive the space, whose insertion and adaptation it ends as well */
 } cspace_options;
 
 /** Builds the field of sources in one step: creates a control space, and inserts and grades the

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t stl_head = 80, stl_triangle = 50;  // bytes
 
-Point read_point(Scanner& file, const Part& vertex) {
+Point read_point(Scanner& file, const FilePart& vertex) {
     Point p;
     for (double& x : p) x = file.number<double>(vertex);
     return p;

@@ -47,6 +47,7 @@ std::vector<Point> parse_medit_vertices(std::string_view bytes, const std::files
         require_coordinates(vertices[i], "vertex", i + 1, [&] { return file.where(); });
         file.skip_reference({"vertex", i});
     }
+    file.end_rows();
     return vertices;
 }
 
@@ -68,6 +69,7 @@ std::vector<Metric> parse_medit_metrics(std::string_view bytes, const std::files
         for (double& x : numbers) x = file.number({what, i});
         metrics.add(is_plane ? in_space(numbers) : numbers);
     }
+    file.end_rows();
     return metrics.take();
 }
 
@@ -114,6 +116,7 @@ std::vector<PointSource> parse_medit_required_edges(std::string_view bytes,
             ++at[end].count;
         }
     }
+    required.end_rows();
     std::vector<PointSource> sources;
     for (std::size_t i = 0; i < at.size(); ++i) {
         if (at[i].count == 0) continue;

@@ -96,12 +96,25 @@ std::size_t MeditReader::find(const MeditKeyword& keyword, std::size_t reals,
     refuse("{} has no {}: give a file that has", data_.path().string(), keyword.word);
 }
 
-std::int64_t MeditReader::integer(bool wide, const Part& part) {
+void MeditReader::end_rows() {
+    bool is_end = data_.rest().empty();
+    if (!data_.is_binary()) {
+        const std::string_view word = data_.word();
+        is_end = word.empty() || word.find_first_of("0123456789+-.") != 0;
+    } else if (!is_end && next_ == 0) {
+        is_end = integer(false, "a keyword") == end.code;
+    }
+    if (is_end) return;
+    fail("more numbers than the rows of Dimension {} have: is the Dimension or their count wrong?",
+         dimension_);
+}
+
+std::int64_t MeditReader::integer(bool wide, const FilePart& part) {
     return wide || !data_.is_binary() ? data_.number<std::int64_t>(part)
                                       : data_.number<std::int32_t>(part);
 }
 
-double MeditReader::number(const Part& part) {
+double MeditReader::number(const FilePart& part) {
     const double x = data_.is_binary() && version_ == 1
                          ? static_cast<double>(data_.number<float>(part))
                          : data_.number<double>(part);
@@ -109,13 +122,13 @@ double MeditReader::number(const Part& part) {
     return x;
 }
 
-std::int64_t MeditReader::integer(const Part& part, std::int64_t most) {
+std::int64_t MeditReader::integer(const FilePart& part, std::int64_t most) {
     const std::int64_t n = integer(version_ >= 4, part);
     if (n < 1 || n > most) fail("{}: {} is not one of 1 to {}", part.text(), n, most);
     return n;
 }
 
-void MeditReader::skip_reference(const Part& part) {
+void MeditReader::skip_reference(const FilePart& part) {
     if (data_.is_binary()) {
         integer(version_ >= 4, part);
     } else {

@@ -45,14 +45,18 @@ public:
     /// positive. A row has so many real numbers and integers, or more.
     std::size_t find(const MeditKeyword& keyword, std::size_t reals, std::size_t integers);
 
+    /// To be called after the last row: fails where more numbers follow, as rows then have another
+    /// length than they were read with.
+    void end_rows();
+
     /// A number of 32 bits.
-    std::int64_t integer(const Part& part) { return integer(false, part); }
+    std::int64_t integer(const FilePart& part) { return integer(false, part); }
     /// A number from 1 to `most`, of 64 bits in version 4.
-    std::int64_t integer(const Part& part, std::int64_t most);
+    std::int64_t integer(const FilePart& part, std::int64_t most);
     /// A finite number.
-    double number(const Part& part);
+    double number(const FilePart& part);
     /// Passes over a reference, a number without meaning here.
-    void skip_reference(const Part& part);
+    void skip_reference(const FilePart& part);
 
     std::string where() const { return data_.where(); }
     template <class... Args>
@@ -65,7 +69,7 @@ private:
     /// another one. False at the end of the file.
     bool next_block();
     bool is_at(const MeditKeyword& keyword) const;
-    std::int64_t integer(bool wide, const Part& part);
+    std::int64_t integer(bool wide, const FilePart& part);
 
     std::string_view bytes_;
     Scanner data_;
@@ -92,6 +96,7 @@ std::vector<std::array<std::uint32_t, n>> read_medit_elements(std::string_view b
         }
         file.skip_reference({keyword.word, i});
     }
+    file.end_rows();
     return elements;
 }
 

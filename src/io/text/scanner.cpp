@@ -59,15 +59,15 @@ std::string Scanner::where() const {
                  1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')));
 }
 
-std::string Part::text() const {
+std::string FilePart::text() const {
     return row ? fmt::format("{} {}", name, *row + 1) : std::string(name);
 }
 
-void Scanner::fail_end_within(const Part& part) const {
+void Scanner::fail_end_within(const FilePart& part) const {
     fail("the data end within {}: is it cut off?", part.text());
 }
 
-void Scanner::fail_number(const Part& part, std::string_view word, bool is_integral) const {
+void Scanner::fail_number(const FilePart& part, std::string_view word, bool is_integral) const {
     if (rest().empty() && word.empty()) fail_end_within(part);
     fail("{}: {} {}", part.text(), quote(word),
          is_integral ? "instead of a count" : "is not a number");

@@ -18,14 +18,14 @@
 namespace controlspace {
 
 /// What is being read, for messages: "Vertices", or row `row` (0-based) of it, "vertex 3".
-struct Part {
+struct FilePart {
     std::string_view name;
     std::optional<std::size_t> row = {};
 
-    Part(const char* whole) : name(whole) {}
-    Part(std::string_view whole) : name(whole) {}
-    Part(const std::string& whole) : name(whole) {}
-    Part(std::string_view rows, std::size_t index) : name(rows), row(index) {}
+    FilePart(const char* whole) : name(whole) {}
+    FilePart(std::string_view whole) : name(whole) {}
+    FilePart(const std::string& whole) : name(whole) {}
+    FilePart(std::string_view rows, std::size_t index) : name(rows), row(index) {}
     std::string text() const;
 };
 
@@ -72,7 +72,7 @@ public:
 
     /// The next number: a word that ends before one of `separators`, or the bytes of a `Number`.
     template <class Number>
-    Number number(const Part& part, std::string_view separators = blanks) {
+    Number number(const FilePart& part, std::string_view separators = blanks) {
         Number number{};
         if (binary_) {
             std::array<char, sizeof(Number)> raw;
@@ -99,8 +99,9 @@ public:
     }
 
 private:
-    [[noreturn]] void fail_end_within(const Part& part) const;
-    [[noreturn]] void fail_number(const Part& part, std::string_view word, bool is_integral) const;
+    [[noreturn]] void fail_end_within(const FilePart& part) const;
+    [[noreturn]] void fail_number(const FilePart& part, std::string_view word,
+                                  bool is_integral) const;
 
     std::string_view bytes_;
     const std::filesystem::path& path_;

@@ -18,6 +18,8 @@ def numbers(name: str, values: ArrayLike) -> Array:
         array = np.asarray(values)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name} is no array of numbers: {error}") from None
+    if np.ma.is_masked(values):
+        raise ValueError(f"{name} has masked entries: leave these out, or fill them in")
     if array.dtype.kind not in "fiub":
         raise ValueError(f"{name} has the dtype {array.dtype}: give real numbers")
     return np.require(array, np.float64, ["C", "A"])

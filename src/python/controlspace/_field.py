@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from . import _arrays, _program
 from ._arrays import Array
-from ._library import Options, Sources, call, library, size_at
+from ._library import Options, Sources, call, call_until_interrupted, library, size_at
 
 # Where xx yy zz xy xz yz go.
 _ORDERS = {
@@ -24,8 +24,11 @@ _ORDERS = {
     "gmsh": (0, 3, 4, 3, 1, 5, 4, 5, 2),
 }
 _HXT = 10
-# By the name of the model of Gmsh: a field must outlive its callback.
-_in_gmsh: dict[str, Field] = {}
+# A field must outlive its callback, of which Gmsh does not tell when a model drops it. The key is
+# the names of all other models: where they are the same again, the callback of the earlier field
+# was replaced, or its model removed. Models of one name cannot be told apart: their key is an
+# object of its own, so that their fields are kept.
+_in_gmsh: dict[object, Field] = {}
 
 
 class Field:
@@ -143,11 +146,19 @@ class Field:
         Needs the `gmsh` module, initialized. The field replaces sizes at points and from
         boundaries; smaller ones, of curvature or background fields, still count. `factor` scales
         all sizes, as Gmsh makes edges longer than requested; left out: 0.70 for HXT, 0.77 for other
-        algorithms (set Mesh.Algorithm3D before). The field is kept until the model of this name
-        gets another. RuntimeError where Gmsh fails.
+        algorithms (set Mesh.Algorithm3D before). The field is kept as long as a model may ask it.
+        RuntimeError where Gmsh fails.
         """
         import gmsh
 
+        try:
+            others = gmsh.model.list()
+        except Exception:  # the only class that the module raises
+            others = []
+        if not others:
+            raise RuntimeError("Gmsh is not initialized: call gmsh.initialize() first")
+        current = gmsh.model.getCurrent()
+        others.remove(current)
         if factor is None:
             is_hxt = gmsh.option.getNumber("Mesh.Algorithm3D") == _HXT
             factor = 0.70 if is_hxt else 0.77
@@ -162,7 +173,7 @@ class Field:
         )
         if failed.value:
             raise RuntimeError(f"Gmsh took no size callback: {gmsh.logger.getLastError()}")
-        _in_gmsh[gmsh.model.getCurrent()] = self
+        _in_gmsh[object() if current in others else tuple(sorted(others))] = self
         gmsh.option.setNumber("Mesh.MeshSizeFromPoints", 0)
         gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 0)
         gmsh.option.setNumber("Mesh.MeshSizeFactor", scale)
@@ -202,7 +213,8 @@ def build(
     grow up to half of the box's diagonal.
     options: further ones of cspace_create (controlspace.h): tau=0.5, split="s_G", max_memory=1 [GiB].
 
-    ValueError for what cannot be used; it names the source by its index.
+    ValueError for what cannot be used; it names the source by its index. Ctrl-C ends it with
+    KeyboardInterrupt.
     """
     points = _arrays.source_places(points)
     h, finest = _arrays.metrics(h, len(points), h_min, h_max)
@@ -218,6 +230,7 @@ def build(
     if h_max is not None:
         given["h_max"] = _arrays.length("h_max", h_max)
     target = 0.0 if delta is None else _arrays.length("delta", delta)
+    stop = ctypes.c_int(0)
     sources = Sources(
         struct_size=ctypes.sizeof(Sources),
         n=len(points),
@@ -231,17 +244,23 @@ def build(
         growth=ratio,
         delta=target,
         further=" ".join(f"{key}={value}" for key, value in given.items()).encode(),
+        stop=ctypes.pointer(stop),
     )
     reached, handle = ctypes.c_double(), ctypes.c_void_p()
-    call(
-        "build",
-        _word("structure", structure),
-        corners.ctypes.data,
-        sources,
-        making,
-        ctypes.byref(reached),
-        ctypes.byref(handle),
-    )
+    try:
+        call_until_interrupted(
+            stop,
+            "build",
+            _word("structure", structure),
+            corners.ctypes.data,
+            sources,
+            making,
+            ctypes.byref(reached),
+            ctypes.byref(handle),
+        )
+    except BaseException:
+        library.cspace_free(handle)  # interrupted after it was made
+        raise
     if reached.value > target:  # not of NaN, where nothing was adapted
         warnings.warn(f"delta {reached.value:.3g} reached, {target:.3g} requested", stacklevel=2)
     return _field(handle, None if delta is None else reached.value)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import threading
 from ctypes import POINTER, c_char_p, c_double, c_int, c_size_t, c_void_p
 from pathlib import Path
 
@@ -36,6 +37,7 @@ class Options(ctypes.Structure):
         ("delta", c_double),
         ("max_memory", c_double),
         ("further", c_char_p),
+        ("stop", POINTER(c_int)),
     )
 
 
@@ -76,6 +78,35 @@ def call(name: str, *arguments: object) -> None:
     if status == _BAD_INPUT:
         raise ValueError(reason)
     raise MemoryError(reason) if reason == "out of memory" else RuntimeError(reason)
+
+
+def call_until_interrupted(stop: c_int, name: str, *arguments: object) -> None:
+    """As `call`, in a thread of its own: Python handles Ctrl-C only in the main thread, and only
+    between its own steps. `stop` is set to 1 then, for the function to end."""
+    errors: list[BaseException] = []
+    is_done = threading.Event()
+
+    def work() -> None:
+        try:
+            call(name, *arguments)
+        except BaseException as error:
+            errors.append(error)
+        finally:
+            is_done.set()
+
+    threading.Thread(target=work).start()
+    interruption: BaseException | None = None
+    # To its end in any case: the function reads and writes what the caller owns.
+    while not is_done.is_set():
+        try:
+            is_done.wait()
+        except BaseException as error:  # of a handler of signals
+            interruption = interruption or error
+            stop.value = 1
+    if interruption:
+        raise interruption
+    if errors:
+        raise errors[0]
 
 
 def version() -> str:

@@ -19,6 +19,12 @@ AnchorLists::List AnchorLists::append(std::span<const SourceIndex> sources) {
 }
 
 void AnchorLists::add(LeafIndex leaf, SourceIndex source) {
+    // The last list grows where it is: a list that another leaf has in common with it ends before.
+    if (List& list = lists_[leaf]; std::size_t{list.first} + list.count == sources_.size()) {
+        append({&source, 1});
+        ++list.count;
+        return;
+    }
     const auto old = of(leaf);
     std::vector<SourceIndex> longer(old.begin(), old.end());
     longer.push_back(source);

@@ -24,7 +24,8 @@ struct OrderFreeIntersection {
     Eigen::Matrix3d factor;
     /// log det M^2 is at most this much below that of the largest metric (duality gap). Seen from
     /// H, that is -log det(sum L_k) + sum tr(L_k H^-1 M_k^2 H^-T) - 3. Lengths are shorter than
-    /// those of the largest metric by a fraction of at most 2 sqrt(gap), nearly.
+    /// those of the largest metric by a fraction of at most 2 sqrt(gap), nearly. It is computed up
+    /// to the rounding that order_free_intersection() states.
     double gap = 0;
     /// Newton steps made.
     int steps = 0;
@@ -47,9 +48,10 @@ struct OrderFreeIntersection {
 /// ones the smallest. One metric more never makes the determinant larger, but may make M longer
 /// along some direction.
 ///
-/// M is within every M_k up to the rounding of six numbers, and the duality gap is at most
-/// `tolerance`, 1e-10 or more, unless rounding prevents it at anisotropies near 1e6: see `gap`. A
-/// metric that is within all others is the answer to the bit. The bits do not depend on the order
+/// M is within every M_k, and the duality gap at most `tolerance`, 1e-10 or more, up to rounding:
+/// a relative 2e-14 A (1 + A / 1e6) of lengths and of the determinant, where A is the largest
+/// anisotropy of the M_k. That is 2e-12 for A = 100, 4e-8 for 1e6, 2e-6 for 1e7. A metric that is
+/// within all others is the answer to the bit. The bits do not depend on the order
 /// of the metrics, but on `near`, an initial guess: the regular factor of a metric that is likely
 /// to be close to the answer (its matrix will do).
 ///

@@ -56,6 +56,9 @@ private:
     std::vector<double> table_;  // see Packing
 };
 
+/// Throws InputError for a precision that is none of the named ones: it was cast from a number.
+void require_valid(Precision precision);
+
 /// The largest factor between a length that is stored, by itself or as that of a metric in any
 /// direction, and what is read back; of lengths from `shortest` to `longest`.
 double rounding_of(Precision precision, bool are_lengths, double shortest, double longest);
@@ -67,6 +70,7 @@ double rounding_of(Precision precision, bool are_lengths, double shortest, doubl
 /// where all are isotropic, if it `may_be_lengths`. Throws InputError for codes of others.
 template <bool may_be_lengths, class Store>
 auto with_stored(Precision precision, std::span<const Metric> metrics, Store&& store) {
+    require_valid(precision);
     const bool floats = precision == Precision::floats;
     if constexpr (may_be_lengths) {
         if (std::ranges::all_of(metrics, is_isotropic)) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <limits>
@@ -37,8 +38,14 @@ struct GrowthLimit {
     using Clock = std::chrono::steady_clock;
     Clock::time_point deadline = Clock::time_point::max();
     std::size_t bytes = std::numeric_limits<std::size_t>::max();  ///< of the tree, gradation aside
+    /// Unless null, a number that another thread or a signal handler sets to 1, which ends growth
+    /// as the deadline does. It must outlive what is made with these options.
+    int* stop = nullptr;
 
     bool is_late() const {
+        if (stop != nullptr && std::atomic_ref(*stop).load(std::memory_order_relaxed) != 0) {
+            return true;
+        }
         return deadline != Clock::time_point::max() && Clock::now() >= deadline;
     }
 };
