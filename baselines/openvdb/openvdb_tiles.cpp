@@ -336,8 +336,7 @@ public:
     Footprint footprint() const override {
         Footprint footprint;
         footprint.tree_nodes = tree_.leafCount() + tree_.nonLeafCount();
-        footprint.cells = tree_.leafCount() * Leaf::SIZE + tree_.activeTileCount();
-        footprint.control_nodes = control_nodes_;
+        footprint.cells = footprint.control_nodes = control_nodes_;  // leaves, as cell_at answers
         footprint.depth = Tree::DEPTH - 1;
         add_dense_bytes(tree_, footprint);
         if (stored_) footprint.bytes_payload += stored_->bytes();
