@@ -197,12 +197,12 @@ public:
 
     const Box& domain() const { return domain_; }
 
-    Cell operator()(const Point& x) const {
-        Cell cell;
+    [[gnu::always_inline]] Cell operator()(const Point& x) const {
+        const double t[3] = {in_voxels(x.x(), 0), in_voxels(x.y(), 1), in_voxels(x.z(), 2)};
+        Cell cell{static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
+                  static_cast<std::int32_t>(t[2])};
         for (std::size_t a = 0; a < 3; ++a) {
-            const double t = in_voxels(x[static_cast<Axis>(a)], a);
-            cell[a] = is_near_face(t, a) ? by_halving(x[static_cast<Axis>(a)], a)
-                                         : static_cast<std::int32_t>(t);
+            if (is_near_face(t[a], cell[a], a)) cell[a] = by_halving(x[static_cast<Axis>(a)], a);
         }
         return cell;
     }
@@ -214,7 +214,7 @@ public:
             for (std::size_t i = 0; i < x.size(); ++i) {
                 const double t = in_voxels(x[i][static_cast<Axis>(a)], a);
                 batch.cell[a][i] = static_cast<std::int32_t>(t);
-                is_near[i] = is_near_face(t, a);
+                is_near[i] = is_near_face(t, batch.cell[a][i], a);
                 any |= is_near[i];
             }
             for (std::size_t i = 0; any && i < x.size(); ++i) {
@@ -231,8 +231,9 @@ private:
         return (place - domain_.low[a]) * per_length_[a];
     }
     // So near that rounding counts: the octree has halved its boxes, and rounded each middle.
-    [[gnu::always_inline]] bool is_near_face(double t, std::size_t a) const {
-        return std::abs(t - std::nearbyint(t)) <= near_[static_cast<Axis>(a)];
+    [[gnu::always_inline]] bool is_near_face(double t, std::int32_t voxel, std::size_t a) const {
+        const double beyond = t - voxel, near = near_[static_cast<Axis>(a)];
+        return (beyond <= near) | (beyond >= 1 - near);
     }
     std::int32_t by_halving(double x, std::size_t axis) const {
         const auto a = static_cast<Axis>(axis);
