@@ -34,7 +34,7 @@ class Octree : public MetricTree<OctreeNode, LeafMetrics> {
     using Base = MetricTree<OctreeNode, LeafMetrics>;
 
 public:
-    explicit Octree(SpaceOptions options) : Base(with_indices(options)) {}
+    explicit Octree(const SpaceOptions& options) : Base(with_indices(options)) {}
 
     AdaptationReport adapt(const AdaptationGoal& goal) {
         const bool is_free = !options_.octree_depth;

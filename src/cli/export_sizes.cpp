@@ -70,7 +70,8 @@ std::vector<Point> tetgen_points(std::filesystem::path base) {
     base.replace_extension();
     for (const char* ending : {".poly", ".smesh", ".node"}) {
         std::filesystem::path file = base;
-        if (!std::filesystem::is_regular_file(file += ending)) continue;
+        file += ending;
+        if (!std::filesystem::is_regular_file(file)) continue;
         try {
             std::vector<Point> points = read_tetgen_points(file);
             if (!points.empty()) return points;  // a .poly may leave them to its .node

@@ -151,7 +151,7 @@ std::string reason(const ChildOutcome& outcome, const fs::path& log, double time
     if (is_ours && said.starts_with(error)) return said.substr(error.size());
     said = last_lines(log, enough);
     // What the C++ library adds at the end tells less than Gmsh itself.
-    said = said.substr(0, said.find(" | terminate called"));
+    said.resize(std::min(said.size(), said.find(" | terminate called")));
     std::string what = fmt::format("failed with status {}", outcome.status);
     if (!outcome.is_known) what = "was collected by another part of this program";
     if (outcome.signal != 0) what = fmt::format("was ended by signal {}", outcome.signal);

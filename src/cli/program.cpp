@@ -92,7 +92,7 @@ void require_command(const std::string& word) {
 void require_options(const CLI::App& command) {
     for (std::string word : command.remaining()) {
         if (word.size() < 2 || word[0] != '-') continue;
-        word = word.substr(0, word.find('='));
+        word.resize(std::min(word.size(), word.find('=')));
         std::vector<std::string> names;
         for (const CLI::Option* option : command.get_options()) {
             for (const std::string& name : option->get_lnames()) names.push_back("--" + name);

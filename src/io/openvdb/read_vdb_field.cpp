@@ -27,11 +27,12 @@ public:
         Vector fractions;
         const openvdb::Vec3d at = transform.worldToIndex({x.x(), x.y(), x.z()});
         for (int a = 0; a < 3; ++a) {
+            const auto i = static_cast<std::size_t>(a);
             // Comparisons that send not-a-number to the low side.
-            const double above = at[a] > voxels.min()[a] ? at[a] : voxels.min()[a];
-            const double t = above < voxels.max()[a] ? above : voxels.max()[a];
-            low_[a] = static_cast<openvdb::Int32>(std::floor(t));
-            fractions[a] = t - low_[a];
+            const double above = at[a] > voxels.min()[i] ? at[a] : voxels.min()[i];
+            const double t = above < voxels.max()[i] ? above : voxels.max()[i];
+            low_[i] = static_cast<openvdb::Int32>(std::floor(t));
+            fractions[a] = t - low_[i];
         }
         weights_ = corner_weights(fractions);
     }

@@ -89,7 +89,7 @@ double voxels_at_tiles(const openvdb::FloatGrid& grid, double isovalue) {
     for (; tile; ++tile) {
         const openvdb::CoordBBox box = tile.getBoundingBox();
         const openvdb::Coord middle = box.min() + (box.dim() >> 1);
-        for (int a = 0; a < 3; ++a) {
+        for (std::size_t a = 0; a < 3; ++a) {
             const double face = double(box.dim()[(a + 1) % 3]) * double(box.dim()[(a + 2) % 3]);
             for (const int beside : {box.min()[a] - 1, box.max()[a] + 1}) {
                 openvdb::Coord voxel = middle;

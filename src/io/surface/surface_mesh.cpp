@@ -47,10 +47,11 @@ std::vector<std::uint32_t> first_within(double tolerance, const std::vector<Poin
     for (std::uint32_t i = 0; i < places.size(); ++i) {
         const Point from = places[i] - places.front();
         Cell low, high, at;
-        for (int k = 0; k < 3; ++k) {
-            low[k] = number(from[k] - tolerance);
-            high[k] = number(from[k] + tolerance);
-            at[k] = number(from[k]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double place = from[static_cast<Axis>(k)];
+            low[k] = number(place - tolerance);
+            high[k] = number(place + tolerance);
+            at[k] = number(place);
         }
         for (std::int64_t x = low[0]; x <= high[0]; ++x) {
             for (std::int64_t y = low[1]; y <= high[1]; ++y) {
