@@ -29,8 +29,10 @@ std::vector<PointSource> read_vtk_sources(const std::filesystem::path& path,
                                           const ReadOptions& options = {});
 
 /// A finished field: in each cell of a .vtu or .vti (all with a volume) its own metric, or, of
-/// arrays of points, the metrics M blended linearly by the cell's shape functions. It is defined in
-/// the box of the cells; where that has no cell, and outside, the nearest place of a cell answers.
+/// arrays of points, the metrics M blended by the cell's shape functions, which is linear between
+/// its corners; where those of higher order undershoot all metrics of the file, by their positive
+/// ones. It is defined in the box of the cells; where that has no cell, and outside, the nearest
+/// place of a cell answers.
 /// Throws InputError as above, and for cells without a volume.
 AnalyticField read_vtk_field(const std::filesystem::path& path, const std::string& array = {});
 
