@@ -69,7 +69,7 @@ public:
                 return false;
             }
             if (this->split_across(box, along, cut)) return true;
-            report.shortfall = depth_shortfall(this->max_depth());
+            report.shortfall = depth_shortfall(this->max_depth(), deepest_level<OctreeNode>);
             return false;
         });
         report.met = report.shortfall.empty();

@@ -20,9 +20,11 @@ void fail_too_large(std::size_t bytes, std::size_t max_bytes) {
                     static_cast<double>(max_bytes) / gib));
 }
 
-std::string depth_shortfall(int max_depth) {
-    return fmt::format("leaves of level {} are not cut: raise the depth, or target_delta (within)",
-                       max_depth);
+std::string depth_shortfall(int max_depth, int deepest) {
+    return fmt::format("leaves of level {} are not cut{}", max_depth,
+                       max_depth < deepest
+                           ? ": raise the depth, or target_delta (within)"
+                           : ", the deepest of this structure: raise target_delta (within)");
 }
 
 std::string leaves_shortfall(std::size_t max_leaves) {

@@ -21,8 +21,9 @@ namespace controlspace {
 
 [[noreturn]] void fail_too_many_leaves();
 [[noreturn]] void fail_too_large(std::size_t bytes, std::size_t max_bytes);
-/// AdaptationReport::shortfall where leaves of the deepest level are not cut.
-std::string depth_shortfall(int max_depth);
+/// AdaptationReport::shortfall where leaves of a level are not cut, which no depth may exceed if it
+/// is the `deepest`.
+std::string depth_shortfall(int max_depth, int deepest);
 /// The same where there are as many leaves as allowed.
 std::string leaves_shortfall(std::size_t max_leaves);
 /// The same at a limit of time or memory.
@@ -58,7 +59,7 @@ protected:
         check_storage<Storage>();
     }
 
-    SourceCuts<Node> cuts() const { return SourceCuts<Node>(options_); }
+    SourceCuts<Node> cuts() const { return SourceCuts<Node>(options_, deepest_); }
 
     /// Empties the tree and cuts it until it follows the field; `begin` may prepare the storage.
     template <class Begin>
@@ -100,7 +101,7 @@ protected:
             report.shortfall = stop == GrowthStop::leaves ? leaves_shortfall(goal.max_leaves)
                                                           : limit_shortfall(stop);
         } else if (too_deep) {
-            report.shortfall = depth_shortfall(max_depth());
+            report.shortfall = depth_shortfall(max_depth(), deepest_);
         } else if (too_short) {
             report.shortfall =
                 "the field is steep: leaves far shorter than an element are not cut: raise "
@@ -121,8 +122,8 @@ protected:
 
     /// The deepest level of leaves that are cut for anything but a source.
     int max_depth() const {
-        return Node::is_octant ? options_.octree_depth.value_or(deepest_octree_level)
-                               : options_.kd_depth.value_or(deepest_kd_level);
+        const auto& depth = Node::is_octant ? options_.octree_depth : options_.kd_depth;
+        return std::min(depth.value_or(deepest_), deepest_);
     }
 
     /// Cuts the leaf with this box where something varies by `along` the axes, unless it is among
@@ -213,6 +214,7 @@ protected:
     }
 
     SpaceOptions options_;
+    int deepest_ = deepest_level<Node>;  // of what the storage or a finished form can hold
     bool balanced_;
     Topology<Node> topology_;
     Storage storage_;

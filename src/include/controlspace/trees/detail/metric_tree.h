@@ -38,7 +38,7 @@ class MetricTree : public GrowingTree<Node, Storage> {
     using Base = GrowingTree<Node, Storage>;
 
 protected:
-    using Base::is_finished_, Base::options_, Base::storage_, Base::topology_;
+    using Base::deepest_, Base::is_finished_, Base::options_, Base::storage_, Base::topology_;
 
 public:
     static constexpr int order = Storage::order;

@@ -11,12 +11,17 @@
 
 namespace controlspace {
 
+/// The deepest level of trees of this cut.
+template <class Node>
+constexpr int deepest_level = Node::is_octant ? deepest_octree_level : deepest_kd_level;
+
 /// How a tree's leaves are cut for sources (paper §3.1, steps 4 and 5).
 template <class Node>
 class SourceCuts {
 public:
-    /// `options` must outlive it.
-    explicit SourceCuts(const SpaceOptions& options) : options_(options) {}
+    /// `options` must outlive it. No leaf of the level `deepest` is cut, whatever they say.
+    explicit SourceCuts(const SpaceOptions& options, int deepest = deepest_level<Node>)
+        : options_(options), deepest_(deepest) {}
 
     /// The cut of the leaf that holds the source; none where the leaf is short enough, or among the
     /// smallest allowed.
@@ -28,8 +33,9 @@ public:
     }
 
     int max_depth() const {
-        return Node::is_octant ? options_.octree_depth.value_or(usual_octree_level)
-                               : options_.kd_depth.value_or(usual_kd_level);
+        return std::min(deepest_, Node::is_octant
+                                      ? options_.octree_depth.value_or(usual_octree_level)
+                                      : options_.kd_depth.value_or(usual_kd_level));
     }
 
     /// Whether any edge of `box` is longer than l_min in the metric.
@@ -48,6 +54,7 @@ private:
     }
 
     const SpaceOptions& options_;
+    int deepest_;
 };
 
 }  // namespace controlspace
