@@ -149,8 +149,8 @@ struct AnyPrecision {
         return with_stored<true>(
             *precision, data->field(),
             [&]<class M>(std::type_identity<M>) -> std::unique_ptr<ControlSpace> {
-                using Kept = std::conditional_t<std::is_same_v<M, StoredMetric<double>>, Metric, M>;
-                return std::make_unique<GridSpace<Storage<Kept>, interpolation>>(data, false);
+                return std::make_unique<GridSpace<Storage<OrMetric<M>>, interpolation>>(data,
+                                                                                        false);
             });
     }
 };

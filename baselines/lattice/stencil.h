@@ -121,6 +121,45 @@ private:
     std::array<std::uint32_t, 3> high_corner_;  // 0 where the domain is flat
 };
 
+/// Requests the cache lines of a value before it is read.
+template <class Value>
+[[gnu::always_inline]] inline void prefetch(const Value* value) {
+    __builtin_prefetch(value);
+    __builtin_prefetch(reinterpret_cast<const char*>(value + 1) - 1);
+}
+
+/// A metric, or with a `Value` of double its length.
+template <class Value, class M>
+[[gnu::always_inline]] inline Value answer_of(const M& m) {
+    if constexpr (std::is_same_v<Value, double>) {
+        return length_of(m);
+    } else {
+        return m;
+    }
+}
+
+/// Answers `x` from the cells that locate(places, batch) finds, some places at a time, so that what
+/// is stored is on its way while that before it is read: answer(at, batch, i) for place i. `read`
+/// as of Stencil::sample.
+template <std::size_t corners, class Value, class Reader, class Locate, class Answer>
+void sample_cells(std::span<const Point> x, const Reader& read, std::span<Value> out,
+                  const Locate& locate, const Answer& answer) {
+    using Hint = decltype(read.prepare(Cell()));
+    using At = decltype(read.template find<corners>(Cell(), Hint()));
+    CellBatch batch;
+    std::array<Hint, CellBatch::most> hints;
+    std::array<At, CellBatch::most> at;
+    for (std::size_t first = 0; first < x.size(); first += CellBatch::most) {
+        const std::size_t count = std::min(CellBatch::most, x.size() - first);
+        locate(x.subspan(first, count), batch);
+        for (std::size_t i = 0; i < count; ++i) hints[i] = read.prepare(batch[i]);
+        for (std::size_t i = 0; i < count; ++i) {
+            at[i] = read.template find<corners>(batch[i], hints[i]);
+        }
+        for (std::size_t i = 0; i < count; ++i) out[first + i] = answer(at[i], batch, i);
+    }
+}
+
 /// Which nodes of a grid answer for a point, and how. Nearest: nodes stand at the cells' centres,
 /// and the cell's own answers; on the face of two cells the high one. Trilinear: nodes stand at the
 /// cells' vertices, and the eight of the cell are blended, linear in M.
@@ -165,8 +204,7 @@ public:
         return visit(along(0), along(1), along(2));
     }
 
-    /// The metrics at `x`, or, with a `Value` of double, the lengths where all is isotropic; for
-    /// some points at a time, so that metrics are on their way while those before them are blended.
+    /// The metrics at `x`, or, with a `Value` of double, the lengths where all is isotropic.
     /// `read`, a storage's reader, provides
     ///   prepare(cell) -> hint            a first step to the nodes of a cell
     ///   find<corners>(cell, hint) -> at  where their metrics are, which it prefetches unless it is
@@ -174,22 +212,12 @@ public:
     ///   metric(at, corner)               one of them, a Metric or what is stored in its place
     template <class Value, class Reader>
     void sample(std::span<const Point> x, const Reader& read, std::span<Value> out) const {
-        using Hint = decltype(read.prepare(Cell()));
-        using At = decltype(read.template find<corners>(Cell(), Hint()));
-        CellBatch batch;
-        std::array<Hint, CellBatch::most> hints;
-        std::array<At, CellBatch::most> at;
-        for (std::size_t first = 0; first < x.size(); first += CellBatch::most) {
-            const std::size_t count = std::min(CellBatch::most, x.size() - first);
-            locate(x.subspan(first, count), batch);
-            for (std::size_t i = 0; i < count; ++i) hints[i] = read.prepare(batch[i]);
-            for (std::size_t i = 0; i < count; ++i) {
-                at[i] = read.template find<corners>(batch[i], hints[i]);
-            }
-            for (std::size_t i = 0; i < count; ++i) {
-                out[first + i] = between<Value>(read, at[i], [&] { return weights(batch, i); });
-            }
-        }
+        sample_cells<corners>(
+            x, read, out,
+            [&](std::span<const Point> places, CellBatch& batch) { locate(places, batch); },
+            [&](const auto& at, const CellBatch& batch, std::size_t i) {
+                return between<Value>(read, at, [&] { return weights(batch, i); });
+            });
     }
 
     /// The same at one place, without what only batches need.
@@ -212,12 +240,7 @@ private:
     [[gnu::always_inline]] static Value between(const Reader& read, const At& at,
                                                 const Weights& weights) {
         if constexpr (corners == 1) {
-            const auto& m = read.metric(at, 0);
-            if constexpr (std::is_same_v<Value, double>) {
-                return length_of(m);
-            } else {
-                return m;
-            }
+            return answer_of<Value>(read.metric(at, 0));
         } else {
             const std::array<double, 8> weight = weights();
             return blend<Value>(
@@ -233,12 +256,5 @@ private:
 
 using NearestStencil = Stencil<Interpolation::nearest>;
 using TrilinearStencil = Stencil<Interpolation::trilinear>;
-
-/// Requests the cache lines of a value before it is read.
-template <class Value>
-[[gnu::always_inline]] inline void prefetch(const Value* value) {
-    __builtin_prefetch(value);
-    __builtin_prefetch(reinterpret_cast<const char*>(value + 1) - 1);
-}
 
 }  // namespace controlspace

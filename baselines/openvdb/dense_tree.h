@@ -157,16 +157,21 @@ template <class Tree>
 constexpr std::size_t leaf_values_bytes = Tree::LeafNodeType::SIZE *
                                           sizeof(typename Tree::ValueType);
 
-/// What a dense tree over so many nodes will allocate.
-template <class Tree>
-double dense_bytes(const Vector& nodes) {
+/// What a tree will allocate that has count(side) nodes of `side` voxels along each axis.
+template <class Tree, class Count>
+double bytes_of_nodes(const Count& count) {
     using Leaf = typename Tree::LeafNodeType;
     using Upper = typename Tree::RootNodeType::ChildNodeType;
     using Lower = typename Upper::ChildNodeType;
-    const auto blocks = [&](double side) { return (nodes.array() / side).ceil().prod(); };
-    return blocks(Leaf::DIM) * (sizeof(Leaf) + leaf_values_bytes<Tree>)+blocks(Lower::DIM) *
-               sizeof(Lower) +
-           blocks(Upper::DIM) * sizeof(Upper) + sizeof(Tree);
+    const double leaf = sizeof(Leaf) + leaf_values_bytes<Tree>;
+    return count(Leaf::DIM) * leaf + count(Lower::DIM) * sizeof(Lower) +
+           count(Upper::DIM) * sizeof(Upper) + sizeof(Tree);
+}
+
+/// The same of a dense tree over so many nodes of a lattice.
+template <class Tree>
+double dense_bytes(const Vector& nodes) {
+    return bytes_of_nodes<Tree>([&](double side) { return (nodes.array() / side).ceil().prod(); });
 }
 
 /// Payload is the leaves' values, those that fill up the outermost leaves included; topology the

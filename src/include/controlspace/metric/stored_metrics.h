@@ -59,6 +59,10 @@ private:
 /// Throws InputError for a precision that is none of the named ones: it was cast from a number.
 void require_valid(Precision precision);
 
+/// What a metric is stored as where Metric itself serves for one in doubles.
+template <class M>
+using OrMetric = std::conditional_t<std::is_same_v<M, StoredMetric<double>>, Metric, M>;
+
 /// The largest factor between a length that is stored, by itself or as that of a metric in any
 /// direction, and what is read back; of lengths from `shortest` to `longest`.
 double rounding_of(Precision precision, bool are_lengths, double shortest, double longest);
