@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -221,23 +222,9 @@ std::vector<PointSource> read_source_file(const SourcesChoice& choice, const Fil
 }
 
 double millimetres(LengthUnit unit) {
-    switch (unit) {
-        case LengthUnit::um:
-            return 1e-3;
-        case LengthUnit::mm:
-            return 1;
-        case LengthUnit::cm:
-            return 10;
-        case LengthUnit::m:
-            return 1e3;
-        case LengthUnit::km:
-            return 1e6;
-        case LengthUnit::in:
-            return 25.4;
-        case LengthUnit::ft:
-            return 304.8;
-    }
-    return 1;
+    constexpr std::array in_their_order{1e-3, 1.0, 10.0, 1e3, 1e6, 25.4, 304.8};
+    static_assert(in_their_order.size() == static_cast<std::size_t>(LengthUnit::ft) + 1);
+    return in_their_order.at(static_cast<std::size_t>(unit));
 }
 
 bool has_tensors(const Workload& workload) {

@@ -35,16 +35,22 @@ std::vector<double> row_of(const Point& p, bool sizes) {
     return {t.xx, t.xy, t.xz, t.xy, t.yy, t.yz, t.xz, t.yz, t.zz};
 }
 
+/// Tetrahedra of a box, in the session of Gmsh, to be written so.
+void mesh_box(bool binary, double version) {
+    gmsh::option::setNumber("Mesh.MshFileVersion", version);
+    gmsh::option::setNumber("Mesh.Binary", binary ? 1 : 0);
+    gmsh::option::setNumber("Mesh.MeshSizeMax", 0.4);
+    gmsh::option::setNumber("Mesh.SaveAll", 1);
+    gmsh::model::occ::addBox(0, 0, 0, 1, 1, 2);
+    gmsh::model::occ::synchronize();
+    gmsh::model::mesh::generate(3);
+}
+
 /// A box meshed by Gmsh, with data at its nodes, as Gmsh saves it.
 void write_by_gmsh(const std::filesystem::path& msh, bool sizes, bool binary, int views = 1,
                    double version = 4.1) {
     in_gmsh_session(1, [&] {
-        gmsh::option::setNumber("Mesh.MshFileVersion", version);
-        gmsh::option::setNumber("Mesh.Binary", binary ? 1 : 0);
-        gmsh::option::setNumber("Mesh.MeshSizeMax", 0.4);
-        gmsh::model::occ::addBox(0, 0, 0, 1, 1, 2);
-        gmsh::model::occ::synchronize();
-        gmsh::model::mesh::generate(3);
+        mesh_box(binary, version);
         std::vector<std::size_t> tags;
         std::vector<double> x, unused;
         gmsh::model::mesh::getNodes(tags, x, unused);
@@ -60,6 +66,18 @@ void write_by_gmsh(const std::filesystem::path& msh, bool sizes, bool binary, in
             gmsh::view::write(view, msh.string(), true);
         }
     });
+}
+
+/// The mesh, and then a view of data of the elements `tags`.
+void write_view(const std::filesystem::path& path, const std::string& name, const std::string& type,
+                const std::vector<std::size_t>& tags, const std::vector<std::vector<double>>& rows,
+                int components = -1) {
+    gmsh::write(path.string());
+    std::string model;
+    gmsh::model::getCurrent(model);
+    const int view = gmsh::view::add(name);
+    gmsh::view::addModelData(view, 0, model, type, tags, rows, 0, components);
+    gmsh::view::write(view, path.string(), true);
 }
 
 /// Sources that ask for what metric_of says.
@@ -101,13 +119,7 @@ TEST_CASE("data of the elements of a mesh by Gmsh are sources at their centres")
     const auto path = folder.path() / "box.msh";
     std::size_t count = 0;
     in_gmsh_session(1, [&] {
-        gmsh::option::setNumber("Mesh.MshFileVersion", version);
-        gmsh::option::setNumber("Mesh.Binary", binary ? 1 : 0);
-        gmsh::option::setNumber("Mesh.MeshSizeMax", 0.4);
-        gmsh::option::setNumber("Mesh.SaveAll", 1);
-        gmsh::model::occ::addBox(0, 0, 0, 1, 1, 2);
-        gmsh::model::occ::synchronize();
-        gmsh::model::mesh::generate(3);
+        mesh_box(binary, version);
         gmsh::model::mesh::setOrder(order);
         std::vector<std::size_t> tags, nodes;
         gmsh::model::mesh::getElementsByType(order == 1 ? 4 : 11, tags, nodes);
@@ -123,12 +135,7 @@ TEST_CASE("data of the elements of a mesh by Gmsh are sources at their centres")
             }
             rows.push_back(row_of(sum / static_cast<double>(each), sizes));
         }
-        gmsh::write(path.string());
-        std::string model;
-        gmsh::model::getCurrent(model);
-        const int view = gmsh::view::add("of cells");
-        gmsh::view::addModelData(view, 0, model, "ElementData", tags, rows);
-        gmsh::view::write(view, path.string(), true);
+        write_view(path, "of cells", "ElementData", tags, rows);
     });
     const auto sources = read_msh_sources(path);
     CHECK(sources.size() == count);
@@ -166,12 +173,7 @@ TEST_CASE("data at the corners of elements by Gmsh are sources there") {
     const auto path = folder.path() / "box.msh";
     std::size_t nodes_of_tets = 0;
     in_gmsh_session(1, [&] {
-        gmsh::option::setNumber("Mesh.MshFileVersion", version);
-        gmsh::option::setNumber("Mesh.Binary", binary ? 1 : 0);
-        gmsh::option::setNumber("Mesh.MeshSizeMax", 0.4);
-        gmsh::model::occ::addBox(0, 0, 0, 1, 1, 2);
-        gmsh::model::occ::synchronize();
-        gmsh::model::mesh::generate(3);
+        mesh_box(binary, version);
         std::vector<std::size_t> tags, nodes;
         gmsh::model::mesh::getElementsByType(4, tags, nodes);
         std::vector<std::vector<double>> rows(tags.size());
@@ -182,13 +184,7 @@ TEST_CASE("data at the corners of elements by Gmsh are sources there") {
             rows[i / 4].insert(rows[i / 4].end(), row.begin(), row.end());
         }
         nodes_of_tets = std::set(nodes.begin(), nodes.end()).size();
-        gmsh::option::setNumber("Mesh.SaveAll", 1);
-        gmsh::write(path.string());
-        std::string model;
-        gmsh::model::getCurrent(model);
-        const int view = gmsh::view::add("of corners");
-        gmsh::view::addModelData(view, 0, model, "ElementNodeData", tags, rows, 0, sizes ? 1 : 9);
-        gmsh::view::write(view, path.string(), true);
+        write_view(path, "of corners", "ElementNodeData", tags, rows, sizes ? 1 : 9);
     });
     const auto sources = read_msh_sources(path);
     CHECK(sources.size() == nodes_of_tets);
