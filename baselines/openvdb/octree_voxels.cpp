@@ -45,8 +45,11 @@ void VoxelBoxes::visit(const Octants& tree, Ref ref, const VoxelBox& box) {
 }
 
 Cuts::Cuts(const Octants& tree) {
-    cuts_.reserve(tree.leaves() + tree.inner_nodes());
-    note(tree, tree.root(), 0);
+    cuts_.resize((tree.leaves() + tree.inner_nodes()) / 64 + 1);
+    std::size_t next = 0;
+    note(tree, tree.root(), 0, next);
+    std::ranges::sort(large_, {}, &Large::begin);
+    large_.shrink_to_fit();
 }
 
 Octants Cuts::octants(const Box& domain) const {
@@ -54,7 +57,7 @@ Octants Cuts::octants(const Box& domain) const {
     std::size_t next = 0;
     LeafIndex leaves = 0;
     const auto make = [&](const auto& self, const Box& box, int level) -> Ref {
-        if (!cuts_[next++]) return Ref::leaf(leaves++);
+        if (!is_cut(next++)) return Ref::leaf(leaves++);
         const Subdivision parts = OctreeNode::even_subdivision(domain, level, box);
         const std::size_t n = nodes.size();
         nodes.emplace_back(parts);
@@ -71,7 +74,7 @@ Octants Cuts::octants(const Box& domain) const {
 Box Cuts::leaf_at(const Point& x, const Box& domain) const {
     Box box = domain;
     std::size_t next = 0;
-    for (std::size_t level = 0; cuts_[next++]; ++level) {
+    for (std::size_t level = 0; is_cut(next++); ++level) {
         const Subdivision parts =
             OctreeNode::even_subdivision(domain, static_cast<int>(level), box);
         const OctreeNode node(parts);
@@ -82,19 +85,28 @@ Box Cuts::leaf_at(const Point& x, const Box& domain) const {
     return box;
 }
 
-void Cuts::note(const Octants& tree, Ref ref, std::size_t level) {
-    cuts_.push_back(!ref.is_leaf());
+void Cuts::note(const Octants& tree, Ref ref, std::size_t level, std::size_t& next) {
+    const std::size_t part = next++;
     if (ref.is_leaf()) return;
+    cuts_[part / 64] |= std::uint64_t{1} << part % 64;
     const OctreeNode& node = tree.node(ref);
     if (level == children_.size()) children_.push_back(node.count());
     for (int c = 0; c < node.count(); ++c) {
-        note(tree, node.children[node.slot(c)], level + 1);
+        note(tree, node.children[node.slot(c)], level + 1, next);
+    }
+    constexpr std::size_t many = 256;
+    if (next - part >= many) {
+        large_.push_back({static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(next)});
     }
 }
 
 void Cuts::pass(std::size_t level, std::size_t& next) const {
-    if (!cuts_[next++]) return;
-    for (int c = 0; c < children_[level]; ++c) pass(level + 1, next);
+    const auto large = std::ranges::lower_bound(large_, next, {}, &Large::begin);
+    if (large != large_.end() && large->begin == next) {
+        next = large->end;
+    } else if (is_cut(next++)) {
+        for (int c = 0; c < children_[level]; ++c) pass(level + 1, next);
+    }
 }
 
 VoxelOfPlace::VoxelOfPlace(const Box& domain, const Cell& voxels)

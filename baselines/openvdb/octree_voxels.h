@@ -43,16 +43,24 @@ public:
     /// The leaf that holds a place in the domain.
     Box leaf_at(const Point& x, const Box& domain) const;
     std::size_t bytes() const {
-        return cuts_.capacity() / 8 + children_.capacity() * sizeof(children_[0]);
+        return cuts_.capacity() * sizeof(cuts_[0]) + children_.capacity() * sizeof(children_[0]) +
+               large_.capacity() * sizeof(large_[0]);
     }
 
 private:
-    void note(const Octants& tree, Ref ref, std::size_t level);
+    void note(const Octants& tree, Ref ref, std::size_t level, std::size_t& next);
+    bool is_cut(std::size_t part) const { return (cuts_[part / 64] >> part % 64 & 1) != 0; }
     // Goes on behind the part that begins at `next`.
     void pass(std::size_t level, std::size_t& next) const;
 
-    std::vector<bool> cuts_;
-    std::vector<int> children_;  // of a part that is cut, by level
+    // A part that takes many bits, all within it counted.
+    struct Large {
+        std::uint32_t begin, end;
+    };
+
+    std::vector<std::uint64_t> cuts_;  // a bit for each part
+    std::vector<int> children_;        // of a part that is cut, by level
+    std::vector<Large> large_;         // by their beginning: the others are passed bit by bit
 };
 
 /// The voxel that answers for a place: the one whose leaf the octree would find, on a face the low
