@@ -18,7 +18,7 @@ std::vector<CatalogueEntry> openvdb_rows() {
     rows.push_back({.id = "openvdb-tiles",
                     .description = "OpenVDB tree, sparse: K_oL's leaves as tiles and voxels",
                     .construct = make_openvdb_tiles,
-                    .capabilities = {SourceLeaves(), MetricNodes(), CompactForm()}});
+                    .capabilities = {SourceLeaves(), MetricNodes(), CompactForm(), VdbFiles()}});
     rows.push_back({.id = "openvdb-vec3s-trilinear",
                     .description = "two of OpenVDB's Vec3S trees, dense, in floats, trilinear",
                     .order = 1,

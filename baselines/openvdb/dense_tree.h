@@ -157,6 +157,14 @@ template <class Tree>
 constexpr std::size_t leaf_values_bytes = Tree::LeafNodeType::SIZE *
                                           sizeof(typename Tree::ValueType);
 
+/// Sets a box of voxels, tiles where it fills nodes.
+template <class Tree>
+void fill_box(Tree& tree, const Cell& low, const Cell& edges,
+              const typename Tree::ValueType& value) {
+    const openvdb::Coord from(low[0], low[1], low[2]);
+    tree.fill({from, from.offsetBy(edges[0] - 1, edges[1] - 1, edges[2] - 1)}, value);
+}
+
 /// What a tree will allocate that has count(side) nodes of `side` voxels along each axis.
 template <class Tree, class Count>
 double bytes_of_nodes(const Count& count) {

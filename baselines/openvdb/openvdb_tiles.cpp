@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "baselines/openvdb/catalogue.h"
 #include "baselines/openvdb/octree_voxels.h"
 #include "baselines/openvdb/stored_value.h"
+#include "baselines/openvdb/tiles_file.h"
 #include "controlspace/input_errors.h"
 #include "controlspace/space/detail/plain_cursor.h"
 #include "controlspace/space/detail/saved.h"
@@ -18,6 +20,7 @@
 #include "controlspace/trees/detail/leaf_graph.h"
 #include "controlspace/trees/detail/metric_tree.h"
 #include "controlspace/trees/leaf_metrics.h"
+#include "refuse.h"
 
 namespace controlspace {
 
@@ -39,6 +42,9 @@ public:
 
     static std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const Octree>& octree,
                                                   std::optional<Precision> precision);
+    static std::string state_in_vdb(const std::string& bytes, const std::string& file) {
+        return state_in_tiles_file(bytes, file);
+    }
 };
 
 /// Bytes of the nodes that the leaves take as voxels and tiles, as the tree counts its memory.
@@ -125,7 +131,7 @@ public:
     }
     Box domain() const override { return voxel_of_.domain(); }
 
-    /// A leaf of the octree, in a form that is only read by a walk through all before it.
+    /// A leaf of the octree.
     std::optional<Box> cell_at(const Point& x) const override {
         if (octree_) return octree_->cell_at(x);
         return cuts_.leaf_at(nearest_in(domain(), x), domain());
@@ -160,13 +166,20 @@ public:
         controlspace::save(octants, state);
         NodeMetrics::exchange(saved_metrics<M>(metrics(octants)), state);
     }
+    std::string vdb_file(StateWriter state) const override {
+        const Octants octants = cuts_.octants(domain());
+        std::vector<float> lengths;
+        for (const Metric& metric : metrics(octants)) {
+            if (!is_isotropic(metric)) refuse("tensors are not saved to a .vdb: name a .ctrl");
+            lengths.push_back(StoredLength<float>(metric).h);
+        }
+        return tiles_file(std::move(state), octants, lengths);
+    }
 
 private:
     void fill(const VoxelBoxes& boxes, const auto& value_of) {
         for (const auto& [leaf, low, edges] : boxes.leaves) {
-            const openvdb::Coord from(low[0], low[1], low[2]);
-            const openvdb::Coord beyond = from.offsetBy(edges[0], edges[1], edges[2]);
-            tree_.fill({from, beyond.offsetBy(-1)}, value_of(leaf));
+            fill_box(tree_, low, edges, value_of(leaf));
         }
     }
     StoredReader<M, Tree> reader() const { return {tree_, vdb_value<M>(stored_)}; }

@@ -248,10 +248,12 @@ cspace_status cspace_domain(const cspace* space, double* domain) {
 cspace_status cspace_save(const cspace* space, const char* file) {
     return guarded([&] {
         require(file, "file");
-        if (space_of(space); space->builder) {
+        const ControlSpace& field = space_of(space);
+        // A builder is more than a .vdb holds.
+        if (space->builder && std::filesystem::path(file).extension() != ".vdb") {
             save_control_space(file, *space->builder);
         } else {
-            save_control_space(file, *space->space);
+            save_control_space(file, field);
         }
     });
 }

@@ -2,23 +2,45 @@
 // The command `build`: builds and grades one structure, and saves it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "cli/command.h"
 #include "cli/filled_space.h"
 #include "cli/options.h"
 #include "cli/standard_output.h"
+#include "controlspace/baselines/catalogue.h"
 #include "controlspace/space/control_space_file.h"
 #include "refuse.h"
 
 namespace controlspace {
 namespace {
 
-int build(const Job& job) {
+// A .vdb holds floats of a structure with VdbFiles; a study file says itself what it makes.
+void set_what_vdb_holds(Job& job) {
+    const auto has_files = [](const CatalogueEntry& entry) { return entry.has<VdbFiles>(); };
+    const auto rows = structures();
+    const auto entry = std::ranges::find_if(rows, has_files);
+    if (entry == rows.end()) refuse("this program has no OpenVDB: name a .ctrl");
+    for (const std::string& id : job.given["structures"]) {
+        const CatalogueEntry* row = find_entry(rows, id);
+        if (row != nullptr && !has_files(*row)) {
+            refuse("{} cannot be saved to a .vdb: name a .ctrl, or {}", id, entry->id);
+        }
+    }
+    if (job.input.extension() == ".toml") return;
+    if (job.given["structures"].empty()) job.given["structures"] = {entry->id};
+    if (job.given["precision"].empty()) job.given["precision"] = {"float"};
+}
+
+int build(Job job) {
     const std::filesystem::path& output = job.output;
-    if (output.extension() != ".ctrl") {
-        refuse("cannot save to {}: name a file that ends in .ctrl", output.string());
+    if (output.extension() == ".vdb") {
+        set_what_vdb_holds(job);
+    } else if (output.extension() != ".ctrl") {
+        refuse("cannot save to {}: name a file that ends in .ctrl, or .vdb", output.string());
     }
     const FilledSpace filled = filled_space(
         job, "writing", [&](const auto& made, auto&) { save_control_space(output, *made.space); });
@@ -35,7 +57,10 @@ int build(const Job& job) {
 Action add_build(Options& options) {
     const auto job = std::make_shared<Job>();
     add_study_input(options, job->input);
-    options.add({"-o,--output", "FILE.ctrl", "File to write", "", true}, job->output);
+    options.add(
+        {"-o,--output", "FILE",
+         "File to write: .ctrl, or, of openvdb-tiles, its lengths in floats in a .vdb", "", true},
+        job->output);
     add_making_options(options, *job);
     return [job](const std::string&) { return build(*job); };
 }

@@ -24,7 +24,7 @@
 namespace controlspace {
 
 bool is_control_space(const std::filesystem::path& input) {
-    return input.extension() == ".ctrl" || is_in_pieces(input);
+    return holds_control_space(input) || is_in_pieces(input);
 }
 bool is_in_pieces(const std::filesystem::path& input) { return input.extension() == ".pctrl"; }
 

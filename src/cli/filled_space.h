@@ -37,7 +37,7 @@ struct FilledSpace {
     std::unique_ptr<tbb::global_control> threads;  ///< the study's limit, as long as this lives
 };
 
-/// Whether the file is a control space that was saved (.ctrl), or the index of one in pieces.
+/// Whether the file is a control space that was saved, or the index of one in pieces.
 bool is_control_space(const std::filesystem::path& input);
 /// Whether it is the index of an octree that ranks of MPI wrote in pieces (.pctrl).
 bool is_in_pieces(const std::filesystem::path& input);

@@ -110,10 +110,15 @@ double default_within_of(const Workload& workload) {
     return has_tensors(workload) ? default_within_of_tensors : default_within;
 }
 
+// Structures that a command makes where none is given, of a .vdb too.
+static bool is_default(const std::string& structure) {
+    return structure == "K_oV" || find_entry(structures(), structure)->has<VdbFiles>();
+}
+
 void DefaultTarget::set(Case& c, const Workload& workload) const {
     const bool follows_field = has_field(c.sources);  // by default, as expand sets it
     if (follows_field ? !is_free_ || !c.target_delta
-                      : !applies_ || c.structure != "K_oV" || workload.sources.empty()) {
+                      : !applies_ || !is_default(c.structure) || workload.sources.empty()) {
         return;
     }
     c.within = default_within_of(workload);

@@ -5,10 +5,13 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
+#include <fstream>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "controlspace/error.h"
 #include "controlspace/space/detail/saved.h"
@@ -16,6 +19,7 @@
 #include "controlspace/version.h"
 #include "files/output_file.h"
 #include "files/text_file.h"
+#include "space/sealed_vdb.h"
 
 namespace controlspace {
 
@@ -143,23 +147,7 @@ std::string_view checked_body(std::string_view bytes, const std::string& name) {
     return bytes.substr(header_size, bytes.size() - header_size - checksum_size);
 }
 
-void save(const std::filesystem::path& file, const Saved* saved) {
-    require_little_endian();
-    if (saved == nullptr || !saved->recipe()) {
-        throw InputError(
-            "a control space can be saved if an entry of the catalogue has made it, other than a "
-            "foreign system");
-    }
-    const Recipe& recipe = *saved->recipe();
-    StateWriter state;
-    state("written_by", "controlspace " + std::string(version()));
-    state("structure", recipe.structure);
-    exchange(recipe.options, state);
-    if (recipe.precision) state("compact.precision", *recipe.precision, Precision::log8);
-    saved->save(state);
-    if (saved->given()) controlspace::save(state, "given", *saved->given());
-    if (saved->grows_apart()) state(grows_apart, std::uint64_t{1});
-
+void write(const std::filesystem::path& file, const StateWriter& state) {
     const Header header{.size = header_size + state.bytes().size() + checksum_size};
     Checksum checksum;
     OutputFile out(file);
@@ -172,11 +160,76 @@ void save(const std::filesystem::path& file, const Saved* saved) {
     out.commit();
 }
 
+// Whether a file is to be one of OpenVDB's.
+bool is_for_openvdb(const std::filesystem::path& file) {
+    return lower_case(file.extension().string()) == ".vdb";
+}
+
+void save(const std::filesystem::path& file, const Saved* saved) {
+    require_little_endian();
+    if (saved == nullptr || !saved->recipe()) {
+        throw InputError(
+            "a control space can be saved if an entry of the catalogue has made it, other than a "
+            "foreign system");
+    }
+    const Recipe& recipe = *saved->recipe();
+    const bool is_vdb = is_for_openvdb(file);
+    const auto precision = is_vdb ? Precision::floats : recipe.precision;
+    StateWriter state;
+    state("written_by", "controlspace " + std::string(version()));
+    state("structure", recipe.structure);
+    exchange(recipe.options, state);
+    if (precision) state("compact.precision", *precision, Precision::log8);
+    if (is_vdb) {
+        std::string bytes = saved->vdb_file(std::move(state));
+        seal_vdb(bytes);
+        OutputFile out(file);
+        out.write(bytes);
+        return out.commit();
+    }
+    saved->save(state);
+    if (saved->given()) controlspace::save(state, "given", *saved->given());
+    if (saved->grows_apart()) state(grows_apart, std::uint64_t{1});
+    write(file, state);
+}
+
+// The state in a file of OpenVDB's.
+std::string state_in_vdb(const std::string& bytes, const std::string& name,
+                         std::span<const CatalogueEntry> structures) {
+    require_sealed_vdb(bytes, name);
+    const auto entry = std::ranges::find_if(structures, &CatalogueEntry::has<VdbFiles>);
+    if (entry == structures.end()) {
+        throw InputError(name +
+                         " is OpenVDB's, which this program does not have: use one that has it");
+    }
+    const auto builder = entry->make({.domain = {Point::Zero(), Point::Ones()}});
+    return dynamic_cast<const SavedBuilder&>(*builder).state_in_vdb(bytes, name);
+}
+
 }  // namespace
+
+std::string Saved::vdb_file(StateWriter) const {
+    throw InputError("only openvdb-tiles can be saved to a .vdb, not its builder: name a .ctrl");
+}
+
+std::string SavedBuilder::state_in_vdb(const std::string&, const std::string& file) const {
+    throw InputError(file + " cannot be loaded as this structure: save a .ctrl");
+}
 
 std::optional<Recipe> recipe_of(const ControlSpace& space) {
     const auto* saved = dynamic_cast<const Saved*>(&space);
     return saved == nullptr ? std::nullopt : saved->recipe();
+}
+
+bool holds_control_space(const std::filesystem::path& file) {
+    if (file.extension() == ".ctrl") return true;
+    if (!is_for_openvdb(file)) return false;
+    constexpr std::size_t beginning = 1024;
+    std::string bytes(beginning, '\0');
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(bytes.data(), beginning);
+    bytes.resize(static_cast<std::size_t>(stream.gcount()));
+    return is_sealed_vdb(bytes);
 }
 
 void save_control_space(const std::filesystem::path& file, const ControlSpace& space) {
@@ -190,8 +243,10 @@ SavedControlSpace open_control_space(const std::filesystem::path& file,
                                      std::span<const CatalogueEntry> structures) {
     require_little_endian();
     const std::string name = file.string();
-    const std::string bytes = read_binary_file(file);
-    const StateReader state(checked_body(bytes, name), name);
+    std::string bytes = read_binary_file(file);
+    const bool was_openvdbs = is_vdb(bytes);
+    if (was_openvdbs) bytes = state_in_vdb(bytes, name, structures);
+    const StateReader state(was_openvdbs ? bytes : checked_body(bytes, name), name);
     SavedControlSpace saved;
     std::string structure;
     state("structure", structure);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "baselines/fixtures.h"
+#include "baselines/tiles_scenes.h"
 #include "controlspace/measure/access_time.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/sampled_surfaces.h"
@@ -12,39 +13,8 @@
 #include "counting_allocator.h"
 
 namespace controlspace::openvdb_tiles_test {
-namespace {
 
-constexpr double g = 1.25;
-
-std::unique_ptr<ControlSpace> adapted(const std::string& id, const SpaceOptions& options,
-                                      std::span<const PointSource> sources, double target,
-                                      std::optional<Precision> precision) {
-    const auto builder = structure_with_id(id).make(options);
-    AdaptationGoal goal{sources, nullptr, g, target};
-    goal.precision = precision.value_or(Precision::doubles);
-    REQUIRE(builder->adapt(goal).met);
-    return builder->build({.precision = precision});
-}
-
-// Cubes, oblong boxes, those away from the origin, flat ones.
-struct Scene {
-    Box domain;
-    std::vector<PointSource> sources;
-};
-Scene scene(int number) {
-    const Box boxes[] = {{Point(-1, -1, -1), Point(1, 1, 1)},
-                         {Point(3, -2, 7), Point(11, -0.9, 8.3)},
-                         {Point(5e5, 4e6, 0), Point(5.1e5, 4.01e6, 0)}};
-    Scene scene{boxes[number], {}};
-    const Vector edges = scene.domain.edges();
-    for (const Point& place : random_points(scene.domain, 20, 5)) {
-        const double h = edges.maxCoeff() * (scene.sources.size() % 2 == 0 ? 0.01 : 0.04);
-        scene.sources.push_back({place, Metric::isotropic(h)});
-    }
-    return scene;
-}
-
-}  // namespace
+using tiles_scenes::adapted, tiles_scenes::g, tiles_scenes::scene;
 
 TEST_CASE("tiles answer as the octree does that they are made of") {
     const auto [domain, sources] = scene(GENERATE(0, 1, 2));

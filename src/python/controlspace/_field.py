@@ -124,7 +124,8 @@ class Field:
         return lengths
 
     def save(self, file: str | os.PathLike[str]) -> None:
-        """Writes a .ctrl file, whole or not at all. ValueError where that fails."""
+        """Writes a .ctrl file, or a .vdb for one of openvdb-tiles, whose lengths are then floats;
+        whole or not at all. ValueError where that fails."""
         call("save", self._handle, _arrays.path("file", file))
 
     def export(self, file: str | os.PathLike[str], **options: Any) -> None:
@@ -273,7 +274,7 @@ def _word(name: str, value: Any) -> bytes:
 
 
 def load(file: str | os.PathLike[str]) -> Field:
-    """The field in a .ctrl file, of `Field.save` or `controlspace build`; ValueError otherwise."""
+    """The field in a .ctrl or .vdb, of `Field.save` or `controlspace build`; ValueError otherwise."""
     handle = ctypes.c_void_p()
     call("load", _arrays.path("file", file), ctypes.byref(handle))
     return _field(handle, None)

@@ -36,9 +36,12 @@ struct CompactForm {};
 struct VoxelSize {};
 /// Joins voxels that are alike: prune_delta.
 struct Pruning {};
+/// What it holds in floats can be saved to a file of OpenVDB (.vdb), too, which other programs
+/// read.
+struct VdbFiles {};
 
 using Capability = std::variant<SourceLeaves, SplitRules, MetricNodes, KeptSources, QuadraticLeaves,
-                                CompactForm, VoxelSize, Pruning>;
+                                CompactForm, VoxelSize, Pruning, VdbFiles>;
 
 /// One structure of the study.
 struct CatalogueEntry {

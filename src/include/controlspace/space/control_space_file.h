@@ -35,9 +35,17 @@ struct Recipe {
 /// None where it was not made by a CatalogueEntry.
 std::optional<Recipe> recipe_of(const ControlSpace& space);
 
+/// Whether a file is a control space by its ending, .ctrl, or a .vdb that holds one.
+bool holds_control_space(const std::filesystem::path& file);
+
 /// Writes a finished structure, or a builder, which can be continued after loading, to `file`:
 /// whole or not at all. Throws InputError where it was not made by a
 /// CatalogueEntry, where it keeps a continuous field, and where writing fails.
+///
+/// Where the file ends in .vdb, OpenVDB's, the lengths of a structure with VdbFiles, finished, are
+/// written in floats: a FloatGrid `length`, whose active tiles and voxels are the structure's, as
+/// other programs read it. What is loaded answers these floats, to the bit, whatever precision was
+/// saved. A file that another program has written anew holds no control space any more.
 void save_control_space(const std::filesystem::path& file, const ControlSpace& space);
 void save_control_space(const std::filesystem::path& file, const ControlSpaceBuilder& builder);
 

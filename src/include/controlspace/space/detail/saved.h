@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "controlspace/space/control_space_file.h"
@@ -18,6 +19,9 @@ public:
     /// Writes all that it holds, but for what its recipe gives. Throws InputError where it cannot
     /// be saved.
     virtual void save(StateWriter& state) const = 0;
+    /// A .vdb file (VdbFiles) of what it answers in floats, from what its recipe gives; unsealed
+    /// (sealed_vdb.h). Throws InputError where it has none.
+    virtual std::string vdb_file(StateWriter state) const;
 
     /// The entry of the catalogue and the options that it was made by; none if it was made in
     /// another way.
@@ -50,6 +54,8 @@ class SavedBuilder : public Saved {
 public:
     /// Into a new builder, made with the same options.
     virtual void load(const StateReader& state) = 0;
+    /// What vdb_file was given, with what save would add. `file` is for messages.
+    virtual std::string state_in_vdb(const std::string& bytes, const std::string& file) const;
 };
 
 }  // namespace controlspace

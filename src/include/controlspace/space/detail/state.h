@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "controlspace/geometry/box.h"
@@ -49,6 +50,9 @@ constexpr NumberKind number_kind() {
 /// values.
 class StateWriter {
 public:
+    /// Goes on behind what another one has written.
+    explicit StateWriter(std::string bytes = {}) : bytes_(std::move(bytes)) {}
+
     /// Appends an array, compressed.
     template <class T>
     void operator()(std::string_view name, const std::vector<T>& values) {
