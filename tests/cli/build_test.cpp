@@ -48,6 +48,36 @@ TEST_CASE("what is queried of a saved control space is what was queried before i
     CHECK(lines(loaded.out) == 4);
 }
 
+#ifdef CONTROLSPACE_OPENVDB
+TEST_CASE("a .vdb is built, adapted unless told, and taken by every command as a .ctrl is") {
+    const Sandbox box("build-vdb");
+    box.write("s.csv", sources_csv);
+    box.write("places.csv", places_csv);
+    const Outcome built = box.run("build s.csv -o f.vdb");
+    INFO(built.err);
+    REQUIRE(built.status == 0);
+    CHECK_THAT(built.out, Contains("f.vdb: openvdb-tiles with"));
+    CHECK_THAT(built.err, Contains("everywhere: lengths within 1.09"));
+    REQUIRE(box.run("build s.csv -o f.ctrl --structures openvdb-tiles --precision float").status ==
+            0);
+    CHECK(box.run("query f.vdb places.csv").out == box.run("query f.ctrl places.csv").out);
+    CHECK_THAT(box.run("info f.vdb").out,
+               Contains("structure    openvdb-tiles") && Contains("precision    float: read-only"));
+    REQUIRE(box.run("export f.vdb -o a.csv").status == 0);
+    REQUIRE(box.run("export f.ctrl -o b.csv").status == 0);
+    CHECK(file_text(box / "a.csv") == file_text(box / "b.csv"));
+
+    CHECK(box.run("export f.vdb -o picture.vdb").status == 0);
+    CHECK(box.run("query picture.vdb places.csv").status == 2);  // a field, or a surface
+    CHECK_THAT(box.run("query f.vdb places.csv --within 1.2").err,
+               Contains("--within: f.vdb was made with its own"));
+    const Outcome other = box.run("build s.csv -o g.vdb --structures K_oV");
+    CHECK(other.status == 2);
+    CHECK_THAT(other.err, Contains("K_oV cannot be saved to a .vdb"));
+    CHECK_FALSE(fs::exists(box / "g.vdb"));
+}
+#endif
+
 TEST_CASE("the interpolation of quadratic leaves is chosen, kept and named") {
     const Sandbox box("build-interpolation");
     box.write("s.csv", sources_csv);

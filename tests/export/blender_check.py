@@ -137,6 +137,10 @@ def main(folder):
                                   nodes.new("ShaderNodeOutputMaterial").inputs["Volume"])
     check_picture(volume, untouched, os.path.join(folder, "density.png"))
     check_picture(volume, attribute_material("h_min"), os.path.join(folder, "h_min.png"))
+    tiles = import_volume(os.path.join(folder, "tiles.vdb"))
+    check([grid.name for grid in tiles.data.grids] == ["length"], "tiles are lengths alone")
+    check(all(abs(d - 2) < 0.1 for d in tiles.dimensions), "tiles fill the domain")
+    check_picture(tiles, attribute_material("length"), os.path.join(folder, "tiles.png"))
 
 
 main(sys.argv[sys.argv.index("--") + 1])
