@@ -17,5 +17,6 @@ trap 'rm -rf "$folder"' EXIT
     --voxel 0.03125 --tolerance 0
 "$controlspace" export -o "$folder/all.vdb" --voxel 0.1 --half \
     --grids density,h_min,h_max,h_mean,anisotropy,sizes,e1,metric_diag,metric_off,sources
-"$controlspace" build -o "$folder/tiles.vdb" --h 0.1 --within 1.3
+"$controlspace" build ball:0.3,0.3,0.3,r=0.05,h=0.01 -o "$folder/tiles.vdb" \
+    --domain -1 1 -1 1 -1 1 --within 1.2
 "$blender" -b --factory-startup --python-exit-code 1 --python "$here/blender_check.py" -- "$folder"
