@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
 #include <utility>
 
+#include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/catalogue.h"
 #include "controlspace/space/control_space_builder.h"
 #include "refuse.h"
@@ -27,7 +29,13 @@ public:
     GradationReport grade(const GradationOptions& options) override {
         return ours_->grade(options);
     }
-    AdaptationReport adapt(const AdaptationGoal& goal) override { return ours_->adapt(goal); }
+    AdaptationReport adapt(const AdaptationGoal& goal) override {
+        if constexpr (requires(const Space& space) { space.rounding(); }) {
+            return adapt_before_rounding(goal);
+        } else {
+            return ours_->adapt(goal);
+        }
+    }
     std::unique_ptr<ControlSpace> build(const BuildOptions& options) override {
         if (options.precision) refuse_precision();
         return std::make_unique<Space>(*ours_->build());
@@ -35,6 +43,34 @@ public:
     Box domain() const override { return ours_->domain(); }
 
 private:
+    // To less than the target, by the factor that rounding then takes, which is known only of what
+    // was made.
+    AdaptationReport adapt_before_rounding(const AdaptationGoal& goal) {
+        constexpr int rounds = 4;
+        const double allowed = largest_factor_within(goal.target);
+        double rounding = Space::usual_rounding;
+        AdaptationReport report;
+        for (int round = 0; round < rounds; ++round) {
+            if (!(rounding < allowed)) {
+                refuse("rounding by a factor of {:.4g} cannot keep a target of {}: raise it",
+                       rounding, goal.target);
+            }
+            AdaptationGoal own = goal;
+            own.target = nonconformity_of_factor(allowed / rounding);
+            report = ours_->adapt(own);
+            const double taken = Space(*ours_->build()).rounding();
+            report.reached = nonconformity_of_factor(largest_factor_within(report.reached) * taken);
+            if (!report.met || taken <= rounding) {
+                if (report.met) report.reached = std::min(report.reached, goal.target);
+                return report;
+            }
+            rounding = 1 + 1.1 * (taken - 1);
+        }
+        report.met = report.reached <= goal.target;
+        if (!report.met) report.shortfall = "rounding takes more than was left for it";
+        return report;
+    }
+
     std::unique_ptr<ControlSpaceBuilder> ours_;
 };
 

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "baselines/peers/nanovdb/dense_grid.h"
+#include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/control_nodes.h"
 #include "peers/peers.h"
@@ -31,6 +32,60 @@ TEST_CASE("NanoVDB counts its blocks of memory: of lengths one number a node, el
     const Footprint open = finished("openvdb-vec3s-trilinear", work)->footprint();
     CHECK(nano.control_nodes == open.control_nodes);
     CHECK(6 * nano.bytes_payload == static_cast<std::size_t>(numbers) * open.bytes_payload);
+}
+
+TEST_CASE("a sparse NanoVDB grid answers K_oL's floats, to the bit, and its codes near to them") {
+    const Work work = GENERATE(oblong_box(), flat_box(), isotropic_sphere());
+    CAPTURE(work.name);
+    const auto places = places_in(work, 20000);
+    const auto octree = finished("K_oL", work), floats = finished("nanovdb-tiles", work),
+               codes = finished("nanovdb-tiles-fp8", work);
+    const auto cursor = floats->cursor();
+    double largest = 1, range = 1;
+    const auto exact = lengths_at(*octree, places), batch = lengths_at(*floats, places),
+               rounded = lengths_at(*codes, places);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        REQUIRE(batch[i] == static_cast<float>(exact[i]));
+        REQUIRE(floats->length_at(places[i]) == batch[i]);
+        REQUIRE(cursor->length_at(places[i]) == batch[i]);
+        REQUIRE(codes->length_at(places[i]) == rounded[i]);
+        largest = std::max({largest, rounded[i] / exact[i], exact[i] / rounded[i]});
+        range = std::max(range, exact[i] / std::ranges::min(exact));
+    }
+    // Half a step of 255 between the least and the largest length of a leaf, at most of all.
+    CHECK(largest > 1);
+    CHECK(largest <= 1 + 0.5 * (range - 1) / 255 + 1e-6);
+    CHECK(codes->footprint().control_nodes == octree->footprint().control_nodes);
+    CHECK(4 * codes->footprint().bytes_payload == floats->footprint().bytes_payload);
+}
+
+TEST_CASE("sparse NanoVDB grids keep a target by what they answer, codes too") {
+    const Work work = isotropic_sphere();
+    const std::string id = GENERATE("nanovdb-tiles", "nanovdb-tiles-fp8");
+    CAPTURE(id);
+    const auto made = [&](const std::string& structure) {
+        const auto builder = row_named(structure).make(work.options());
+        AdaptationGoal goal;
+        goal.sources = work.sources;
+        goal.target = 0.1;
+        const AdaptationReport report = builder->adapt(goal);
+        if (structure != "direct") {
+            CHECK(report.met);
+            CHECK(report.is_bound);
+            CHECK(report.reached <= 0.1);
+        }
+        return builder->build();
+    };
+    const auto space = made(id), exact = made("direct");
+    const auto places = places_in(work, 100000);
+    const auto own = answers_at(*space, places), field = answers_at(*exact, places);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        REQUIRE(nonconformity(own[i], field[i]) <= 0.1);
+    }
+}
+
+TEST_CASE("sparse NanoVDB grids refuse tensors") {
+    CHECK_THROWS_AS(finished("nanovdb-tiles", anisotropic_oblong_box()), InputError);
 }
 
 // The kernel's function, called here.

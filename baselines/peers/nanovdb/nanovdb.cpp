@@ -13,6 +13,7 @@
 #include "baselines/lattice/grid_space.h"
 #include "baselines/openvdb/vec3s_value.h"
 #include "baselines/peers/nanovdb/dense_grid.h"
+#include "baselines/peers/nanovdb/nano_tiles.h"
 
 namespace controlspace {
 
@@ -168,12 +169,15 @@ CatalogueEntry row(std::string id, std::string description) {
 }  // namespace
 
 std::vector<CatalogueEntry> nanovdb_rows() {
-    return {row<Interpolation::nearest>("nanovdb-nearest",
-                                        "dense NanoVDB, constant: a float grid of lengths, or two "
-                                        "Vec3f grids of metrics"),
-            row<Interpolation::trilinear>("nanovdb-trilinear",
-                                          "dense NanoVDB, trilinear: a float grid of lengths, or "
-                                          "two Vec3f grids of metrics")};
+    std::vector<CatalogueEntry> rows = nanovdb_tiles_rows();
+    rows.insert(rows.begin(),
+                {row<Interpolation::nearest>("nanovdb-nearest",
+                                             "dense NanoVDB, constant: a float grid of lengths, or "
+                                             "two Vec3f grids of metrics"),
+                 row<Interpolation::trilinear>("nanovdb-trilinear",
+                                               "dense NanoVDB, trilinear: a float grid of lengths, "
+                                               "or two Vec3f grids of metrics")});
+    return rows;
 }
 
 }  // namespace controlspace
