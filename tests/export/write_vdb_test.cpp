@@ -159,6 +159,26 @@ TEST_CASE("tiles stand where the field hardly varies, voxels keep to the toleran
     CHECK(largest > 1.003);
 }
 
+TEST_CASE("where all is equal, blocks at the border end with the domain, and tiles are densities") {
+    // Lengths of 2 in the low half, of 1 beyond a plane that lies between blocks.
+    const auto halves = [](const Point& x) { return Metric::isotropic(x.x() < 0.8 ? 2 : 1); };
+    const ScratchDirectory folder;
+    const fs::path path = folder.path() / "field.vdb";
+    write_vdb(path, FormulaField(halves), {{0, 0, 0}, {2, 1, 1.3}}, {.voxel = 0.1});
+    for (const std::string name : {"h_min", "density"}) {
+        const auto grid = read_grid<openvdb::FloatGrid>(path, name);
+        CAPTURE(name);
+        CHECK(grid->activeVoxelCount() == 20 * 10 * 13);
+        CHECK(grid->evalActiveVoxelBoundingBox() == openvdb::CoordBBox({0, 0, 0}, {19, 9, 12}));
+        CHECK(grid->tree().activeTileCount() > 0);
+    }
+    // 1 at the smallest length, 0 at the largest, in tiles too.
+    const auto density = read_grid<openvdb::FloatGrid>(path, "density");
+    for (auto value = density->cbeginValueOn(); value; ++value) {
+        REQUIRE(*value == (value.getCoord().x() < 8 ? 0 : 1));
+    }
+}
+
 TEST_CASE("compression and halves change the file, not what it says") {
     const ScratchDirectory folder;
     const auto sum = [&](const VdbOptions& options) {

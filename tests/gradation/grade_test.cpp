@@ -130,6 +130,20 @@ TEST_CASE("a node of a lattice has all neighbours around it once, and is one of 
     }
 }
 
+TEST_CASE("the largest gradation is that of the steepest pair, wherever it is") {
+    // Along a line, the cone law's ratio between two nodes: 1 + |h - h'| / d.
+    const Lattice line{Point::Zero(), Vector(0.5, 1, 1), {5, 1, 1}};
+    for (std::size_t steep = 0; steep < 4; ++steep) {
+        std::vector<double> h{1, 1.1, 1.2, 1.3, 1.4};
+        for (std::size_t i = steep + 1; i < 5; ++i) h[i] += 0.4;
+        std::vector<Metric> metrics, reversed;
+        for (const double length : h) metrics.push_back(Metric::isotropic(length));
+        reversed.assign(metrics.rbegin(), metrics.rend());
+        CHECK(largest_gradation(line, metrics, GradationLaw::cone) == Approx(2));
+        CHECK(largest_gradation(line, reversed, GradationLaw::cone) == Approx(2));
+    }
+}
+
 TEST_CASE("the queue leaves no pair above the ratio") {
     const auto law = GENERATE(GradationLaw::cone, GradationLaw::mean_length);
     const double g = GENERATE(1.1, 1.25, 2.0);

@@ -113,6 +113,19 @@ TEST_CASE("growth ratio along eigenvectors, by hand") {
     CHECK(growth_between(GradationLaw::cone, b, a, v).length == Approx(0.5));
 }
 
+TEST_CASE("growth ratio along eigenvectors that only one of two metrics has") {
+    // Every direction is one of the first metric's; the second is four times as long along its own,
+    // which no axis is near, and never shorter.
+    Draw draw(5);
+    const Metric a = Metric::isotropic(1);
+    for (int i = 0; i < 20; ++i) {
+        const Metric b = rotated({4, 1, 2, 0, 0, 0}, draw.rotation());
+        const Vector v(1, 0, 0);
+        CHECK(growth_between(GradationLaw::mean_length, a, b, v).ratio == Approx(4));
+        CHECK(growth_between(GradationLaw::mean_length, b, a, v).ratio == Approx(1));
+    }
+}
+
 TEST_CASE("gradation ratios of other programs") {
     // The growth per unit of length is ln(hgrad) in MMG and ln(beta) in refine, g - 1 here.
     CHECK(gradation_ratio_from_mmg(1.3) == Approx(1 + std::log(1.3)));

@@ -179,6 +179,7 @@ TEST_CASE("edges: Riemannian metrics are read as long as they say, or not at all
                 if (is_in_range) REQUIRE(m);
                 if (!m) continue;
                 REQUIRE(is_definite(*m));
+                REQUIRE(is_source_metric(*m));
                 // M 𝓜 M = I, up to the digits of 𝓜.
                 const LongMatrix unit = long_matrix(*m) * long_matrix(riemannian) * long_matrix(*m);
                 const auto off =

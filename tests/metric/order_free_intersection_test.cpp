@@ -170,6 +170,8 @@ TEST_CASE("order-free intersection: of two metrics it is their intersection") {
             const Metrics pair{draw.metric(1, anisotropy),
                                draw.metric(draw.uniform(0.3, 3), anisotropy)};
             const OrderFreeIntersection answer = order_free_intersection(pair);
+            const Metrics turned{pair[1], pair[0]};
+            CHECK(order_free_intersection(turned).metric() == answer.metric());
             CHECK(answer.gap == 0);
             CHECK(proven_gap(answer, pair) <= 1e-13 + 1e-14 * anisotropy);
             CHECK(length_difference(answer.metric(), intersection(pair[0], pair[1])) <=

@@ -53,6 +53,19 @@ TEST_CASE("elements give a source at each corner, and shared corners one") {
               .size() == 4);
 }
 
+TEST_CASE("tensors at one place that differ in one number are two sources") {
+    const std::string first = "4,0.5,0.25,0.5,4,0.125,0.25,0.125,4";
+    for (const char* other :
+         {"8,0.5,0.25,0.5,4,0.125,0.25,0.125,4", "4,0.5,0.25,0.5,8,0.125,0.25,0.125,4",
+          "4,0.5,0.25,0.5,4,0.125,0.25,0.125,8", "4,1,0.25,1,4,0.125,0.25,0.125,4",
+          "4,0.5,1,0.5,4,0.125,1,0.125,4", "4,0.5,0.25,0.5,4,1,0.25,1,4"}) {
+        CAPTURE(other);
+        CHECK(parsed("View \"m\" {TL(0,0,0,1,0,0){" + first + "," + first + "};TL(0,0,0,1,0,0){" +
+                     other + "," + first + "};};")
+                  .size() == 3);
+    }
+}
+
 TEST_CASE("of several steps in time of a view the last is read, or the one that is named") {
     std::string said;
     const auto read = [&](const std::string& text, std::optional<std::uint64_t> step = {}) {

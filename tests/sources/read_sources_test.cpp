@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "controlspace/io/read_sources.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
 
 #include "data_folder.h"
 #include "io/text/medit.h"
+#include "io/text/npy.h"
 #include "sources/files.h"
 
 namespace controlspace::read_sources_test {
@@ -69,6 +72,23 @@ TEST_CASE("a mesh and its solution may be of either form") {
         for (std::size_t i = 0; i < mixed.size(); ++i) {
             REQUIRE(mixed[i].metric.matrix().isApprox(sources[i].metric.matrix(), 1e-12));
         }
+    }
+}
+
+TEST_CASE("rows of an array of NumPy are checked as those of a table") {
+    const ScratchDirectory scratch("npy");
+    const auto read = [&](double h, double growth) {
+        const std::array row{0.1, 0.2, 0.3, h, growth};
+        const std::string bytes(reinterpret_cast<const char*>(row.data()), sizeof row);
+        return read_sources(scratch.file("a.npy", npy_header("1, 5") + bytes));
+    };
+    CHECK(read(0.5, 1.5).front() == PointSource{{0.1, 0.2, 0.3}, Metric::isotropic(0.5), 1.5});
+    CHECK(read(0.5, 0).front().growth == 0);
+    for (const double growth : {0.5, 0.999, -1.0, 1e9, std::nan("")}) {
+        CHECK_THAT(error_of([&] { read(0.5, growth); }), Contains("row 0: g"));
+    }
+    for (const double h : {0.0, -1.0, std::nan("")}) {
+        CHECK_THAT(error_of([&] { read(h, 1.5); }), Contains("row 0: h"));
     }
 }
 

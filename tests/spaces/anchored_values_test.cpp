@@ -64,15 +64,17 @@ CASE_OF_EACH(entry, anchored_catalogue(),
 }
 
 CASE_OF_EACH(entry, anchored_catalogue(), "more sources than anchors at one place: all are met") {
-    // Five discs that cross at one place, each 0.1 across and 1 along.
+    // Discs that cross at one place, each 0.1 across and 1 along.
     std::vector<PointSource> sources;
     const Point place(0.1, 0.2, 0.3);
-    for (int i = 0; i < 5; ++i) {
+    const int count = GENERATE(5, 40);
+    for (int i = 0; i < count; ++i) {
         const Vector n = Vector(1, i - 2, 0.5 * i).normalized();
         Metric m = Metric::from_matrix(Eigen::Matrix3d::Identity() - 0.9 * n * n.transpose());
         sources.push_back({place + 1e-4 * n, m});
     }
-    const auto space = editable(entry.make({.domain = domain}));
+    const auto rule = GENERATE(IntersectionRule::order_free, IntersectionRule::in_turn);
+    const auto space = editable(entry.make({.domain = domain, .intersection = rule}));
     space->insert(sources);
     for (const PointSource& s : sources) {
         const Metric held = sample_at(*space, s.position);

@@ -18,6 +18,7 @@
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/measure/access_time.h"
 #include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/detail/state.h"
 #include "damaged_files.h"
 #include "editable_space.h"
 #include "sources/files.h"
@@ -244,6 +245,15 @@ TEST_CASE("a program's own continuous field cannot be saved") {
         CHECK_THAT(error_of([&] { save_control_space(scratch / "no.ctrl", *space); }),
                    Contains("continuous field"));
     }
+}
+
+TEST_CASE("an array that comes twice in a file is refused") {
+    StateWriter state;
+    state("a", 1.0);
+    state("b", 2.0);
+    CHECK_NOTHROW(StateReader(state.bytes(), "f.ctrl"));
+    state("a", 1.0);
+    CHECK_THROWS_WITH(StateReader(state.bytes(), "f.ctrl"), Contains("is there twice"));
 }
 
 }  // namespace controlspace::control_space_file_test

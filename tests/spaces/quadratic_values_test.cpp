@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trees/values/quadratic_values.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -122,6 +123,27 @@ TEST_CASE(
         const Point centre = space->cell_at(x)->centre();
         const double own = sample_at(*space, centre).xx;
         REQUIRE(sample_at(*space, x).xx <= own + (g - 1) * (x - centre).norm() + 1e-12);
+    }
+}
+
+TEST_CASE("no axis of a quadratic leaf falls below half of its own, beside whatever neighbour") {
+    const Metric own = Metric{1, 1.5, 2, 0, 0, 0};
+    for (std::size_t face = 0; face < 6; ++face) {
+        // A neighbour a hundred times as long along one axis, away from which quadratic functions
+        // undershoot.
+        for (std::size_t along = 0; along < 3; ++along) {
+            std::array<Metric, 6> across;
+            across.fill(own);
+            double* const lengths[] = {&across[face].xx, &across[face].yy, &across[face].zz};
+            *lengths[along] *= 100;
+            Vector t = Vector::Zero();
+            t[static_cast<Axis>(face / 2)] = face % 2 == 0 ? 0.5 : -0.5;
+            const Metric m = triquadratic(own, across, t, 10);
+            CAPTURE(face, along);
+            const double held[] = {m.xx / own.xx, m.yy / own.yy, m.zz / own.zz};
+            CHECK(held[along] == Approx(0.5));
+            CHECK(std::ranges::min(held) >= 0.5 * (1 - 1e-12));
+        }
     }
 }
 
