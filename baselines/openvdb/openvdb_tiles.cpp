@@ -168,11 +168,14 @@ public:
     }
     std::string vdb_file(StateWriter state) const override {
         const Octants octants = cuts_.octants(domain());
-        std::vector<float> lengths;
-        for (const Metric& metric : metrics(octants)) {
-            if (!is_isotropic(metric)) refuse("tensors are not saved to a .vdb: name a .ctrl");
-            lengths.push_back(StoredLength<float>(metric).h);
+        const std::vector<Metric> all = metrics(octants);
+        if (!std::ranges::all_of(all, is_isotropic)) {
+            refuse("tensors are not saved to a .vdb: name a .ctrl");
         }
+        // Refuses lengths that are beyond floats.
+        const StoredMetrics<StoredLength<float>> stored(all);
+        std::vector<float> lengths;
+        for (const StoredLength<float>& length : stored.items()) lengths.push_back(length.h);
         return tiles_file(std::move(state), octants, lengths);
     }
 

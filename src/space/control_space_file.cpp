@@ -11,6 +11,7 @@
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "controlspace/error.h"
@@ -223,7 +224,8 @@ std::optional<Recipe> recipe_of(const ControlSpace& space) {
 
 bool holds_control_space(const std::filesystem::path& file) {
     if (file.extension() == ".ctrl") return true;
-    if (!is_for_openvdb(file)) return false;
+    std::error_code unknown;  // a pipe can be read only once
+    if (!is_for_openvdb(file) || !std::filesystem::is_regular_file(file, unknown)) return false;
     constexpr std::size_t beginning = 1024;
     std::string bytes(beginning, '\0');
     std::ifstream stream(file, std::ios::binary);

@@ -119,6 +119,10 @@ TEST_CASE("what is no lengths of tiles is not saved to a .vdb") {
     const auto octree = structure_with_id("K_oL").make(options)->build();
     CHECK_THAT(error_of([&] { save_control_space(folder / "t.vdb", *octree); }),
                Catch::Contains("openvdb-tiles"));
+    const Box large{Point(0, 0, 0), Point(1e42, 1e42, 1e42)};
+    const auto beyond = structure_with_id("openvdb-tiles").make({.domain = large})->build();
+    CHECK_THAT(error_of([&] { save_control_space(folder / "t.vdb", *beyond); }),
+               Catch::Contains("floats cannot hold"));
     CHECK_FALSE(std::filesystem::exists(folder / "t.vdb"));
 }
 
