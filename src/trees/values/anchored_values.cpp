@@ -116,8 +116,17 @@ void AnchoredValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafI
     anchors_.repeat(leaf, static_cast<std::size_t>(subdivision.children() - 1));
 }
 
-void AnchoredValues::add(LeafIndex leaf, const PointSource& source) {
-    anchors_.add(leaf, sources_.add(source));
+SourceIndex AnchoredValues::add(LeafIndex leaf, const PointSource& source) {
+    const SourceIndex index = sources_.add(source);
+    anchors_.add(leaf, index);
+    return index;
+}
+
+Metric AnchoredValues::value(const Box& domain, LeafIndex leaf, const Point& place,
+                             LongLists& lists) const {
+    const Point x = nearest_in(domain, place);
+    const Metric cones = Metric::isotropic(lists.smallest(leaf, x, largest_.xx));
+    return continuous_ ? intersection(cones, sample_at(*continuous_, x)) : cones;
 }
 
 void AnchoredValues::take_over(const AdaptationGoal& goal) {

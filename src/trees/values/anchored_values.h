@@ -16,6 +16,7 @@
 #include "controlspace/trees/topology.h"
 #include "metric/interior_point.h"
 #include "trees/values/anchors.h"
+#include "trees/values/growing_cones.h"
 #include "trees/values/source_table.h"
 
 namespace controlspace {
@@ -41,7 +42,11 @@ public:
     void prefetch(LeafIndex leaf) const { anchors_.prefetch(leaf); }
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex);
     /// The source becomes an anchor of its leaf.
-    void add(LeafIndex leaf, const PointSource& source);
+    SourceIndex add(LeafIndex leaf, const PointSource& source);
+    /// What finds the smallest cones of leaves to which many sources are added.
+    LongLists long_lists() const { return {anchors_, sources_, ratio_}; }
+    /// The value of a leaf, of a list that `is_long`, to the bit.
+    Metric value(const Box& domain, LeafIndex leaf, const Point& place, LongLists& lists) const;
 
     const SourceTable& sources() const { return sources_; }
     double ratio() const { return ratio_; }
