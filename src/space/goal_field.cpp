@@ -14,6 +14,7 @@
 #include "controlspace/metric/stored_metrics.h"
 #include "controlspace/sources/cone.h"
 #include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/detail/until_late.h"
 #include "controlspace/space/sample_parallel.h"
 #include "controlspace/space/space_options.h"
 #include "require_known.h"
@@ -120,12 +121,13 @@ std::vector<Point> GoalField::probes(const Box& domain) const {
     return x;
 }
 
-double GoalField::largest_departure(const Box& domain, const Sample& sample_space) const {
+double GoalField::largest_departure(const Box& domain, const Sample& sample_space,
+                                    const GrowthLimit& limit) const {
     const std::vector<Point> x = probes(domain);
     std::vector<Metric> own(x.size());
     std::vector<Metric> exact(x.size());
     sample_space(x, own);
-    sample_parallel(*this, x, exact);
+    sample_parallel(UntilLate(*this, limit), x, exact);
     double largest = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
         largest = std::max(largest, directional_nonconformity(own[i], exact[i]));

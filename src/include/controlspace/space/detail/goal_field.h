@@ -10,6 +10,7 @@
 #include "controlspace/geometry/box.h"
 #include "controlspace/space/adaptation.h"
 #include "controlspace/space/control_space.h"
+#include "controlspace/space/space_options.h"
 
 namespace controlspace {
 
@@ -49,8 +50,9 @@ public:
     /// Places all over the domain and near to sources, 100 000 of each.
     std::vector<Point> probes(const Box& domain) const;
     /// Largest δ (`directional_nonconformity`) between what `sample` answers and the field, at
-    /// these probes.
-    double largest_departure(const Box& domain, const Sample& sample) const;
+    /// these probes. Throws GrowthStopped beyond the limit's deadline.
+    double largest_departure(const Box& domain, const Sample& sample,
+                             const GrowthLimit& limit = {}) const;
 
     /// What is kept from leaf to leaf.
     GoalCache& cache() const { return *cache_; }
