@@ -57,11 +57,12 @@ public:
         return {std::move(leaves.graph), std::move(metrics)};
     }
 
-    /// Finds the sources that govern the leaves; the law is always the cone law. Leaves governed by
-    /// three sources and more are cut, down to l_min in their own metric. The field gets nowhere
+    /// Finds the sources that govern the leaves; the law is always the cone law. Leaves that a few
+    /// sources do not bring near to the field are cut, down to l_min in their own metric; where
+    /// there are 64 tensors at most, none is, for it may have all of them. The field gets nowhere
     /// longer, if all is isotropic: a ratio larger than before changes nothing, and what may govern
-    /// a place in a leaf stays its anchor.
-    /// Without new sources or a smaller ratio there is nothing to do.
+    /// a place in a leaf stays its anchor. Without new sources or a smaller ratio there is nothing
+    /// to do.
     GradationReport grade(const GradationOptions& options) {
         require_valid(options);
         constexpr double close = 0.02;  // non-conformity to the exact field

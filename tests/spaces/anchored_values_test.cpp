@@ -6,6 +6,7 @@
 
 #include "case_of_each.h"
 #include "controlspace/measure/accuracy.h"
+#include "controlspace/measure/reference.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
@@ -120,6 +121,40 @@ TEST_CASE("sources of one metric share it, and idle ones go") {
           2 * (sizeof(Point) + sizeof(std::uint32_t)) + sizeof(Metric) + sizeof(double));
     CHECK(table.factor(1, g, Point(42, 3, 4)) == Approx(1 + 0.25 * 50));
     CHECK(table.smallest_length(1) == Approx(0.1));
+}
+
+CASE_OF_EACH(entry, anchored_catalogue(), "thin tensors are graded without cuts") {
+    // Discs, needles and others, of 1000:1, turned at random.
+    Draw draw(9);
+    std::vector<PointSource> sources;
+    for (int i = 0; i < 20; ++i) {
+        const double h = draw.uniform(0.1, 0.3);
+        const std::array lengths{h / 1000, h * std::pow(1000, -draw.uniform(0, 1)), h};
+        const Point q(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
+        sources.push_back({q, metric_from_frame(lengths, draw.rotation())});
+    }
+    for (const auto rule : {IntersectionRule::order_free, IntersectionRule::in_turn}) {
+        const auto space = editable(entry.make({.domain = domain, .intersection = rule}));
+        space->insert(sources);
+        const std::size_t leaves = space->footprint().cells;
+        space->grade({});
+        CHECK(space->footprint().cells == leaves);
+        if (rule == IntersectionRule::in_turn) continue;  // jumps
+        const auto field = exact_reference(sources, g, largest_metric(domain), 1e-3);
+        std::vector<Point> x;
+        for (int i = 0; i < 2000; ++i) {
+            x.emplace_back(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
+        }
+        const auto own = answers(*space, x);
+        const auto exact = answers(*field, x);
+        double sum = 0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const double delta = directional_nonconformity(own[i], exact[i]);
+            CHECK(delta < 0.5);
+            sum += delta;
+        }
+        CHECK(sum < 5e-4 * static_cast<double>(x.size()));
+    }
 }
 
 TEST_CASE("the smallest of growing cones, to the bit, by a few of them") {

@@ -101,6 +101,8 @@ private:
         return intersection_ == IntersectionRule::order_free && !sources_.all_isotropic();
     }
     std::size_t most_anchors() const { return are_order_free() ? most_order_free : most; }
+    // Of leaves that are not proved, all of few tensors.
+    std::size_t most_learned() const { return fits_tensors_loosely_ ? 64 : most_anchors(); }
 
     // At so many places, the centre first.
     void fit(std::span<const LeafBox> leaves, const GoalField& field, std::size_t places,
