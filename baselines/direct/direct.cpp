@@ -14,6 +14,8 @@
 #include "controlspace/space/detail/saved.h"
 #include "controlspace/space/detail/shared_builder.h"
 #include "controlspace/space/detail/state.h"
+#include "controlspace/space/detail/until_late.h"
+#include "controlspace/space/sample_parallel.h"
 #include "refuse.h"
 
 namespace controlspace {
@@ -27,7 +29,8 @@ public:
         : domain_(options.domain),
           ratio_(options.ratio),
           h_max_(options.h_max),
-          intersection_(options.intersection) {
+          intersection_(options.intersection),
+          limit_(options.growth) {
         require_valid(options);
     }
 
@@ -120,6 +123,7 @@ private:
     double ratio_;
     double h_max_;
     IntersectionRule intersection_;
+    GrowthLimit limit_;
     SourceColumns sources_;
     std::shared_ptr<const ControlSpace> continuous_;
     mutable std::shared_ptr<const ConeField> search_;  ///< none since the last change
@@ -199,11 +203,20 @@ AdaptationReport Sources::adapt(const AdaptationGoal& goal) {
     intersection_ = goal.intersection;
     sources_ = columns_of(goal.sources);
     continuous_ = goal.continuous;
-    const Direct direct(std::make_shared<Sources>(*this));
     AdaptationReport report;
-    report.reached =
-        wanted.largest_departure(domain_, [&](auto x, auto metrics) { direct.sample(x, metrics); });
-    report.met = report.reached <= goal.target;
+    try {
+        require_in_time(limit_);
+        const Direct direct(std::make_shared<Sources>(*this));
+        const UntilLate in_time(direct, limit_);
+        report.reached = wanted.largest_departure(
+            domain_, [&](auto x, auto metrics) { sample_parallel(in_time, x, metrics); }, limit_);
+        report.met = report.reached <= goal.target;
+    } catch (const GrowthStopped& stopped) {
+        // It is complete; how near it comes was not found out.
+        report.reached = std::numeric_limits<double>::infinity();
+        report.stop = stopped.stop();
+        report.shortfall = stopped.what();
+    }
     return report;
 }
 

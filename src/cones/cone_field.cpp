@@ -10,15 +10,17 @@
 
 namespace controlspace {
 
-ConeField::Cones ConeField::make_cones(std::span<const PointSource> sources, double g) const {
-    if (all_isotropic(sources)) return IsotropicCones(columns_of(sources), g, longest_);
+ConeField::Cones ConeField::make_cones(std::span<const PointSource> sources, double g,
+                                       double longer) const {
+    if (all_isotropic(sources)) return IsotropicCones(columns_of(sources), g, longest_, longer);
     if (rule_ == IntersectionRule::in_turn) return AnisotropicCones(sources, g, longest_);
     return OrderFreeCones(sources, g, largest_, tolerance_);
 }
 
-ConeField::Cones ConeField::make_cones(const SourceColumns& sources, double g) const {
-    if (sources.are_isotropic()) return IsotropicCones(sources, g, longest_);
-    return make_cones(sources.all(), g);
+ConeField::Cones ConeField::make_cones(const SourceColumns& sources, double g,
+                                       double longer) const {
+    if (sources.are_isotropic()) return IsotropicCones(sources, g, longest_, longer);
+    return make_cones(sources.all(), g, longer);
 }
 
 Metric ConeField::at(const Point& x, const Metric* further, Memory& memory) const {
@@ -120,6 +122,11 @@ bool ConeField::is_isotropic() const {
 
 std::size_t ConeField::dropped() const {
     return std::visit([](const auto& cones) { return cones.dropped(); }, cones_);
+}
+
+double ConeField::longer() const {
+    const auto* isotropic = std::get_if<IsotropicCones>(&cones_);
+    return isotropic != nullptr ? isotropic->longer() : 1;
 }
 
 std::size_t ConeField::bytes_payload() const {

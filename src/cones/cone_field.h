@@ -40,14 +40,17 @@ public:
     /// layered sources (anisotropies of 4 and 50, 36186 and 895534 sources, 60 to 2000 random
     /// places, t from 1e-6 to 1e-2) the non-conformity to the exact field was at most 2.3 t^2; 1e-3
     /// takes 60 % of the time, 1e-2 half.
+    ///
+    /// Isotropic sources that are many and lie nearly on each other's cones may be thinned out:
+    /// lengths are then `longer() <= longer` times the exact ones at most (IsotropicCones).
     template <class Sources>  // PointSources in a row, or SourceColumns
     ConeField(const Sources& sources, double g, const Metric& largest, double tolerance = 0,
-              IntersectionRule rule = IntersectionRule::order_free)
+              IntersectionRule rule = IntersectionRule::order_free, double longer = 1)
         : largest_(largest),
           longest_(eigen_frame(largest).lengths[2]),
           tolerance_(tolerance),
           rule_(rule),
-          cones_(make_cones(sources, g)) {}
+          cones_(make_cones(sources, g, longer)) {}
 
     /// What a search remembers from one call to the next: best kept from place to nearby place,
     /// by one thread for one field.
@@ -97,6 +100,8 @@ public:
     const IsotropicCones& isotropic() const { return std::get<IsotropicCones>(cones_); }
     /// Sources that were left out because others lie below them everywhere.
     std::size_t dropped() const;
+    /// How many times the exact lengths are at most: that of the constructor, or 1.
+    double longer() const;
 
     /// Bytes allocated: of the metrics kept, and of what finds them.
     std::size_t bytes_payload() const;
@@ -105,8 +110,8 @@ public:
 private:
     using Cones = std::variant<IsotropicCones, AnisotropicCones, OrderFreeCones>;
     Metric at(const Point& x, const Metric* further, Memory& memory) const;
-    Cones make_cones(std::span<const PointSource> sources, double g) const;
-    Cones make_cones(const SourceColumns& sources, double g) const;
+    Cones make_cones(std::span<const PointSource> sources, double g, double longer) const;
+    Cones make_cones(const SourceColumns& sources, double g, double longer) const;
 
     Metric largest_;
     double longest_;  ///< of the lengths of `largest_`

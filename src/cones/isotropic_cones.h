@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "cones/cone_cover.h"
 #include "cones/cone_list.h"
@@ -25,14 +26,19 @@ class IsotropicCones {
 public:
     /// All metrics must be isotropic; g >= 1 is the ratio of sources that have none. Lengths of
     /// `cap` or more do not matter.
-    IsotropicCones(const SourceColumns& sources, double g, double cap);
+    ///
+    /// Thousands of sources that lie nearly on each other's cones, as the vertices of a graded mesh
+    /// do, are searched slowly. Of such, those within 16 epsilon of others' cones are left out, or
+    /// those within the factor `longer`, wherever that is half of them at least.
+    IsotropicCones(const SourceColumns& sources, double g, double cap, double longer = 1);
 
     /// Where a search starts from: best at the place where the last one nearby ended.
     using Hint = std::uint32_t;
 
     /// The smallest length of all cones at `p`, or the cap where none is below it: to the bit the
-    /// minimum over all sources of `cone_factor` times the source's length, whatever `hint` is.
-    /// With a `tolerance`, the same, or up to this fraction more.
+    /// minimum over all sources, or all that were not left out (`longer`), of `cone_factor` times
+    /// the source's length, whatever `hint` is. With a `tolerance`, the same, or up to this
+    /// fraction more.
     double smallest_length(const Point& p, Hint& hint, double tolerance = 0) const {
         return search(p, cap_, tolerance, hint);
     }
@@ -73,6 +79,11 @@ public:
     std::span<const std::uint32_t> kept() const { return tree_.indices(); }
     /// Sources that are the smallest nowhere, and were left out.
     std::size_t dropped() const { return dropped_; }
+    /// By this factor lengths may be longer than those of all sources: that of the constructor, or
+    /// 1, rounding aside.
+    double longer() const { return longer_; }
+    /// Nodes visited to find what is left out.
+    std::size_t visits() const { return visits_; }
 
     /// Bytes allocated: of the lengths, and of everything else.
     std::size_t bytes_payload() const { return tree_.leaves().size() * sizeof(Leaf::length); }
@@ -105,8 +116,18 @@ private:
     using Leaf = ConeLanes<leaf_size>;
     using Tree = ConeTree<Node, Leaf>;
 
+    struct Visits;
     void build(std::span<ConeTreeItem> items, const SourceColumns& sources, double g);
-    bool is_dominated(const IsotropicCone& cone) const;
+    bool is_dominated(const IsotropicCone& cone, double below, Visits& visits) const;
+    template <class IsFound>
+    std::vector<std::uint8_t> found_in(std::span<const ConeTreeItem> items, std::size_t most,
+                                       const IsFound& is_found);
+    double share_covered(std::span<const ConeTreeItem> items, const SourceColumns& sources,
+                         double g, double factor, std::size_t& visits) const;
+    bool takes_long(std::span<const ConeTreeItem> items, const SourceColumns& sources,
+                    double g) const;
+    bool leave_out_covered(std::vector<ConeTreeItem>& items, const SourceColumns& sources, double g,
+                           double factor);
     /// Of all cones below, everywhere at most `radius` away from `p`.
     Lanes lower_bounds(const Node& node, const Point& p, double radius = 0) const;
     Eigen::Index lane_of(const Point& p, double smallest, Hint leaf) const;
@@ -148,7 +169,9 @@ private:
     double steepest_;  ///< the largest slope
     double cap_;
     double safely_;  ///< just below 1: makes bounds safe against rounding
+    double longer_ = 1;
     std::size_t dropped_ = 0;
+    std::size_t visits_ = 0;
     Tree tree_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cones/cone_field.h"
 #include "controlspace/error.h"
@@ -13,6 +14,7 @@
 #include "controlspace/metric/stored_metrics.h"
 #include "controlspace/sources/cone.h"
 #include "controlspace/space/control_space_builder.h"
+#include "controlspace/space/detail/until_late.h"
 #include "controlspace/space/sample_parallel.h"
 #include "controlspace/space/space_options.h"
 #include "require_known.h"
@@ -49,18 +51,31 @@ double tolerance_for(const AdaptationGoal& goal) {
     return std::min(share * goal.target, 0.1);
 }
 
+// By which thinned lengths may be longer. A continuous field may be of tensors, for which factors
+// of lengths are not all that counts.
+double longest_thinned(const AdaptationGoal& goal, GoalField::Thinning thinning) {
+    constexpr double share = 0.1;
+    if (thinning == GoalField::Thinning::none || goal.continuous) return 1;
+    return std::pow(largest_factor_within(goal.target), share);
+}
+
 }  // namespace
 
-GoalField::GoalField(const AdaptationGoal& goal, const Box& domain, std::size_t most_answers)
-    : target_(require_valid(goal, domain).target),
+GoalField::GoalField(const AdaptationGoal& goal, const Box& domain, std::size_t most_answers,
+                     Thinning thinning)
+    : whole_target_(require_valid(goal, domain).target),
+      target_(whole_target_),
       ratio_(goal.ratio),
       largest_ratio_(std::max(goal.ratio, largest_growth(goal.sources, goal.ratio))),
       sources_(goal.sources),
       continuous_(goal.continuous),
       largest_(largest_metric(domain, goal.h_max)),
       cones_(std::make_unique<ConeField>(goal.sources, goal.ratio, largest_, tolerance_for(goal),
-                                         goal.intersection)),
-      cache_(std::make_unique<GoalCache>(most_answers)) {}
+                                         goal.intersection, longest_thinned(goal, thinning))),
+      cache_(std::make_unique<GoalCache>(most_answers)) {
+    if (cones_->longer() == 1) return;
+    target_ = nonconformity_of_factor(largest_factor_within(target_) / cones_->longer());
+}
 
 GoalField::~GoalField() = default;
 
@@ -72,6 +87,15 @@ double GoalField::negligible() const { return negligible_for(target_); }
 
 void GoalField::sample(std::span<const Point> x, std::span<Metric> out) const {
     cones_->evaluate(x, out, continuous_at(x));
+}
+
+double GoalField::departure_from_all(double delta) const {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (cones_->longer() == 1 || delta == infinity) return delta;
+    if (delta == target_) return whole_target_;
+    const double all = nonconformity_of_factor(largest_factor_within(delta) * cones_->longer());
+    if (delta <= target_) return std::min(all, whole_target_);
+    return std::max(all, std::nextafter(whole_target_, infinity));
 }
 
 std::vector<Metric> GoalField::continuous_at(std::span<const Point> x) const {
@@ -97,12 +121,13 @@ std::vector<Point> GoalField::probes(const Box& domain) const {
     return x;
 }
 
-double GoalField::largest_departure(const Box& domain, const Sample& sample_space) const {
+double GoalField::largest_departure(const Box& domain, const Sample& sample_space,
+                                    const GrowthLimit& limit) const {
     const std::vector<Point> x = probes(domain);
     std::vector<Metric> own(x.size());
     std::vector<Metric> exact(x.size());
     sample_space(x, own);
-    sample_parallel(*this, x, exact);
+    sample_parallel(UntilLate(*this, limit), x, exact);
     double largest = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
         largest = std::max(largest, directional_nonconformity(own[i], exact[i]));

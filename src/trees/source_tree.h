@@ -28,13 +28,17 @@ public:
     InsertionReport insert(std::span<const PointSource> sources) {
         is_finished_ = options_.takes_later_sources;
         InsertionReport report;
+        LongLists long_lists = storage_.long_lists();
         for (const PointSource& source : sources) {
             require_valid(source, report.sources++, Base::domain());
-            const Metric held = value_at(topology_, storage_, source.position);
             // A cone that is less steep than others may be the smallest away from its source.
             const bool are_alike = source.growth == 0 && storage_.sources().all_grow_alike();
-            if (are_alike && !calls_for_change(source.metric, held, options_.tolerance)) continue;
-            storage_.add(Base::cut_for(source).leaf, source);
+            if (are_alike && !calls_for_change(source.metric, held_at(source.position, long_lists),
+                                               options_.tolerance)) {
+                continue;
+            }
+            const LeafIndex leaf = Base::cut_for(source).leaf;
+            long_lists.added(leaf, storage_.add(leaf, source));
             is_graded_ = false;
             ++report.inserted;
         }
@@ -53,11 +57,12 @@ public:
         return {std::move(leaves.graph), std::move(metrics)};
     }
 
-    /// Finds the sources that govern the leaves; the law is always the cone law. Leaves governed by
-    /// three sources and more are cut, down to l_min in their own metric. The field gets nowhere
+    /// Finds the sources that govern the leaves; the law is always the cone law. Leaves that a few
+    /// sources do not bring near to the field are cut, down to l_min in their own metric; where
+    /// there are 64 tensors at most, none is, for it may have all of them. The field gets nowhere
     /// longer, if all is isotropic: a ratio larger than before changes nothing, and what may govern
-    /// a place in a leaf stays its anchor.
-    /// Without new sources or a smaller ratio there is nothing to do.
+    /// a place in a leaf stays its anchor. Without new sources or a smaller ratio there is nothing
+    /// to do.
     GradationReport grade(const GradationOptions& options) {
         require_valid(options);
         constexpr double close = 0.02;  // non-conformity to the exact field
@@ -108,6 +113,11 @@ public:
     }
 
 private:
+    Metric held_at(const Point& x, LongLists& long_lists) const {
+        const LeafIndex leaf = topology_.find(x);
+        if (long_lists.is_long(leaf)) return storage_.value(Base::domain(), leaf, x, long_lists);
+        return value_in(topology_, storage_, leaf, x);
+    }
     double ratio_left() const {
         const ControlNodes nodes = control_nodes(Neighbourhood::faces);
         return largest_gradation(nodes.graph, nodes.metrics, GradationLaw::cone);

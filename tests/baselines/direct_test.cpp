@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 
 #include "baselines/fixtures.h"
 #include "controlspace/error.h"
 #include "controlspace/measure/reference.h"
+#include "controlspace/space/detail/until_late.h"
 #include "counting_allocator.h"
 #include "editable_space.h"
 
@@ -149,6 +151,46 @@ TEST_CASE("direct says how many of its sources can matter") {
     const Footprint footprint = space->footprint();
     CHECK(footprint.control_nodes == 3);
     CHECK_THAT(footprint.remark, Contains("1 of 3 sources"));
+}
+
+TEST_CASE("direct ends the comparison with its target at a limit of time, and says so") {
+    int stop = 1;
+    SpaceOptions options = with_ratio(1.25);
+    const auto sources = sources_for(options, 300, false);
+    const AdaptationGoal goal{
+        .sources = sources, .continuous = nullptr, .ratio = 1.25, .target = 0.1};
+    const auto entry = *find_entry(structures(), "direct");
+    options.growth.stop = &stop;
+    const auto stopped = editable(entry.make(options));
+    const AdaptationReport report = stopped->adapt(goal);
+    CHECK(report.stop == GrowthStop::time);
+    CHECK_FALSE(report.met);
+    CHECK(report.reached == std::numeric_limits<double>::infinity());
+    CHECK_THAT(report.shortfall, Contains("no time was left"));
+    stop = 0;
+    const auto finished = editable(entry.make(options));
+    CHECK(finished->adapt(goal).met);
+    const auto x = places(options, 100);
+    CHECK(answers(*stopped, x) == answers(*finished, x));
+}
+
+TEST_CASE("what has a limit of time is sampled no further than some places beyond it") {
+    struct Counted final : ControlSpace {
+        void sample(std::span<const Point> x, std::span<Metric> out) const override {
+            std::ranges::fill(out, Metric::isotropic(1));
+            sampled += x.size();
+            stop = 1;
+        }
+        mutable std::size_t sampled = 0;
+        mutable int stop = 0;
+    };
+    const Counted space;
+    GrowthLimit limit;
+    limit.stop = &space.stop;
+    std::vector<Point> x(5000, Point::Zero());
+    std::vector<Metric> out(x.size());
+    CHECK_THROWS_AS(UntilLate(space, limit).sample(x, out), GrowthStopped);
+    CHECK(space.sampled <= 500);
 }
 
 TEST_CASE("direct refuses a ratio that is none") {

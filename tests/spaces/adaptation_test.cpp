@@ -19,6 +19,7 @@
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/cone.h"
 #include "controlspace/sources/sampled_surfaces.h"
+#include "controlspace/space/detail/goal_field.h"
 #include "editable_space.h"
 
 namespace controlspace::adaptation_test {
@@ -271,6 +272,63 @@ CASE_OF_EACH(entry, bounded_trees(), "trees keep the target everywhere, as bound
         CHECK(seen <= report.reached);
         CHECK(seen > (entry.has<KeptSources>() ? 0.1 : 0.5) * report.reached);
     }
+}
+
+// At random places with the lengths of the field of ten cones, whose tips are not among them.
+std::vector<PointSource> on_cones(std::size_t n) {
+    const std::vector<Point> tips = random_points(domain, 10, 21);
+    std::vector<PointSource> sources;
+    for (const Point& x : random_points(domain, n, 22)) {
+        double h = 1;
+        for (std::size_t k = 0; k < tips.size(); ++k) {
+            const double own = 0.005 * std::pow(1.3, static_cast<double>(k));
+            h = std::min(h, own + (g - 1) * (x - tips[k]).norm());
+        }
+        sources.push_back({x, Metric::isotropic(h)});
+    }
+    return sources;
+}
+
+TEST_CASE("thinned sources take their share of the target, and no other field is thinned") {
+    constexpr double target = 0.1;
+    constexpr auto allowed = GoalField::Thinning::allowed;
+    const std::vector<PointSource> sources = on_cones(16000);
+    const AdaptationGoal goal{
+        .sources = sources, .continuous = nullptr, .ratio = g, .target = target};
+    const GoalField thinned(goal, domain, 0, allowed);
+    CHECK(thinned.kept().size() < sources.size() / 2);
+    const double k = largest_factor_within(target);
+    CHECK(largest_factor_within(thinned.target()) == Approx(std::pow(k, 0.9)));
+    CHECK(thinned.departure_from_all(thinned.target()) == target);
+    CHECK(thinned.departure_from_all(0) == Approx(nonconformity_of_factor(std::pow(k, 0.1))));
+    CHECK(thinned.departure_from_all(std::nextafter(thinned.target(), 1)) > target);
+
+    const GoalField all(goal, domain);
+    CHECK(all.kept().size() == sources.size());
+    CHECK(all.target() == target);
+    CHECK(all.departure_from_all(0.03) == 0.03);
+    const std::vector<PointSource> sphere = sample_sphere({});
+    const GoalField usual({.sources = sphere, .continuous = nullptr, .ratio = g, .target = target},
+                          domain, 0, allowed);
+    CHECK(usual.target() == target);
+}
+
+CASE_OF_EACH(entry, bounded_trees(), "trees of thinned sources keep the target of all sources") {
+    const std::vector<PointSource> sources = on_cones(16000);
+    const auto space = editable(entry.make({.domain = domain}));
+    const AdaptationReport report = space->adapt({.sources = sources,
+                                                  .continuous = nullptr,
+                                                  .ratio = g,
+                                                  .target = 0.3,
+                                                  .max_leaves = 100000});
+    CHECK(report.met);
+    CHECK(report.is_bound);
+    const auto field = brute_force_reference(sources, g, largest_metric(domain));
+    std::vector<Point> x = random_points(domain, 1500, 23);
+    for (std::size_t i = 0; i < sources.size(); i += 16) x.push_back(sources[i].position);
+    const double seen = accuracy(*space, make_probes(*field, x)).max;
+    CHECK(seen <= report.reached);
+    CHECK(report.reached <= 0.3);
 }
 
 CASE_OF_EACH(entry, vertex_trees(), "few sources: vertices keep the target everywhere") {

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "trees/values/anchored_values.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "case_of_each.h"
 #include "controlspace/measure/accuracy.h"
+#include "controlspace/measure/reference.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
 #include "editable_space.h"
+#include "metric/draw.h"
+#include "trees/values/growing_cones.h"
 
 namespace controlspace::anchored_values_test {
 namespace {
@@ -119,6 +123,118 @@ TEST_CASE("sources of one metric share it, and idle ones go") {
           2 * (sizeof(Point) + sizeof(std::uint32_t)) + sizeof(Metric) + sizeof(double));
     CHECK(table.factor(1, g, Point(42, 3, 4)) == Approx(1 + 0.25 * 50));
     CHECK(table.smallest_length(1) == Approx(0.1));
+}
+
+CASE_OF_EACH(entry, anchored_catalogue(), "thin tensors are graded without cuts") {
+    // Discs, needles and others, of 1000:1, turned at random.
+    Draw draw(9);
+    std::vector<PointSource> sources;
+    for (int i = 0; i < 20; ++i) {
+        const double h = draw.uniform(0.1, 0.3);
+        const std::array lengths{h / 1000, h * std::pow(1000, -draw.uniform(0, 1)), h};
+        const Point q(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
+        sources.push_back({q, metric_from_frame(lengths, draw.rotation())});
+    }
+    for (const auto rule : {IntersectionRule::order_free, IntersectionRule::in_turn}) {
+        const auto space = editable(entry.make({.domain = domain, .intersection = rule}));
+        space->insert(sources);
+        const std::size_t leaves = space->footprint().cells;
+        space->grade({});
+        CHECK(space->footprint().cells == leaves);
+        if (rule == IntersectionRule::in_turn) continue;  // jumps
+        const auto field = exact_reference(sources, g, largest_metric(domain), 1e-3);
+        std::vector<Point> x;
+        for (int i = 0; i < 2000; ++i) {
+            x.emplace_back(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
+        }
+        const auto own = answers(*space, x);
+        const auto exact = answers(*field, x);
+        double sum = 0;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const double delta = directional_nonconformity(own[i], exact[i]);
+            CHECK(delta < 0.5);
+            sum += delta;
+        }
+        CHECK(sum < 5e-4 * static_cast<double>(x.size()));
+    }
+}
+
+TEST_CASE("the smallest of growing cones, to the bit, by a few of them") {
+    Draw draw(7);
+    SourceTable table;
+    GrowingCones cones(table, g);
+    constexpr SourceIndex n = 20000;
+    std::size_t before = 0;
+    for (SourceIndex s = 0; s < n; ++s) {
+        // In rows, as many sources are given.
+        const Point q = 1e-6 * Point(s % 27, s / 27 % 27, s / 729);
+        table.add({q, Metric::isotropic(1e-9 * (s % 5 == 0 ? draw.uniform(1, 500) : 1))});
+        cones.add(s);
+        if (s % 500 != 499) continue;
+        const Point x = q + 1e-6 * draw.vector();
+        double smallest = 1;
+        for (SourceIndex k = 0; k <= s; ++k) smallest = std::min(smallest, cones.length_at(k, x));
+        before = cones.evaluated();
+        REQUIRE(cones.smallest(x, 1) == smallest);
+        REQUIRE(cones.evaluated() - before < 200);
+        REQUIRE(cones.smallest(x, 0.9 * smallest) == 0.9 * smallest);
+    }
+}
+
+CASE_OF_EACH(entry, anchored_catalogue(), "many sources of a leaf, inserted at once and in turn") {
+    // All in one leaf, or, every other one, in another.
+    for (const Vector& apart : {Vector(0, 0, 0), Vector(0.3, 0, 0)}) {
+        std::vector<PointSource> sources;
+        Draw draw(8);
+        for (int i = 0; i < 2000; ++i) {
+            const Point q = 1e-6 * Point(i % 13, i / 13 % 13, i / 169) + (i % 2) * apart;
+            // One in ten requests what is there already, to the insertion tolerance or nearly.
+            const double h = i % 10 == 9 ? 2.5e-7 * draw.uniform(0.5, 2) : 1e-9;
+            sources.push_back({Point(0.1, 0.1, 0.1) + q, Metric::isotropic(h)});
+        }
+        const auto at_once = editable(entry.make({.domain = domain}));
+        const auto in_turn = editable(entry.make({.domain = domain}));
+        const InsertionReport report = at_once->insert(sources);
+        std::size_t inserted = 0;
+        for (const PointSource& s : sources) {
+            if (in_turn->insert(s) == Insertion::inserted) ++inserted;
+        }
+        CHECK(report.inserted == inserted);
+        CHECK(inserted < sources.size());
+        CHECK(inserted > sources.size() / 2);
+        for (int i = 0; i < 300; ++i) {
+            const Point x =
+                sources[static_cast<std::size_t>(6 * i)].position + 1e-7 * draw.vector();
+            REQUIRE(sample_at(*at_once, x) == sample_at(*in_turn, x));
+        }
+    }
+}
+
+TEST_CASE("lists of anchors that grow in turn take room in proportion to their lengths") {
+    AnchorLists lists;
+    lists.repeat(0, 3);
+    constexpr SourceIndex n = 8000;
+    for (SourceIndex s = 0; s < n; ++s) lists.add(s % 4, s);
+    CHECK(lists.bytes() < 64 * n);
+    const auto is_right = [&](LeafIndex leaf) {
+        const auto list = lists.of(leaf);
+        bool is = list.size() == n / 4;
+        for (SourceIndex k = 0; k < list.size(); ++k) is = is && list[k] == 4 * k + leaf;
+        return is;
+    };
+    for (LeafIndex leaf = 0; leaf < 4; ++leaf) CHECK(is_right(leaf));
+    // Leaves that share a list, which then grows in the first of them.
+    lists.repeat(1, 2);
+    lists.add(1, 7);
+    lists.add(4, 8);
+    CHECK(lists.of(1).back() == 7);
+    CHECK(lists.of(4).back() == 8);
+    CHECK(lists.of(4).size() == n / 4 + 1);
+    CHECK(lists.of(5).size() == n / 4);
+    lists.shrink_to_fit();
+    CHECK(is_right(2));
+    CHECK(lists.of(1).back() == 7);
+    CHECK(lists.of(4).back() == 8);
 }
 
 }  // namespace controlspace::anchored_values_test

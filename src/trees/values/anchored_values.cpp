@@ -80,23 +80,23 @@ Metric AnchoredValues::largest_within_cones(const Point& x, std::span<const Sour
 Metric AnchoredValues::cones_in_turn(const Point& x, std::span<const SourceIndex> anchors) const {
     struct Cone {
         double smallest, factor;
-        SourceIndex source;
+        std::size_t place;  // in the list
+
+        bool operator<(const Cone& other) const {
+            return smallest != other.smallest ? smallest < other.smallest : place < other.place;
+        }
     };
-    std::array<Cone, most> cones;
-    std::size_t n = 0;
-    for (const SourceIndex s : anchors.first(std::min(anchors.size(), most))) {
-        const double factor = sources_.factor(s, ratio_, x);
-        const Cone cone{factor * sources_.smallest_length(s), factor, s};
-        std::size_t i = n++;
-        for (; i > 0 && cone.smallest < cones[i - 1].smallest; --i) cones[i] = cones[i - 1];
-        cones[i] = cone;
+    std::array<Cone, most> few;
+    std::vector<Cone> many(anchors.size() > few.size() ? anchors.size() : 0);
+    const auto cones = (many.empty() ? std::span<Cone>(few) : many).first(anchors.size());
+    for (std::size_t i = 0; i < cones.size(); ++i) {
+        const double factor = sources_.factor(anchors[i], ratio_, x);
+        cones[i] = {factor * sources_.smallest_length(anchors[i]), factor, i};
     }
+    std::sort(cones.begin(), cones.end());
     Metric m = largest_;
-    for (std::size_t i = 0; i < n; ++i) {
-        m = intersection(m, cones[i].factor * sources_.metric(cones[i].source));
-    }
-    for (const SourceIndex s : anchors.subspan(n)) {
-        m = intersection(m, sources_.factor(s, ratio_, x) * sources_.metric(s));
+    for (const Cone& cone : cones) {
+        m = intersection(m, cone.factor * sources_.metric(anchors[cone.place]));
     }
     return m;
 }
@@ -116,8 +116,17 @@ void AnchoredValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafI
     anchors_.repeat(leaf, static_cast<std::size_t>(subdivision.children() - 1));
 }
 
-void AnchoredValues::add(LeafIndex leaf, const PointSource& source) {
-    anchors_.add(leaf, sources_.add(source));
+SourceIndex AnchoredValues::add(LeafIndex leaf, const PointSource& source) {
+    const SourceIndex index = sources_.add(source);
+    anchors_.add(leaf, index);
+    return index;
+}
+
+Metric AnchoredValues::value(const Box& domain, LeafIndex leaf, const Point& place,
+                             LongLists& lists) const {
+    const Point x = nearest_in(domain, place);
+    const Metric cones = Metric::isotropic(lists.smallest(leaf, x, largest_.xx));
+    return continuous_ ? intersection(cones, sample_at(*continuous_, x)) : cones;
 }
 
 void AnchoredValues::take_over(const AdaptationGoal& goal) {
@@ -189,7 +198,7 @@ Metric AnchoredValues::own_at(const Known& known, std::span<const SourceIndex> a
 
 bool AnchoredValues::add_most_exceeded(const Known& at, const Metric& own,
                                        std::vector<SourceIndex>& list) const {
-    if (list.size() >= most_anchors()) return false;
+    if (list.size() >= most_learned()) return false;
     double greatest = 1;
     std::optional<SourceIndex> worst;
     for (const SourceIndex s : at.governing) {
@@ -322,7 +331,7 @@ void AnchoredValues::cover(std::span<const LeafBox> leaves, const GoalField& fie
 std::vector<SourceIndex> AnchoredValues::lesson(LeafIndex leaf, const Point& x, NearbyField& nearby,
                                                 const GoalField& field) const {
     const auto old = anchors_.of(leaf);
-    if (old.size() >= most_anchors()) return {};
+    if (old.size() >= most_learned()) return {};
     std::vector<SourceIndex> list(old.begin(), old.end());
     const Known known = known_at(x, nearby, field);
     if (are_order_free()) {
@@ -337,7 +346,7 @@ std::vector<SourceIndex> AnchoredValues::lesson(LeafIndex leaf, const Point& x, 
         std::ranges::copy_if(known.governing, std::back_inserter(list),
                              [&](SourceIndex s) { return std::ranges::find(old, s) == old.end(); });
     }
-    if (list.size() == old.size() || list.size() > most_anchors()) return {};
+    if (list.size() == old.size() || list.size() > most_learned()) return {};
     return list;
 }
 

@@ -16,6 +16,7 @@
 #include "controlspace/trees/topology.h"
 #include "metric/interior_point.h"
 #include "trees/values/anchors.h"
+#include "trees/values/growing_cones.h"
 #include "trees/values/source_table.h"
 
 namespace controlspace {
@@ -41,7 +42,11 @@ public:
     void prefetch(LeafIndex leaf) const { anchors_.prefetch(leaf); }
     void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex);
     /// The source becomes an anchor of its leaf.
-    void add(LeafIndex leaf, const PointSource& source);
+    SourceIndex add(LeafIndex leaf, const PointSource& source);
+    /// What finds the smallest cones of leaves to which many sources are added.
+    LongLists long_lists() const { return {anchors_, sources_, ratio_}; }
+    /// The value of a leaf, of a list that `is_long`, to the bit.
+    Metric value(const Box& domain, LeafIndex leaf, const Point& place, LongLists& lists) const;
 
     const SourceTable& sources() const { return sources_; }
     double ratio() const { return ratio_; }
@@ -96,6 +101,8 @@ private:
         return intersection_ == IntersectionRule::order_free && !sources_.all_isotropic();
     }
     std::size_t most_anchors() const { return are_order_free() ? most_order_free : most; }
+    // Of leaves that are not proved, all of few tensors.
+    std::size_t most_learned() const { return fits_tensors_loosely_ ? 64 : most_anchors(); }
 
     // At so many places, the centre first.
     void fit(std::span<const LeafBox> leaves, const GoalField& field, std::size_t places,

@@ -19,20 +19,35 @@ AnchorLists::List AnchorLists::append(std::span<const SourceIndex> sources) {
 }
 
 void AnchorLists::add(LeafIndex leaf, SourceIndex source) {
+    List& list = lists_[leaf];
     // The last list grows where it is: a list that another leaf has in common with it ends before.
-    if (List& list = lists_[leaf]; std::size_t{list.first} + list.count == sources_.size()) {
+    if (std::size_t{list.first} + list.count == sources_.size()) {
         append({&source, 1});
         ++list.count;
+        return;
+    }
+    // So does one with room. Leaves that have a list in common have its beginning alone.
+    if (leaf < room_.size() && room_[leaf] > list.count) {
+        sources_[std::size_t{list.first} + list.count++] = source;
         return;
     }
     const auto old = of(leaf);
     std::vector<SourceIndex> longer(old.begin(), old.end());
     longer.push_back(source);
-    set(leaf, longer);
+    constexpr std::size_t few = 64;
+    const std::size_t room = longer.size() < few ? longer.size() : 2 * longer.size();
+    longer.resize(room, source);
+    const auto count = list.count + 1;
+    list = {append(longer).first, count};
+    if (room == count) return;
+    room_.resize(lists_.size(), 0);
+    room_[leaf] = static_cast<std::uint32_t>(room);
 }
 
 void AnchorLists::set(LeafIndex leaf, std::span<const SourceIndex> sources) {
-    if (!std::ranges::equal(of(leaf), sources)) lists_[leaf] = append(sources);
+    if (std::ranges::equal(of(leaf), sources)) return;
+    lists_[leaf] = append(sources);
+    if (leaf < room_.size()) room_[leaf] = 0;
 }
 
 void AnchorLists::repeat(LeafIndex leaf, std::size_t n) {
@@ -67,6 +82,7 @@ void AnchorLists::load(const StateReader& state, std::size_t leaves, std::size_t
     state.require(lists.size() == leaves, "anchors.lists", "has another number of leaves");
     require_below(state, "anchors.sources", sources_, sources);
     lists_.clear();
+    room_.clear();
     lists_.reserve(lists.size());
     for (const auto& [first, count] : lists) {
         state.require(std::uint64_t{first} + count <= sources_.size(), "anchors.lists",

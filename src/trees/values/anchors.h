@@ -35,7 +35,8 @@ public:
     void load(const StateReader& state, std::size_t leaves, std::size_t sources);
 
     std::size_t bytes() const {
-        return lists_.capacity() * sizeof(List) + sources_.capacity() * sizeof(SourceIndex);
+        return lists_.capacity() * sizeof(List) + sources_.capacity() * sizeof(SourceIndex) +
+               room_.capacity() * sizeof(std::uint32_t);
     }
     /// Gives back the room of lists that were replaced; lists that are alike one after the other
     /// come to share theirs.
@@ -50,6 +51,9 @@ private:
 
     std::vector<List> lists_{1};  // of a leaf
     std::vector<SourceIndex> sources_;
+    // Where long lists grow: for how many sources there is room from a leaf's first on; 0, or
+    // nothing, where its list has none of its own.
+    std::vector<std::uint32_t> room_;
 };
 
 }  // namespace controlspace

@@ -24,7 +24,10 @@ struct AdaptationGoal {
     std::span<const PointSource> sources;
     std::shared_ptr<const ControlSpace> continuous;  ///< or none
     double ratio = 1.25;                             ///< g_r of the sources' cones
-    /// Largest δ to the field (`directional_nonconformity`); 0 is out of reach.
+    /// Largest δ to the field (`directional_nonconformity`); 0 is out of reach. Of thousands of
+    /// isotropic sources that lie nearly on each other's cones, as the vertices of a graded mesh
+    /// do, trees leave out those within a tenth of it (of ln k, k the factor between lengths), if
+    /// most are, and keep the rest of it: together, it is kept of all sources.
     double target = 0.1;
     IntersectionRule intersection = IntersectionRule::order_free;
     double h_max = largest_magnitude;  ///< as of SpaceOptions: bounds M_max

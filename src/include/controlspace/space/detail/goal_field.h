@@ -10,6 +10,7 @@
 #include "controlspace/geometry/box.h"
 #include "controlspace/space/adaptation.h"
 #include "controlspace/space/control_space.h"
+#include "controlspace/space/space_options.h"
 
 namespace controlspace {
 
@@ -24,10 +25,15 @@ public:
     /// Answers of tensors, of some 230 bytes each, that are kept from leaf to leaf at most.
     static constexpr std::size_t many_answers = 500'000;
 
+    /// Whether a tenth of the target's ln k may be spent on leaving out isotropic sources that lie
+    /// nearly on others' cones, where these are many. The field is longer by that at most, and
+    /// `target` is what is left: whoever keeps it keeps that of the goal.
+    enum class Thinning { none, allowed };
+
     /// Throws InputError for sources outside of `domain` or with bad metrics, a ratio below 1, a
     /// target that is not positive.
     GoalField(const AdaptationGoal& goal, const Box& domain,
-              std::size_t most_answers = many_answers);
+              std::size_t most_answers = many_answers, Thinning thinning = Thinning::none);
     ~GoalField() override;
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override;
@@ -44,8 +50,9 @@ public:
     /// Places all over the domain and near to sources, 100 000 of each.
     std::vector<Point> probes(const Box& domain) const;
     /// Largest δ (`directional_nonconformity`) between what `sample` answers and the field, at
-    /// these probes.
-    double largest_departure(const Box& domain, const Sample& sample) const;
+    /// these probes. Throws GrowthStopped beyond the limit's deadline.
+    double largest_departure(const Box& domain, const Sample& sample,
+                             const GrowthLimit& limit = {}) const;
 
     /// What is kept from leaf to leaf.
     GoalCache& cache() const { return *cache_; }
@@ -66,6 +73,8 @@ public:
     double negligible() const;
     const Metric& largest() const { return largest_; }
     double target() const { return target_; }
+    /// δ to the field of all sources, where that to this one is `delta`.
+    double departure_from_all(double delta) const;
     /// Of sources that have none of their own.
     double ratio() const { return ratio_; }
     /// The largest of all sources' and that one.
@@ -74,7 +83,8 @@ public:
     static constexpr std::size_t few_sources = 512;
 
 private:
-    double target_;
+    double whole_target_;
+    double target_;  ///< less what thinning takes
     double ratio_;
     double largest_ratio_;
     std::span<const PointSource> sources_;

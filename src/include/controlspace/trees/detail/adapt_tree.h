@@ -108,6 +108,12 @@ private:
         return requires(Storage & s) { s.learn(LeafIndex{}, std::vector<std::uint32_t>()); };
     }
     static constexpr double share_where_learned = 0.7;
+    // In gradation, each of few tensors is compared with each leaf: cuts until all of them are met
+    // would make as many leaves as the cube of their number.
+    bool learns_before_cuts() const {
+        return (field_.is_order_free() || field_.jumps()) &&
+               field_.has_sources_up_to(NextToSources<Node, Storage>::few);
+    }
     static constexpr double far_off = 10;
 
     // Samples the leaves that are not settled, and settles, fits or cuts them. Returns
@@ -312,7 +318,8 @@ private:
             }
             departures_[l.leaf] = departure;
             if constexpr (learns()) {
-                if (proved && departure.worst > share_where_learned * aim_) {
+                if (departure.worst > (proved ? share_where_learned : 1) * aim_ &&
+                    (proved || learns_before_cuts())) {
                     lessons_[l.leaf] = storage_.lesson(l.leaf, departure.where, nearby, field_);
                 }
             }

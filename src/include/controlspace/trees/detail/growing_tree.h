@@ -65,7 +65,8 @@ protected:
     template <class Begin>
     AdaptationReport adapt(const AdaptationGoal& goal, Begin&& begin) {
         constexpr std::size_t bytes_of_adaptation = 240;  // for each leaf
-        const GoalField field(goal, domain());
+        const GoalField field(goal, domain(), GoalField::many_answers,
+                              GoalField::Thinning::allowed);
         bytes_to_come_ = bytes_of_adaptation;
         next_check_ = 0;
         is_adapted_ = true;
@@ -92,7 +93,8 @@ protected:
         bytes_to_come_ = 0;
         is_adapted_ = false;
         if (adaptation.is_late()) stop = GrowthStop::time;
-        report.met = report.reached <= goal.target;
+        report.met = report.reached <= field.target();
+        report.reached = field.departure_from_all(report.reached);
         report.is_bound = report.met && adaptation.shows_bounds();
         if (report.met) {
             // Leaves that were not cut may be just below the target.

@@ -28,6 +28,9 @@ namespace controlspace {
 template <class Node, class Storage>
 class NextToSources {
 public:
+    /// So few are compared with all leaves, whatever these hold.
+    static constexpr std::size_t few = 64;
+
     /// The sources must outlive it.
     NextToSources(const Topology<Node>& tree, const Storage& storage, const GoalField& field,
                   std::span<const PointSource> sources)
@@ -83,7 +86,7 @@ public:
 private:
     // Whether all are compared with every leaf, which takes less time where leaves are trilinear.
     bool are_few() const {
-        return field_.has_sources_up_to(HasTrilinearLeaves<Storage> ? GoalField::few_sources : 64);
+        return field_.has_sources_up_to(HasTrilinearLeaves<Storage> ? GoalField::few_sources : few);
     }
 
     std::array<Metric, 8> at_corners(LeafIndex leaf) const {
