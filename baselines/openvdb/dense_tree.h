@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "baselines/lattice/stencil.h"
@@ -65,8 +66,7 @@ template <class Tree>
 class TreeReader {
     using Value = typename Tree::ValueType;
     using Leaf = typename Tree::LeafNodeType;
-    using Upper = typename Tree::RootNodeType::ChildNodeType;
-    using Lower = typename Upper::ChildNodeType;
+    using Top = typename Tree::RootNodeType::ChildNodeType;
 
 public:
     explicit TreeReader(const Tree& tree) : root_(&tree.root()) {
@@ -75,9 +75,12 @@ public:
         if (only && only->origin() == openvdb::Coord()) top_ = &*only;
     }
 
-    const Value& operator()(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
-        return value(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j),
-                     static_cast<std::int32_t>(k));
+    [[gnu::always_inline]] const Value& operator()(std::uint32_t i, std::uint32_t j,
+                                                   std::uint32_t k) const {
+        const auto x = static_cast<std::int32_t>(i), y = static_cast<std::int32_t>(j),
+                   z = static_cast<std::int32_t>(k);
+        const Found found = descend(x, y, z);
+        return found.leaf == nullptr ? *found.tile : found.leaf->buffer().data()[offset(x, y, z)];
     }
     /// The leaf of the cell's low corner, null where a tile is.
     const Leaf* prepare(const Cell& cell) const {
@@ -135,13 +138,19 @@ private:
             const Leaf* leaf = root_->probeConstLeaf(at);
             return {leaf, leaf == nullptr ? &root_->getValue(at) : nullptr};
         }
-        const std::uint32_t in_top = child_of<Upper>(i, j, k);
-        const auto& lower = top_->getTable()[in_top];
-        if (!top_->isChildMaskOn(in_top)) return {nullptr, &lower.getValue()};
-        const std::uint32_t in_lower = child_of<Lower>(i, j, k);
-        const auto& leaf = lower.getChild()->getTable()[in_lower];
-        if (!lower.getChild()->isChildMaskOn(in_lower)) return {nullptr, &leaf.getValue()};
-        return {leaf.getChild(), nullptr};
+        return descend(*top_, i, j, k);
+    }
+    template <class Node>
+    [[gnu::always_inline]] static Found descend(const Node& node, std::int32_t i, std::int32_t j,
+                                                std::int32_t k) {
+        if constexpr (std::is_same_v<Node, Leaf>) {
+            return {&node, nullptr};
+        } else {
+            const std::uint32_t in_node = child_of<Node>(i, j, k);
+            const auto& part = node.getTable()[in_node];
+            if (!node.isChildMaskOn(in_node)) return {nullptr, &part.getValue()};
+            return descend(*part.getChild(), i, j, k);
+        }
     }
     const Value& value(std::int32_t i, std::int32_t j, std::int32_t k) const {
         const Found found = descend(i, j, k);
@@ -149,7 +158,7 @@ private:
     }
 
     const typename Tree::RootNodeType* root_;
-    const Upper* top_ = nullptr;
+    const Top* top_ = nullptr;
 };
 
 /// Bytes of the values of a leaf.
@@ -157,15 +166,22 @@ template <class Tree>
 constexpr std::size_t leaf_values_bytes = Tree::LeafNodeType::SIZE *
                                           sizeof(typename Tree::ValueType);
 
+/// Bytes of nodes of this type and below, without the values of leaves.
+template <class Node, class Count>
+double bytes_of_nodes_below(const Count& count) {
+    const double own = count(Node::DIM) * sizeof(Node);
+    if constexpr (Node::LEVEL == 0) {
+        return own;
+    } else {
+        return own + bytes_of_nodes_below<typename Node::ChildNodeType>(count);
+    }
+}
+
 /// What a tree will allocate that has count(side) nodes of `side` voxels along each axis.
 template <class Tree, class Count>
 double bytes_of_nodes(const Count& count) {
-    using Leaf = typename Tree::LeafNodeType;
-    using Upper = typename Tree::RootNodeType::ChildNodeType;
-    using Lower = typename Upper::ChildNodeType;
-    const double leaf = sizeof(Leaf) + leaf_values_bytes<Tree>;
-    return count(Leaf::DIM) * leaf + count(Lower::DIM) * sizeof(Lower) +
-           count(Upper::DIM) * sizeof(Upper) + sizeof(Tree);
+    return count(Tree::LeafNodeType::DIM) * leaf_values_bytes<Tree> +
+           bytes_of_nodes_below<typename Tree::RootNodeType::ChildNodeType>(count) + sizeof(Tree);
 }
 
 /// The same of a dense tree over so many nodes of a lattice.

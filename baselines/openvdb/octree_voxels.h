@@ -34,12 +34,16 @@ private:
     void visit(const Octants& tree, Ref ref, const VoxelBox& box);
 };
 
-/// Which parts of an octree are cut, depth first: enough to make it again.
+/// Which parts of an octree are cut, depth first: enough to make it again. Of octrees that consist
+/// of bricks, parts of `brick_levels` levels in which all leaves are of one size, it need not keep
+/// what is below these.
 class Cuts {
 public:
-    explicit Cuts(const Octants& tree);
+    explicit Cuts(const Octants& tree, int brick_levels = 0);
     /// The octree, its leaves numbered depth first.
-    Octants octants(const Box& domain) const;
+    Octants octants(const Box& domain) const { return octants(domain, brick_levels_); }
+    /// The same with the bricks as leaves.
+    Octants bricks(const Box& domain) const { return octants(domain, 0); }
     /// The leaf that holds a place in the domain.
     Box leaf_at(const Point& x, const Box& domain) const;
     std::size_t bytes() const {
@@ -47,12 +51,15 @@ public:
     }
 
 private:
-    void note(const Octants& tree, Ref ref, std::size_t level);
+    Octants octants(const Box& domain, int brick_levels) const;
+    void note(const Octants& tree, std::span<const std::uint8_t> levels_below, Ref ref,
+              std::size_t level);
     // Goes on behind the part that begins at `next`.
     void pass(std::size_t level, std::size_t& next) const;
 
     std::vector<bool> cuts_;
     std::vector<int> children_;  // of a part that is cut, by level
+    int brick_levels_;
 };
 
 /// The voxel that answers for a place: the one whose leaf the octree would find, on a face the low
@@ -63,6 +70,13 @@ public:
 
     const Box& domain() const { return domain_; }
 
+    /// Where a place, or the nearest one in the domain, is along an axis, in voxels.
+    [[gnu::always_inline]] double in_voxels(double x, std::size_t axis) const {
+        const auto a = static_cast<Axis>(axis);
+        const double above = x > domain_.low[a] ? x : domain_.low[a];
+        const double place = above < domain_.high[a] ? above : domain_.high[a];
+        return (place - domain_.low[a]) * per_length_[a];
+    }
     [[gnu::always_inline]] Cell operator()(const Point& x) const {
         const double t[3] = {in_voxels(x.x(), 0), in_voxels(x.y(), 1), in_voxels(x.z(), 2)};
         Cell cell{static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
@@ -79,6 +93,7 @@ public:
             bool any = false;
             for (std::size_t i = 0; i < x.size(); ++i) {
                 const double t = in_voxels(x[i][static_cast<Axis>(a)], a);
+                batch.t[a][i] = t;
                 batch.cell[a][i] = static_cast<std::int32_t>(t);
                 is_near[i] = is_near_face(t, batch.cell[a][i], a);
                 any |= is_near[i];
@@ -90,12 +105,6 @@ public:
     }
 
 private:
-    [[gnu::always_inline]] double in_voxels(double x, std::size_t axis) const {
-        const auto a = static_cast<Axis>(axis);
-        const double above = x > domain_.low[a] ? x : domain_.low[a];
-        const double place = above < domain_.high[a] ? above : domain_.high[a];
-        return (place - domain_.low[a]) * per_length_[a];
-    }
     // So near that rounding counts: the octree has halved its boxes, and rounded each middle.
     [[gnu::always_inline]] bool is_near_face(double t, std::int32_t voxel, std::size_t a) const {
         const double beyond = t - voxel, near = near_[static_cast<Axis>(a)];
