@@ -10,14 +10,17 @@ namespace controlspace {
 namespace {
 
 // The last of some ascending numbers that is at most `x`, which the first one is.
-std::size_t last_up_to(std::span<const double> ascending, double x) {
+std::size_t last_up_to(std::span<const float> ascending, double x) {
     return static_cast<std::size_t>(std::ranges::upper_bound(ascending, x) - ascending.begin() - 1);
 }
 
 bool is_length(double h) { return h > 0 && std::isfinite(h); }
 
+// Throws InputError where floats do not hold the lengths.
 std::vector<double> range_of(std::span<const Metric> metrics) {
     const auto [shortest, longest] = std::ranges::minmax(metrics, {}, &Metric::xx);
+    const std::array ends{shortest, longest};
+    StoredMetrics<StoredLength<std::uint8_t>>{ends};
     return {shortest.xx, longest.xx};
 }
 
@@ -53,28 +56,36 @@ bool BrickCodes<M>::is_sound(std::uint8_t /*kind*/, const std::byte* brick, std:
 LinearCodes::LinearCodes(double shortest, double longest, double allowed)
     : shortest_(shortest), longest_(longest), allowed_(allowed) {
     const auto fill = [&](double factor) {
-        fine_[0] = 1;
-        for (std::size_t i = 1; i < fine_steps; ++i) fine_[i] = fine_[i - 1] * factor;
-        const double coarse = fine_.back() * factor;
-        coarse_[0] = shortest;
-        for (std::size_t i = 1; i < fine_steps; ++i) coarse_[i] = coarse_[i - 1] * coarse;
+        double fine = 1, coarse = shortest, ratio = 1;
+        for (float& power : fine_) {
+            power = static_cast<float>(fine);
+            fine *= factor;
+        }
+        ratio = fine;
+        for (float& length : coarse_) {
+            length = static_cast<float>(coarse);
+            coarse *= ratio;
+        }
+        return coarse;
     };
     double low = 1, high = std::max(1.0, longest / shortest);
     for (double middle; middle = low + (high - low) / 2, low < middle && middle < high;) {
-        fill(middle);
-        (coarse_.back() <= longest ? low : high) = middle;
+        (fill(middle) <= longest ? low : high) = middle;
     }
     fill(low);
+    // None is longer than the lengths that are to begin with it.
+    for (float& length : coarse_) length = std::nextafter(length, 0.0F);
     // The largest share spans all lengths in 8 bits.
-    constexpr double shares_ratio = 1.08;
-    shares_.back() = (longest / shortest - 1) / 255;
-    for (std::size_t i = shares - 1; i-- > 0;) shares_[i] = shares_[i + 1] / shares_ratio;
+    double share = (longest / double{coarse_.front()} - 1) / 255 / fine_shares.back();
+    for (std::size_t i = shares_.size(); i-- > 0; share /= 2) shares_[i] = share;
 }
 
-std::uint32_t LinearCodes::first_up_to(double h) const {
-    const std::size_t part = last_up_to(coarse_, std::max(h, shortest_));
-    const std::size_t fine = last_up_to(fine_, std::max(1.0, h / coarse_[part]));
-    return static_cast<std::uint32_t>(part * fine_steps + fine);
+std::uint16_t LinearCodes::first_up_to(double h) const {
+    const std::size_t part = last_up_to(coarse_, std::max<double>(h, coarse_.front()));
+    std::size_t first = part * fine_steps + last_up_to(fine_, std::max(1.0, h / coarse_[part]));
+    // The product of two floats may be longer by rounding.
+    while (first > 0 && first_length(first) > h) --first;
+    return static_cast<std::uint16_t>(first);
 }
 
 double LinearCodes::encode(std::uint8_t kind, std::span<const Metric> vertices,
@@ -88,21 +99,20 @@ double LinearCodes::encode(std::uint8_t kind, std::span<const Metric> vertices,
         return rounding;
     }
     const auto [least, most] = std::ranges::minmax(vertices, {}, &Metric::xx);
-    const auto first = static_cast<std::uint16_t>(first_up_to(least.xx));
+    const std::uint16_t first = first_up_to(least.xx);
     std::memcpy(brick, &first, sizeof first);
     const double last_code = kind == bytes ? 255 : 255 * words_a_byte;
-    const double base = coarse_[first / fine_steps] * fine_[first % fine_steps];
-    const auto share = std::ranges::lower_bound(shares_, (most.xx / base - 1) / 255);
-    brick[2] = static_cast<std::byte>(std::min<std::ptrdiff_t>(share - shares_.begin(), 255));
+    const double needed = (most.xx / first_length(first) - 1) / 255;
+    std::size_t share = 0;
+    while (share + 1 < shares && share_of(share) < needed) ++share;
+    brick[2] = static_cast<std::byte>(share);
     const Scale scale = scale_of(kind, brick);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const double h = vertices[i].xx;
         const double exact = scale.scale > 0 ? (h - scale.base) / scale.scale : 0;
         // The larger of two lengths is the nearer one, as a factor, from their geometric mean on.
         double code = std::clamp(std::floor(exact), 0.0, last_code);
-        const auto off = [&](double c) {
-            return factor_between(scale.base + scale.scale * c, h);
-        };
+        const auto off = [&](double c) { return factor_between(scale.base + scale.scale * c, h); };
         if (code < last_code && off(code + 1) < off(code)) ++code;
         rounding = std::max(rounding, off(code));
         if (kind == bytes) {
@@ -128,16 +138,12 @@ void LinearCodes::write(std::uint8_t kind, std::span<const Metric> vertices,
     encode(kind, vertices, brick);
 }
 
-bool LinearCodes::is_sound(std::uint8_t kind, const std::byte* brick, std::size_t vertices) const {
-    if (kind == floats) {
-        for (std::uint32_t i = 0; i < vertices; ++i) {
-            if (!is_length(code<float>(brick, i))) return false;
-        }
-        return true;
+bool LinearCodes::is_sound(std::uint8_t kind, const std::byte* brick, std::size_t vertices) {
+    if (kind != floats) return true;
+    for (std::uint32_t i = 0; i < vertices; ++i) {
+        if (!is_length(code<float>(brick, i))) return false;
     }
-    std::uint16_t first;
-    std::memcpy(&first, brick, sizeof first);
-    return first / fine_steps < coarse_.size();
+    return true;
 }
 
 namespace {

@@ -64,18 +64,18 @@ public:
 };
 
 /// Lengths as codes: equal steps from the shortest of the brick to its longest, in 8 bits where
-/// these round no more than is allowed, else in 16; or else floats. Allowed is what the codes of
-/// other compact forms round (StoredMetrics). The first length is one of 65281 in equal ratios
-/// between the shortest and the longest of all; the step one of 256 shares of it. So a brick of 8
-/// bits is two lines of a cache. Tables are made by multiplication alone: the same bits on every
-/// machine.
+/// these round no more than is allowed, else in 16; or else floats. Allowed is what codes of as
+/// many bits round in other compact forms (StoredMetrics). The first length is one of 65536 in
+/// equal ratios between the shortest and the longest of all, the step a share of it, one of 256: so
+/// a brick of 8 bits is two lines of a cache. Tables are made by multiplication alone: the same
+/// bits on every machine.
 class LinearCodes {
 public:
     static constexpr bool are_codes = true;
 
     std::vector<double> range() const { return {shortest_, longest_}; }
     static constexpr std::size_t table_bytes() {
-        return sizeof fine_ + sizeof coarse_ + sizeof shares_;
+        return sizeof fine_ + sizeof coarse_ + sizeof shares_ + sizeof fine_shares;
     }
 
     static constexpr std::size_t kinds = 3;
@@ -95,8 +95,8 @@ public:
         if (kind == floats) return {0, 1};
         std::uint16_t first;
         std::memcpy(&first, brick, sizeof first);
-        const double base = coarse_[first / fine_steps] * fine_[first % fine_steps];
-        const double share = shares_[std::to_integer<std::size_t>(brick[2])];
+        const double base = first_length(first);
+        const double share = share_of(std::to_integer<std::size_t>(brick[2]));
         return {base, base * (kind == bytes ? share : share / words_a_byte)};
     }
     [[gnu::always_inline]] static double at(std::uint8_t kind, const std::byte* brick,
@@ -104,15 +104,16 @@ public:
         if (kind == bytes) return code<std::uint8_t>(brick, vertex);
         return kind == words ? code<std::uint16_t>(brick, vertex) : code<float>(brick, vertex);
     }
-    template <class Number>
-    [[gnu::always_inline]] static Number code(const std::byte* brick, std::uint32_t vertex) {
-        Number number;
-        constexpr std::size_t first = sizeof(Number) == 1 ? header(bytes) : header(words);
-        std::memcpy(&number, brick + first + vertex * sizeof(Number), sizeof number);
-        return number;
+    /// That of a vertex; or, as a `Read` of twice the bits, with the one behind it.
+    template <class Code, class Read = Code>
+    [[gnu::always_inline]] static Read code(const std::byte* brick, std::uint32_t vertex) {
+        Read read;
+        constexpr std::size_t first = sizeof(Code) == 1 ? header(bytes) : header(words);
+        std::memcpy(&read, brick + first + vertex * sizeof(Code), sizeof read);
+        return read;
     }
 
-    bool is_sound(std::uint8_t kind, const std::byte* brick, std::size_t vertices) const;
+    static bool is_sound(std::uint8_t kind, const std::byte* brick, std::size_t vertices);
 
 protected:
     /// Codes that round by a factor of `allowed` at most.
@@ -122,14 +123,30 @@ private:
     static constexpr std::size_t header(std::uint8_t kind) { return kind == bytes ? 3 : 4; }
     static constexpr std::size_t fine_steps = 256, shares = 256;
     static constexpr double words_a_byte = 257;
+    // Parts of an octave.
+    static constexpr std::array<double, 8> fine_shares{1,
+                                                       1.0905077326652577,
+                                                       1.189207115002721,
+                                                       1.2968395546510096,
+                                                       1.4142135623730951,
+                                                       1.5422108254079407,
+                                                       1.681792830507429,
+                                                       1.8340080864093424};
+
+    [[gnu::always_inline]] double first_length(std::size_t i) const {
+        return double{coarse_[i / fine_steps]} * double{fine_[i % fine_steps]};
+    }
+    [[gnu::always_inline]] double share_of(std::size_t i) const {
+        return shares_[i / fine_shares.size()] * fine_shares[i % fine_shares.size()];
+    }
 
     // Tries a kind. Returns the largest factor by which it rounds.
     double encode(std::uint8_t kind, std::span<const Metric> vertices, std::byte* brick) const;
-    std::uint32_t first_up_to(double h) const;
+    std::uint16_t first_up_to(double h) const;
 
     double shortest_, longest_, allowed_;
-    std::array<double, fine_steps> fine_{}, coarse_{};
-    std::array<double, shares> shares_{};
+    std::array<float, fine_steps> fine_{}, coarse_{};
+    std::array<double, shares / fine_shares.size()> shares_{};
 };
 
 template <>

@@ -82,6 +82,20 @@ public:
         const Found found = descend(x, y, z);
         return found.leaf == nullptr ? *found.tile : found.leaf->buffer().data()[offset(x, y, z)];
     }
+    /// The values of many, without their corners: where these are in nodes is found side by side.
+    void read(const CellBatch& batch, std::size_t count,
+              std::array<Value, CellBatch::most>& values) const {
+        if (top_ == nullptr) {
+            for (std::size_t i = 0; i < count; ++i) {
+                const Cell cell = batch[i];
+                values[i] = value(cell[0], cell[1], cell[2]);
+            }
+            return;
+        }
+        std::array<std::array<std::uint32_t, CellBatch::most>, Tree::DEPTH - 1> in_nodes;
+        find_in_nodes<Top>(batch, count, in_nodes);
+        for (std::size_t i = 0; i < count; ++i) values[i] = read_below(*top_, in_nodes, i);
+    }
     /// The leaf of the cell's low corner, null where a tile is.
     const Leaf* prepare(const Cell& cell) const {
         const Leaf* leaf = descend(cell[0], cell[1], cell[2]).leaf;
@@ -150,6 +164,34 @@ private:
             const auto& part = node.getTable()[in_node];
             if (!node.isChildMaskOn(in_node)) return {nullptr, &part.getValue()};
             return descend(*part.getChild(), i, j, k);
+        }
+    }
+    // Of the nodes of this type and below, which are those of these levels.
+    template <class Node>
+    static void find_in_nodes(const CellBatch& batch, std::size_t count, auto& in_nodes) {
+        auto& in_node = in_nodes[Node::LEVEL];
+        for (std::size_t n = 0; n < count; ++n) {
+            const std::int32_t i = batch.cell[0][n], j = batch.cell[1][n], k = batch.cell[2][n];
+            if constexpr (Node::LEVEL == 0) {
+                in_node[n] = static_cast<std::uint32_t>(offset(i, j, k));
+            } else {
+                in_node[n] = child_of<Node>(i, j, k);
+            }
+        }
+        if constexpr (Node::LEVEL > 0) {
+            find_in_nodes<typename Node::ChildNodeType>(batch, count, in_nodes);
+        }
+    }
+    template <class Node>
+    [[gnu::always_inline]] static const Value& read_below(const Node& node, const auto& in_nodes,
+                                                          std::size_t n) {
+        const std::uint32_t in_node = in_nodes[Node::LEVEL][n];
+        if constexpr (Node::LEVEL == 0) {
+            return node.buffer().data()[in_node];
+        } else {
+            const auto& part = node.getTable()[in_node];
+            if (!node.isChildMaskOn(in_node)) return part.getValue();
+            return read_below(*part.getChild(), in_nodes, n);
         }
     }
     const Value& value(std::int32_t i, std::int32_t j, std::int32_t k) const {

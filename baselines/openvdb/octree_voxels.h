@@ -88,18 +88,27 @@ public:
     }
     /// The same of at most CellBatch::most places.
     void locate(std::span<const Point> x, CellBatch& batch) const {
-        std::array<bool, CellBatch::most> is_near;
         for (std::size_t a = 0; a < 3; ++a) {
-            bool any = false;
+            const auto axis = static_cast<Axis>(a);
+            const double low = domain_.low[axis], high = domain_.high[axis];
+            const double per_length = per_length_[axis], near = near_[axis];
+            // In vectors: a branch for each place would take longer than the rest.
+            std::array<double, CellBatch::most> from_face;
+            std::int64_t any = 0;
             for (std::size_t i = 0; i < x.size(); ++i) {
-                const double t = in_voxels(x[i][static_cast<Axis>(a)], a);
+                const double above = x[i][axis] > low ? x[i][axis] : low;
+                const double t = ((above < high ? above : high) - low) * per_length;
+                const auto voxel = static_cast<std::int32_t>(t);
+                const double beyond = t - voxel;
                 batch.t[a][i] = t;
-                batch.cell[a][i] = static_cast<std::int32_t>(t);
-                is_near[i] = is_near_face(t, batch.cell[a][i], a);
-                any |= is_near[i];
+                batch.cell[a][i] = voxel;
+                from_face[i] = beyond < 1 - beyond ? beyond : 1 - beyond;
             }
-            for (std::size_t i = 0; any && i < x.size(); ++i) {
-                if (is_near[i]) batch.cell[a][i] = by_halving(x[i][static_cast<Axis>(a)], a);
+            for (std::size_t i = 0; i < x.size(); ++i) any |= from_face[i] <= near ? 1 : 0;
+            for (std::size_t i = 0; any != 0 && i < x.size(); ++i) {
+                if (is_near_face(batch.t[a][i], batch.cell[a][i], a)) {
+                    batch.cell[a][i] = by_halving(x[i][axis], a);
+                }
             }
         }
     }

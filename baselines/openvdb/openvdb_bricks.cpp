@@ -104,8 +104,8 @@ private:
     std::uint32_t vertices_;
 };
 
-/// Calls visit(leaf, low, edges) for the leaves of a brick: its low corner and its edges in quarters
-/// of the brick's.
+/// Calls visit(leaf, low, edges) for the leaves of a brick: its low corner and its edges in
+/// quarters of the brick's.
 template <class Visit>
 void for_each_leaf_of_brick(const Octants& tree, Ref ref, const Cell& low, const Cell& edges,
                             const Visit& visit) {
@@ -125,11 +125,11 @@ void for_each_leaf_of_brick(const Octants& tree, Ref ref, const Cell& low, const
 
 /// The bricks of an octree, depth first.
 struct Bricks {
-    int levels;                // of each below it
-    Cuts cuts;                 // of the octree
-    VoxelBoxes boxes;          // voxels of the size of the finest brick
-    std::vector<Ref> parts;    // of the octree
-    std::vector<int> level;    // of these
+    int levels;              // of each below it
+    Cuts cuts;               // of the octree
+    VoxelBoxes boxes;        // voxels of the size of the finest brick
+    std::vector<Ref> parts;  // of the octree
+    std::vector<int> level;  // of these
 
     explicit Bricks(const Octants& tree) : Bricks(tree, tree.levels_below()) {}
 
@@ -269,8 +269,8 @@ public:
         }
         return footprint;
     }
-    /// The vertices of the octree. Where bricks meet, each rounds by codes of its own: what the last
-    /// brick has, depth first.
+    /// The vertices of the octree. Where bricks meet, each rounds by codes of its own: what the
+    /// last brick has, depth first.
     ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
         if (octree_) return octree_->control_nodes(neighbourhood);
         const Octants octants = cuts_.octants(domain());
@@ -309,10 +309,11 @@ public:
         if (saved.kinds.size() != bricks || saved.are_lengths != are_lengths) return false;
         if (std::ranges::max(saved.kinds) >= Codes::kinds) return false;
         if constexpr (Codes::are_codes) {
-            using Limits = std::numeric_limits<double>;
+            using Limits = std::numeric_limits<float>;
             if (saved.range.size() != 2) return false;
             const double shortest = saved.range[0], longest = saved.range[1];
-            if (!(shortest >= Limits::min() && shortest <= longest && longest < Limits::max())) {
+            if (!(shortest >= Limits::min() && shortest <= longest &&
+                  longest < Limits::max() / 2)) {
                 return false;
             }
         }
@@ -322,15 +323,16 @@ public:
         if (saved.pool.size() != first.back() * unit) return false;
         const Codes codes(saved.range);
         for (std::size_t brick = 0; brick < bricks; ++brick) {
-            const auto* bytes = reinterpret_cast<const std::byte*>(&saved.pool[first[brick] * unit]);
+            const auto* bytes =
+                reinterpret_cast<const std::byte*>(&saved.pool[first[brick] * unit]);
             if (!codes.is_sound(saved.kinds[brick], bytes, lattice.vertices())) return false;
         }
         return true;
     }
 
 private:
-    // Of the bricks of each level, along an axis: where they begin, of the bits of a voxel's number;
-    // and cells a voxel.
+    // Of the bricks of each level, along an axis: where they begin, of the bits of a voxel's
+    // number; and cells a voxel.
     struct Scales {
         std::array<std::int32_t, 1U << BrickRef::level_bits> begin{};
         std::array<double, 1U << BrickRef::level_bits> cells{};
@@ -461,12 +463,17 @@ private:
         if constexpr (Codes::are_codes) {
             const std::uint8_t kind = ref.kind();
             const auto [base, scale] = codes_.scale_of(kind, brick);
-            std::array<double, 8> number;
-            for (std::size_t c = 0; c < 8; ++c) {
-                number[c] = Codes::at(kind, brick, vertex + to_corner_[c]);
-            }
-            return length(base +
-                          scale * trilinear([&](std::size_t c) { return number[c]; }, x, y, z));
+            const auto between = [&]<class Code>(Code) {
+                const auto at = [&](std::size_t c) {
+                    return static_cast<double>(
+                        Codes::template code<Code>(brick, vertex + to_corner_[c]));
+                };
+                return trilinear(at, x, y, z);
+            };
+            const double number = kind == Codes::bytes   ? between(std::uint8_t())
+                                  : kind == Codes::words ? between(std::uint16_t())
+                                                         : between(float());
+            return length(base + scale * number);
         } else if constexpr (are_lengths) {
             const auto at = [&](std::size_t c) {
                 return double{Codes::at(brick, vertex + to_corner_[c]).h};
@@ -505,12 +512,14 @@ private:
         using Each = std::array<Number, most>;
 
         CellBatch in_voxels;
+        Each<std::uint32_t> bits_of_refs;
         Each<BrickRef> ref;
         Each<const std::byte*> brick;
         Each<std::uint32_t> vertex;
         std::array<Each<double>, 3> t;
-        // Of codes.
-        std::array<Each<std::int32_t>, 8> code;
+        // Of codes: those at the ends of the cell's edges along z, side by side in one number.
+        std::array<Each<std::uint32_t>, 4> pair;
+        Each<std::uint32_t> mask, bits;
         Each<double> base, scale, value;
     };
     // put(i, value) for all places, some at a time: references first, then where places are in
@@ -525,7 +534,8 @@ private:
                 decode(count, batch);
                 for (std::size_t i = 0; i < count; ++i) put(first + i, length(batch.value[i]));
             } else {
-                for (std::size_t i = 0; i < count; ++i) prefetch_cell(batch.brick[i], batch.vertex[i]);
+                for (std::size_t i = 0; i < count; ++i)
+                    prefetch_cell(batch.brick[i], batch.vertex[i]);
                 for (std::size_t i = 0; i < count; ++i) {
                     put(first + i, value_in({}, batch.brick[i], batch.vertex[i], batch.t[0][i],
                                             batch.t[1][i], batch.t[2][i]));
@@ -536,8 +546,9 @@ private:
     void locate(std::span<const Point> x, Batch& batch) const {
         const std::size_t count = x.size();
         voxel_of_.locate(x, batch.in_voxels);
+        reader_.read(batch.in_voxels, count, batch.bits_of_refs);
         for (std::size_t i = 0; i < count; ++i) {
-            const BrickRef ref = batch.ref[i] = ref_at(batch.in_voxels[i]);
+            const BrickRef ref = batch.ref[i] = {batch.bits_of_refs[i]};
             const std::byte* brick = batch.brick[i] = brick_of(ref);
             __builtin_prefetch(brick);
             if constexpr (Codes::are_codes) __builtin_prefetch(brick + sizeof(Line));
@@ -567,33 +578,38 @@ private:
             const auto [base, scale] = codes_.scale_of(kind, brick);
             batch.base[i] = base;
             batch.scale[i] = scale;
-            if (kind == Codes::bytes) {
-                enter_codes<std::uint8_t>(i, brick, batch);
-            } else if (kind == Codes::words) {
-                enter_codes<std::uint16_t>(i, brick, batch);
+            if (kind == Codes::words) {
+                enter_codes<std::uint16_t, std::uint32_t>(i, brick, batch);
             } else {
-                enter_codes<std::uint8_t>(i, brick, batch);
-                in_floats[floats++] = static_cast<std::uint8_t>(i);
+                enter_codes<std::uint8_t, std::uint16_t>(i, brick, batch);
+                if (kind == Codes::floats) in_floats[floats++] = static_cast<std::uint8_t>(i);
             }
         }
         for (std::size_t i = 0; i < count; ++i) {
-            const auto at = [&](std::size_t c) { return double(batch.code[c][i]); };
+            const auto at = [&](std::size_t c) {
+                const std::uint32_t code = batch.pair[c & 3][i] >> (c < 4 ? 0 : batch.bits[i]);
+                return double(static_cast<std::int32_t>(code & batch.mask[i]));
+            };
             batch.value[i] =
                 batch.base[i] +
                 batch.scale[i] * trilinear(at, batch.t[0][i], batch.t[1][i], batch.t[2][i]);
         }
         for (const std::uint8_t i : std::span(in_floats).first(floats)) {
-            batch.value[i] = value_in(batch.ref[i], batch.brick[i], batch.vertex[i],
-                                      batch.t[0][i], batch.t[1][i], batch.t[2][i])
+            batch.value[i] = value_in(batch.ref[i], batch.brick[i], batch.vertex[i], batch.t[0][i],
+                                      batch.t[1][i], batch.t[2][i])
                                  .h;
         }
     }
-    template <class Code>
+    // On a plane across z the second of a pair is another's, which weighs nothing.
+    template <class Code, class Pair>
     [[gnu::always_inline]] void enter_codes(std::size_t i, const std::byte* brick,
                                             Batch& batch) const {
-        for (std::size_t c = 0; c < 8; ++c) {
-            batch.code[c][i] = Codes::template code<Code>(brick, batch.vertex[i] + to_corner_[c]);
+        for (std::size_t c = 0; c < 4; ++c) {
+            batch.pair[c][i] =
+                Codes::template code<Code, Pair>(brick, batch.vertex[i] + to_corner_[c]);
         }
+        batch.bits[i] = 8 * sizeof(Code);
+        batch.mask[i] = std::numeric_limits<Code>::max();
     }
     // The four edges along z.
     [[gnu::always_inline]] void prefetch_cell(const std::byte* brick, std::uint32_t vertex) const
@@ -660,10 +676,9 @@ std::unique_ptr<ControlSpace> BrickOctree::finished(
         return in_tree(std::type_identity<VdbTree543<std::uint32_t>>());
     };
     if (octree->saved()) return with_brick_type(*precision, octree->saved()->are_lengths, made);
-    return with_stored<true>(precision.value_or(Precision::doubles), octree->metrics(),
-                             [&]<class M>(std::type_identity<M>) {
-                                 return made(std::type_identity<OrMetric<M>>());
-                             });
+    return with_stored<true>(
+        precision.value_or(Precision::doubles), octree->metrics(),
+        [&]<class M>(std::type_identity<M>) { return made(std::type_identity<OrMetric<M>>()); });
 }
 
 }  // namespace
