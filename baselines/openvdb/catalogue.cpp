@@ -19,6 +19,11 @@ std::vector<CatalogueEntry> openvdb_rows() {
                     .description = "OpenVDB tree, sparse: K_oL's leaves as tiles and voxels",
                     .construct = make_openvdb_tiles,
                     .capabilities = {SourceLeaves(), MetricNodes(), CompactForm(), VdbFiles()}});
+    rows.push_back({.id = "openvdb-bricks",
+                    .description = "OpenVDB tree, sparse, of bricks of 4^3 cells, trilinear",
+                    .order = 1,
+                    .construct = make_openvdb_bricks,
+                    .capabilities = {SourceLeaves(), MetricNodes(), CompactForm()}});
     rows.push_back({.id = "openvdb-vec3s-trilinear",
                     .description = "two of OpenVDB's Vec3S trees, dense, in floats, trilinear",
                     .order = 1,

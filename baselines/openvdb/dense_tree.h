@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "baselines/lattice/stencil.h"
@@ -65,8 +66,7 @@ template <class Tree>
 class TreeReader {
     using Value = typename Tree::ValueType;
     using Leaf = typename Tree::LeafNodeType;
-    using Upper = typename Tree::RootNodeType::ChildNodeType;
-    using Lower = typename Upper::ChildNodeType;
+    using Top = typename Tree::RootNodeType::ChildNodeType;
 
 public:
     explicit TreeReader(const Tree& tree) : root_(&tree.root()) {
@@ -75,9 +75,26 @@ public:
         if (only && only->origin() == openvdb::Coord()) top_ = &*only;
     }
 
-    const Value& operator()(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
-        return value(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j),
-                     static_cast<std::int32_t>(k));
+    [[gnu::always_inline]] const Value& operator()(std::uint32_t i, std::uint32_t j,
+                                                   std::uint32_t k) const {
+        const auto x = static_cast<std::int32_t>(i), y = static_cast<std::int32_t>(j),
+                   z = static_cast<std::int32_t>(k);
+        const Found found = descend(x, y, z);
+        return found.leaf == nullptr ? *found.tile : found.leaf->buffer().data()[offset(x, y, z)];
+    }
+    /// The values of many, without their corners: where these are in nodes is found side by side.
+    void read(const CellBatch& batch, std::size_t count,
+              std::array<Value, CellBatch::most>& values) const {
+        if (top_ == nullptr) {
+            for (std::size_t i = 0; i < count; ++i) {
+                const Cell cell = batch[i];
+                values[i] = value(cell[0], cell[1], cell[2]);
+            }
+            return;
+        }
+        std::array<std::array<std::uint32_t, CellBatch::most>, Tree::DEPTH - 1> in_nodes;
+        find_in_nodes<Top>(batch, count, in_nodes);
+        for (std::size_t i = 0; i < count; ++i) values[i] = read_below(*top_, in_nodes, i);
     }
     /// The leaf of the cell's low corner, null where a tile is.
     const Leaf* prepare(const Cell& cell) const {
@@ -135,13 +152,47 @@ private:
             const Leaf* leaf = root_->probeConstLeaf(at);
             return {leaf, leaf == nullptr ? &root_->getValue(at) : nullptr};
         }
-        const std::uint32_t in_top = child_of<Upper>(i, j, k);
-        const auto& lower = top_->getTable()[in_top];
-        if (!top_->isChildMaskOn(in_top)) return {nullptr, &lower.getValue()};
-        const std::uint32_t in_lower = child_of<Lower>(i, j, k);
-        const auto& leaf = lower.getChild()->getTable()[in_lower];
-        if (!lower.getChild()->isChildMaskOn(in_lower)) return {nullptr, &leaf.getValue()};
-        return {leaf.getChild(), nullptr};
+        return descend(*top_, i, j, k);
+    }
+    template <class Node>
+    [[gnu::always_inline]] static Found descend(const Node& node, std::int32_t i, std::int32_t j,
+                                                std::int32_t k) {
+        if constexpr (std::is_same_v<Node, Leaf>) {
+            return {&node, nullptr};
+        } else {
+            const std::uint32_t in_node = child_of<Node>(i, j, k);
+            const auto& part = node.getTable()[in_node];
+            if (!node.isChildMaskOn(in_node)) return {nullptr, &part.getValue()};
+            return descend(*part.getChild(), i, j, k);
+        }
+    }
+    // Of the nodes of this type and below, which are those of these levels.
+    template <class Node>
+    static void find_in_nodes(const CellBatch& batch, std::size_t count, auto& in_nodes) {
+        auto& in_node = in_nodes[Node::LEVEL];
+        for (std::size_t n = 0; n < count; ++n) {
+            const std::int32_t i = batch.cell[0][n], j = batch.cell[1][n], k = batch.cell[2][n];
+            if constexpr (Node::LEVEL == 0) {
+                in_node[n] = static_cast<std::uint32_t>(offset(i, j, k));
+            } else {
+                in_node[n] = child_of<Node>(i, j, k);
+            }
+        }
+        if constexpr (Node::LEVEL > 0) {
+            find_in_nodes<typename Node::ChildNodeType>(batch, count, in_nodes);
+        }
+    }
+    template <class Node>
+    [[gnu::always_inline]] static const Value& read_below(const Node& node, const auto& in_nodes,
+                                                          std::size_t n) {
+        const std::uint32_t in_node = in_nodes[Node::LEVEL][n];
+        if constexpr (Node::LEVEL == 0) {
+            return node.buffer().data()[in_node];
+        } else {
+            const auto& part = node.getTable()[in_node];
+            if (!node.isChildMaskOn(in_node)) return part.getValue();
+            return read_below(*part.getChild(), in_nodes, n);
+        }
     }
     const Value& value(std::int32_t i, std::int32_t j, std::int32_t k) const {
         const Found found = descend(i, j, k);
@@ -149,7 +200,7 @@ private:
     }
 
     const typename Tree::RootNodeType* root_;
-    const Upper* top_ = nullptr;
+    const Top* top_ = nullptr;
 };
 
 /// Bytes of the values of a leaf.
@@ -157,23 +208,22 @@ template <class Tree>
 constexpr std::size_t leaf_values_bytes = Tree::LeafNodeType::SIZE *
                                           sizeof(typename Tree::ValueType);
 
-/// Sets a box of voxels, tiles where it fills nodes.
-template <class Tree>
-void fill_box(Tree& tree, const Cell& low, const Cell& edges,
-              const typename Tree::ValueType& value) {
-    const openvdb::Coord from(low[0], low[1], low[2]);
-    tree.fill({from, from.offsetBy(edges[0] - 1, edges[1] - 1, edges[2] - 1)}, value);
+/// Bytes of nodes of this type and below, without the values of leaves.
+template <class Node, class Count>
+double bytes_of_nodes_below(const Count& count) {
+    const double own = count(Node::DIM) * sizeof(Node);
+    if constexpr (Node::LEVEL == 0) {
+        return own;
+    } else {
+        return own + bytes_of_nodes_below<typename Node::ChildNodeType>(count);
+    }
 }
 
 /// What a tree will allocate that has count(side) nodes of `side` voxels along each axis.
 template <class Tree, class Count>
 double bytes_of_nodes(const Count& count) {
-    using Leaf = typename Tree::LeafNodeType;
-    using Upper = typename Tree::RootNodeType::ChildNodeType;
-    using Lower = typename Upper::ChildNodeType;
-    const double leaf = sizeof(Leaf) + leaf_values_bytes<Tree>;
-    return count(Leaf::DIM) * leaf + count(Lower::DIM) * sizeof(Lower) +
-           count(Upper::DIM) * sizeof(Upper) + sizeof(Tree);
+    return count(Tree::LeafNodeType::DIM) * leaf_values_bytes<Tree> +
+           bytes_of_nodes_below<typename Tree::RootNodeType::ChildNodeType>(count) + sizeof(Tree);
 }
 
 /// The same of a dense tree over so many nodes of a lattice.

@@ -44,59 +44,70 @@ void VoxelBoxes::visit(const Octants& tree, Ref ref, const VoxelBox& box) {
     }
 }
 
-Cuts::Cuts(const Octants& tree) {
-    cuts_.resize((tree.leaves() + tree.inner_nodes()) / 64 + 1);
-    std::size_t next = 0;
-    note(tree, tree.root(), 0, next);
+Cuts::Cuts(const Octants& tree, int brick_levels) : brick_levels_(brick_levels) {
+    cuts_.reserve(tree.leaves() + tree.inner_nodes());
+    note(tree, tree.levels_below(), tree.root(), 0);
+    cuts_.shrink_to_fit();
     std::ranges::sort(large_, {}, &Large::begin);
     large_.shrink_to_fit();
 }
 
-Octants Cuts::octants(const Box& domain) const {
+Octants Cuts::octants(const Box& domain, int brick_levels) const {
     std::vector<OctreeNode> nodes;
     std::size_t next = 0;
     LeafIndex leaves = 0;
-    const auto make = [&](const auto& self, const Box& box, int level) -> Ref {
-        if (!is_cut(next++)) return Ref::leaf(leaves++);
+    const auto make = [&](const auto& self, const Box& box, int level, int left) -> Ref {
+        // Below a brick, as many levels as are left.
+        const bool is_above = left == brick_levels && cuts_[next++];
+        if (!is_above && left == 0) return Ref::leaf(leaves++);
         const Subdivision parts = OctreeNode::even_subdivision(domain, level, box);
         const std::size_t n = nodes.size();
         nodes.emplace_back(parts);
         for (int c = 0; c < parts.children(); ++c) {
-            const Ref child = self(self, parts.child(c), level + 1);
+            const Ref child = self(self, parts.child(c), level + 1, is_above ? left : left - 1);
             nodes[n].set_child(nodes[n].slot(c), child);
         }
         return Ref::inner(n);
     };
-    make(make, domain, 0);
+    make(make, domain, 0, brick_levels);
     return {domain, std::move(nodes)};
 }
 
 Box Cuts::leaf_at(const Point& x, const Box& domain) const {
     Box box = domain;
     std::size_t next = 0;
-    for (std::size_t level = 0; is_cut(next++); ++level) {
+    std::size_t level = 0;
+    const auto narrow = [&](bool passes) {
         const Subdivision parts =
             OctreeNode::even_subdivision(domain, static_cast<int>(level), box);
         const OctreeNode node(parts);
         int c = 0;
-        for (; node.slot(c) != node.child_with(x); ++c) pass(level + 1, next);
+        for (; node.slot(c) != node.child_with(x); ++c) {
+            if (passes) pass(level + 1, next);
+        }
         box = parts.child(c);
-    }
+        ++level;
+    };
+    while (cuts_[next++]) narrow(true);
+    for (int i = 0; i < brick_levels_; ++i) narrow(false);
     return box;
 }
 
-void Cuts::note(const Octants& tree, Ref ref, std::size_t level, std::size_t& next) {
-    const std::size_t part = next++;
-    if (ref.is_leaf()) return;
-    cuts_[part / 64] |= std::uint64_t{1} << part % 64;
+void Cuts::note(const Octants& tree, std::span<const std::uint8_t> levels_below, Ref ref,
+                std::size_t level) {
+    const bool is_cut = !ref.is_leaf() && levels_below[ref.index()] > brick_levels_;
+    const std::size_t part = cuts_.size();
+    cuts_.push_back(is_cut);
+    if (!is_cut) return;
     const OctreeNode& node = tree.node(ref);
     if (level == children_.size()) children_.push_back(node.count());
     for (int c = 0; c < node.count(); ++c) {
-        note(tree, node.children[node.slot(c)], level + 1, next);
+        note(tree, levels_below, node.children[node.slot(c)], level + 1);
     }
     constexpr std::size_t many = 256;
-    if (next - part >= many) {
-        large_.push_back({static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(next)});
+    if (cuts_.size() - part >= many) {
+        large_.push_back(
+            {static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(cuts_.size())});
     }
 }
 
@@ -104,7 +115,7 @@ void Cuts::pass(std::size_t level, std::size_t& next) const {
     const auto large = std::ranges::lower_bound(large_, next, {}, &Large::begin);
     if (large != large_.end() && large->begin == next) {
         next = large->end;
-    } else if (is_cut(next++)) {
+    } else if (cuts_[next++]) {
         for (int c = 0; c < children_[level]; ++c) pass(level + 1, next);
     }
 }

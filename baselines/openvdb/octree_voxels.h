@@ -34,22 +34,27 @@ private:
     void visit(const Octants& tree, Ref ref, const VoxelBox& box);
 };
 
-/// Which parts of an octree are cut, depth first: enough to make it again.
+/// Which parts of an octree are cut, depth first: enough to make it again. Of octrees that consist
+/// of bricks, parts of `brick_levels` levels in which all leaves are of one size, it need not keep
+/// what is below these.
 class Cuts {
 public:
-    explicit Cuts(const Octants& tree);
+    explicit Cuts(const Octants& tree, int brick_levels = 0);
     /// The octree, its leaves numbered depth first.
-    Octants octants(const Box& domain) const;
+    Octants octants(const Box& domain) const { return octants(domain, brick_levels_); }
+    /// The same with the bricks as leaves.
+    Octants bricks(const Box& domain) const { return octants(domain, 0); }
     /// The leaf that holds a place in the domain.
     Box leaf_at(const Point& x, const Box& domain) const;
     std::size_t bytes() const {
-        return cuts_.capacity() * sizeof(cuts_[0]) + children_.capacity() * sizeof(children_[0]) +
+        return cuts_.capacity() / 8 + children_.capacity() * sizeof(children_[0]) +
                large_.capacity() * sizeof(large_[0]);
     }
 
 private:
-    void note(const Octants& tree, Ref ref, std::size_t level, std::size_t& next);
-    bool is_cut(std::size_t part) const { return (cuts_[part / 64] >> part % 64 & 1) != 0; }
+    Octants octants(const Box& domain, int brick_levels) const;
+    void note(const Octants& tree, std::span<const std::uint8_t> levels_below, Ref ref,
+              std::size_t level);
     // Goes on behind the part that begins at `next`.
     void pass(std::size_t level, std::size_t& next) const;
 
@@ -58,9 +63,10 @@ private:
         std::uint32_t begin, end;
     };
 
-    std::vector<std::uint64_t> cuts_;  // a bit for each part
-    std::vector<int> children_;        // of a part that is cut, by level
-    std::vector<Large> large_;         // by their beginning: the others are passed bit by bit
+    std::vector<bool> cuts_;
+    std::vector<int> children_;  // of a part that is cut, by level
+    std::vector<Large> large_;   // by their beginning: the others are passed bit by bit
+    int brick_levels_;
 };
 
 /// The voxel that answers for a place: the one whose leaf the octree would find, on a face the low
@@ -71,6 +77,13 @@ public:
 
     const Box& domain() const { return domain_; }
 
+    /// Where a place, or the nearest one in the domain, is along an axis, in voxels.
+    [[gnu::always_inline]] double in_voxels(double x, std::size_t axis) const {
+        const auto a = static_cast<Axis>(axis);
+        const double above = x > domain_.low[a] ? x : domain_.low[a];
+        const double place = above < domain_.high[a] ? above : domain_.high[a];
+        return (place - domain_.low[a]) * per_length_[a];
+    }
     [[gnu::always_inline]] Cell operator()(const Point& x) const {
         const double t[3] = {in_voxels(x.x(), 0), in_voxels(x.y(), 1), in_voxels(x.z(), 2)};
         Cell cell{static_cast<std::int32_t>(t[0]), static_cast<std::int32_t>(t[1]),
@@ -82,28 +95,32 @@ public:
     }
     /// The same of at most CellBatch::most places.
     void locate(std::span<const Point> x, CellBatch& batch) const {
-        std::array<bool, CellBatch::most> is_near;
         for (std::size_t a = 0; a < 3; ++a) {
-            bool any = false;
+            const auto axis = static_cast<Axis>(a);
+            const double low = domain_.low[axis], high = domain_.high[axis];
+            const double per_length = per_length_[axis], near = near_[axis];
+            // In vectors: a branch for each place would take longer than the rest.
+            std::array<double, CellBatch::most> from_face;
+            std::int64_t any = 0;
             for (std::size_t i = 0; i < x.size(); ++i) {
-                const double t = in_voxels(x[i][static_cast<Axis>(a)], a);
-                batch.cell[a][i] = static_cast<std::int32_t>(t);
-                is_near[i] = is_near_face(t, batch.cell[a][i], a);
-                any |= is_near[i];
+                const double above = x[i][axis] > low ? x[i][axis] : low;
+                const double t = ((above < high ? above : high) - low) * per_length;
+                const auto voxel = static_cast<std::int32_t>(t);
+                const double beyond = t - voxel;
+                batch.t[a][i] = t;
+                batch.cell[a][i] = voxel;
+                from_face[i] = beyond < 1 - beyond ? beyond : 1 - beyond;
             }
-            for (std::size_t i = 0; any && i < x.size(); ++i) {
-                if (is_near[i]) batch.cell[a][i] = by_halving(x[i][static_cast<Axis>(a)], a);
+            for (std::size_t i = 0; i < x.size(); ++i) any |= from_face[i] <= near ? 1 : 0;
+            for (std::size_t i = 0; any != 0 && i < x.size(); ++i) {
+                if (is_near_face(batch.t[a][i], batch.cell[a][i], a)) {
+                    batch.cell[a][i] = by_halving(x[i][axis], a);
+                }
             }
         }
     }
 
 private:
-    [[gnu::always_inline]] double in_voxels(double x, std::size_t axis) const {
-        const auto a = static_cast<Axis>(axis);
-        const double above = x > domain_.low[a] ? x : domain_.low[a];
-        const double place = above < domain_.high[a] ? above : domain_.high[a];
-        return (place - domain_.low[a]) * per_length_[a];
-    }
     // So near that rounding counts: the octree has halved its boxes, and rounded each middle.
     [[gnu::always_inline]] bool is_near_face(double t, std::int32_t voxel, std::size_t a) const {
         const double beyond = t - voxel, near = near_[static_cast<Axis>(a)];

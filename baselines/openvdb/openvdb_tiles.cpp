@@ -13,6 +13,7 @@
 #include "baselines/openvdb/octree_voxels.h"
 #include "baselines/openvdb/stored_value.h"
 #include "baselines/openvdb/tiles_file.h"
+#include "baselines/openvdb/voxel_boxes_tree.h"
 #include "controlspace/input_errors.h"
 #include "controlspace/space/detail/plain_cursor.h"
 #include "controlspace/space/detail/saved.h"
@@ -47,39 +48,6 @@ public:
     }
 };
 
-/// Bytes of the nodes that the leaves take as voxels and tiles, as the tree counts its memory.
-template <class Tree>
-double bytes_for(const VoxelBoxes& boxes) {
-    // Nodes of `side` voxels that hold a part of a box smaller than they are.
-    const auto count = [&](std::int32_t side) {
-        std::vector<Cell> nodes;
-        for (const VoxelBox& leaf : boxes.leaves) {
-            if (std::ranges::min(leaf.edges) >= side) continue;
-            Cell from, to;
-            for (std::size_t a = 0; a < 3; ++a) {
-                from[a] = leaf.low[a] / side;
-                to[a] = (leaf.low[a] + leaf.edges[a] - 1) / side;
-            }
-            for (Cell at = from; at[0] <= to[0]; ++at[0]) {
-                for (at[1] = from[1]; at[1] <= to[1]; ++at[1]) {
-                    for (at[2] = from[2]; at[2] <= to[2]; ++at[2]) {
-                        if (nodes.empty() || nodes.back() != at) nodes.push_back(at);
-                    }
-                }
-            }
-        }
-        std::ranges::sort(nodes);
-        return static_cast<double>(std::ranges::unique(nodes).begin() - nodes.begin());
-    };
-    // What lies outside of all children is a tile of the root, in a map.
-    constexpr double root_entry = 80;
-    double in_root = 1;
-    for (const std::int32_t n : boxes.voxels) {
-        in_root *= n / Tree::RootNodeType::ChildNodeType::DIM + 1;
-    }
-    return bytes_of_nodes<Tree>(count) + in_root * root_entry;
-}
-
 /// The metrics of an octree's leaves, stored as `M`, in a tree of OpenVDB: a leaf that is as large
 /// as a node becomes a tile, others voxels.
 template <class M, class Tree>
@@ -101,10 +69,10 @@ public:
         }
         const std::span<const Metric> metrics = octree->metrics();
         if constexpr (std::is_same_v<M, Metric>) {
-            fill(boxes, [&](LeafIndex leaf) { return Value::of(metrics[leaf]); });
+            fill(tree_, boxes, [&](LeafIndex leaf) { return Value::of(metrics[leaf]); });
         } else {
             stored_.emplace(metrics);
-            fill(boxes, [&](LeafIndex leaf) { return Value::of(stored_->items()[leaf]); });
+            fill(tree_, boxes, [&](LeafIndex leaf) { return Value::of(stored_->items()[leaf]); });
             stored_->drop_items();
         }
         if (!is_only_read) octree_ = octree;
@@ -180,11 +148,6 @@ public:
     }
 
 private:
-    void fill(const VoxelBoxes& boxes, const auto& value_of) {
-        for (const auto& [leaf, low, edges] : boxes.leaves) {
-            fill_box(tree_, low, edges, value_of(leaf));
-        }
-    }
     StoredReader<M, Tree> reader() const { return {tree_, vdb_value<M>(stored_)}; }
     auto value_in(const Cell& voxel) const {
         return reader()(static_cast<std::uint32_t>(voxel[0]), static_cast<std::uint32_t>(voxel[1]),

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "baselines/openvdb/dense_tree.h"
+#include "baselines/openvdb/voxel_boxes_tree.h"
 #include "controlspace/trees/detail/topology_state.h"
 #include "controlspace/trees/node_metrics.h"
 #include "controlspace/version.h"
@@ -97,10 +97,7 @@ std::string tiles_file(StateWriter state, const Octants& octree, std::span<const
     const double scale = scale_of(voxel);
     const auto in_file = [&](float h) { return static_cast<float>(scale * h); };
     const auto grid = openvdb::FloatGrid::create(in_file(std::ranges::max(lengths)));
-    for (std::size_t i = 0; i < lengths.size(); ++i) {
-        const auto& [leaf, low, edges] = boxes.leaves[i];
-        fill_box(grid->tree(), low, edges, in_file(lengths[i]));
-    }
+    fill(grid->tree(), boxes, [&](LeafIndex leaf) { return in_file(lengths[leaf]); });
     grid->setName(length_grid);
     grid->setTransform(transform_of(scale * octree.domain().low, scale * voxel));
     grid->setCreator("controlspace " + std::string(version()));

@@ -18,6 +18,9 @@ std::unique_ptr<ControlSpaceBuilder> make_openvdb_grid(const SpaceOptions& optio
     return openvdb().make_openvdb_grid(options, interpolation);
 }
 
+std::unique_ptr<ControlSpaceBuilder> make_openvdb_bricks(const SpaceOptions& options) {
+    return openvdb().make_openvdb_bricks(options);
+}
 std::unique_ptr<ControlSpaceBuilder> make_openvdb_tiles(const SpaceOptions& options) {
     return openvdb().make_openvdb_tiles(options);
 }

@@ -7,6 +7,7 @@ CONTROLSPACE_MODULE {
     static const controlspace::OpenvdbModule table{
         .version = controlspace::version(),
         .make_openvdb_grid = controlspace::make_openvdb_grid,
+        .make_openvdb_bricks = controlspace::make_openvdb_bricks,
         .make_openvdb_tiles = controlspace::make_openvdb_tiles,
         .make_openvdb_vec3s = controlspace::make_openvdb_vec3s,
         .read_vdb_sources = controlspace::read_vdb_sources,

@@ -22,6 +22,7 @@ namespace controlspace {
 struct OpenvdbModule {
     std::string_view version;
     decltype(&controlspace::make_openvdb_grid) make_openvdb_grid;
+    decltype(&controlspace::make_openvdb_bricks) make_openvdb_bricks;
     decltype(&controlspace::make_openvdb_tiles) make_openvdb_tiles;
     decltype(&controlspace::make_openvdb_vec3s) make_openvdb_vec3s;
     decltype(&controlspace::read_vdb_sources) read_vdb_sources;

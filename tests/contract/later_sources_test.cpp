@@ -185,7 +185,7 @@ STRUCTURE_CASE(does_not_overshoot,
         worst = std::max(worst, sample_at(*space, source.position).xx / source.metric.xx);
     }
     CHECK(worst < 1.42);  // δ < 0.2
-    if (structure.id == "K_V" || structure.id == "K_oV") return;
+    if (structure.id == "K_V" || structure.id == "K_oV" || structure.id == "openvdb-bricks") return;
     const std::vector<Metric> after = answers(*space);
     double growth = 0;
     for (std::size_t i = 0; i < before.size(); ++i) {

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "baselines/openvdb/dense_tree.h"
 #include "baselines/openvdb/octree_voxels.h"
+#include "baselines/openvdb/voxel_boxes_tree.h"
 #include "baselines/peers/converted_builder.h"
 #include "baselines/peers/nanovdb/dense_grid.h"
 #include "baselines/peers/peer_builder.h"
@@ -30,7 +30,7 @@ namespace controlspace {
 
 namespace {
 
-/// K_oL's octree, and the length in each leaf, depth first.
+/// K_oL's octree, and the length in each leaf.
 struct Lengths {
     Octants octree;
     VoxelBoxes boxes;
@@ -50,8 +50,7 @@ private:
         : octree(load_topology<OctreeNode>(domain, state)), boxes(octree) {
         NodeMetrics metrics{std::vector<Metric>()};
         NodeMetrics::exchange(metrics, state);
-        for (const VoxelBox& leaf : boxes.leaves) {
-            const Metric& metric = metrics.field()[leaf.leaf];
+        for (const Metric& metric : metrics.field()) {
             if (!is_isotropic(metric)) {
                 refuse("sparse NanoVDB grids hold lengths: take nanovdb-nearest for tensors");
             }
@@ -67,10 +66,7 @@ private:
 template <class Number>
 NanoHandle nano_grid(const Lengths& content) {
     const auto grid = openvdb::FloatGrid::create();
-    for (std::size_t i = 0; i < content.of_leaves.size(); ++i) {
-        const auto& [leaf, low, edges] = content.boxes.leaves[i];
-        fill_box(grid->tree(), low, edges, content.of_leaves[i]);
-    }
+    fill(grid->tree(), content.boxes, [&](LeafIndex leaf) { return content.of_leaves[leaf]; });
     nanovdb::OpenToNanoVDB<float, Number> convert;
     convert.setStats(nanovdb::StatsMode::Disable);
     convert.setChecksum(nanovdb::ChecksumMode::Disable);
@@ -123,16 +119,15 @@ private:
           grid_(handle_.template grid<Number>()) {
         double largest = 1;  // factor between floats and codes
         const auto accessor = grid_->getAccessor();
-        for (std::size_t i = 0; i < content.of_leaves.size(); ++i) {
+        for (const auto& [leaf, low, edges] : content.boxes.leaves) {
             // What fills a leaf of NanoVDB has no range there, and is held as it is. Of the others
             // voxels in one leaf have one code.
-            const auto& [leaf, low, edges] = content.boxes.leaves[i];
             constexpr std::int32_t side = 8;
             if (std::ranges::min(edges) >= side) continue;
             for (Cell at = low; at[0] < low[0] + edges[0]; at[0] += side) {
                 for (at[1] = low[1]; at[1] < low[1] + edges[1]; at[1] += side) {
                     for (at[2] = low[2]; at[2] < low[2] + edges[2]; at[2] += side) {
-                        const double h = content.of_leaves[i];
+                        const double h = content.of_leaves[leaf];
                         const double held = accessor.getValue(coord(at));
                         largest = std::max({largest, h / held, held / h});
                     }

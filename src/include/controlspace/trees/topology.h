@@ -205,6 +205,21 @@ public:
         return ordered;
     }
 
+    /// Of each inner node, how many levels there are below it.
+    std::vector<std::uint8_t> levels_below() const {
+        std::vector<std::uint8_t> levels(nodes_.size(), 1);
+        // Nodes come after those that they are below.
+        for (std::size_t i = nodes_.size(); i-- > 0;) {
+            const Node& node = nodes_[i];
+            for (int c = 0; c < node.count(); ++c) {
+                const Ref child = node.children[node.slot(c)];
+                if (child.is_leaf()) continue;
+                levels[i] = std::max<std::uint8_t>(levels[i], levels[child.index()] + 1);
+            }
+        }
+        return levels;
+    }
+
     /// Whether so many more leaves would outgrow the references.
     bool is_full(std::size_t leaves) const { return leaves_ + leaves >= Ref::max_index; }
 

@@ -8,6 +8,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -298,7 +299,13 @@ private:
             }
             const auto is_bad = [&] { return departure.worst > aim_; };
             const bool needs_axis = Node::arity == 2;
-            if (states_[l.leaf] == LeafState::fresh && !is_fitted(l.leaf) &&
+            // First: where it shows that the target is kept, nothing else is needed.
+            std::optional<Departure> bound;
+            if constexpr (HasTrilinearLeaves<Storage>) {
+                if (proved && !is_sampled && !is_bad()) bound = judge.everywhere(l, nearby);
+            }
+            const bool is_kept = bound && !(bound->worst > aim_);
+            if (states_[l.leaf] == LeafState::fresh && !is_kept && !is_fitted(l.leaf) &&
                 (needs_axis || !is_bad())) {
                 judge.at_places_of(l, nearby, found);
             }
@@ -308,12 +315,7 @@ private:
                 judge.examine(l, nearby, estimate, further, found);
             }
             if (proved && !is_bad()) {
-                if constexpr (HasTrilinearLeaves<Storage>) {
-                    if (!is_sampled) {
-                        const Departure bound = judge.everywhere(l, nearby);
-                        departure.take(bound.worst, bound.where);
-                    }
-                }
+                if (bound) departure.take(bound->worst, bound->where);
                 if (is_sampled) search(l, judge, nearby, first[i], first[i + 1], found);
             }
             departures_[l.leaf] = departure;

@@ -80,7 +80,8 @@ protected:
         GrowthStop stop = GrowthStop::none;
         TreeAdaptation adaptation(topology_, storage_, field, goal, options_.growth);
         report.reached = adaptation.run(true, [&](const Box& box, const auto& along, auto& cut) {
-            stop = topology_.leaves() >= goal.max_leaves ? GrowthStop::leaves : growth_stop();
+            const bool is_full = topology_.leaves() + more_by_brick() >= goal.max_leaves;
+            stop = is_full ? GrowthStop::leaves : growth_stop();
             if (stop != GrowthStop::none) return false;
             if (is_negligible(box, field.largest_ratio())) {
                 too_short = true;
@@ -140,18 +141,14 @@ protected:
         return true;
     }
 
-    /// Appends to `cut`, if given, the leaf and all neighbours that had to be split before it;
-    /// `watched` are TreeChanges, or none.
+    /// Appends to `cut`, if given, the leaf and all others that had to be split before it or with
+    /// it; `watched` are TreeChanges, or none.
     void split(const LeafPlace& place, const Subdivision& subdivision, std::vector<LeafIndex>* cut,
                auto&&... watched) {
+        if (brick_levels_ > 0) return split_brick(place, cut, watched...);
         make_room_for(Node::arity - 1);
         if (balanced_) refine_coarser_neighbours(place, cut, watched...);
-        const auto first_new = static_cast<LeafIndex>(topology_.leaves());
-        topology_.split(place, subdivision);
-        topology_.fit_jumps_roughly();
-        (watched.before_split(storage_, subdivision, place.leaf), ...);
-        storage_.split(subdivision, place.leaf, first_new);
-        if (cut != nullptr) cut->push_back(place.leaf);
+        split_alone(place, subdivision, cut, watched...);
     }
 
     /// Splits leaves until none has a neighbour across a face that is more than one level coarser:
@@ -160,6 +157,43 @@ protected:
         std::vector<LeafPlace> inner;
         list_inner({topology_.root(), domain()}, 0, inner);
         for (const LeafPlace& place : inner) refine_coarser_neighbours(place, nullptr);
+    }
+
+    /// Splits leaves until those of each brick are of one level: the least such tree. Only the
+    /// topology is changed; repeat(leaf, times) copies what else there is for a leaf.
+    template <class Repeat>
+    void complete_bricks(const Repeat& repeat) {
+        const std::vector<std::uint8_t> levels = topology_.levels_below();
+        struct Coarse {
+            Point inside;
+            int level;  // that it lacks
+        };
+        std::vector<Coarse> coarse;
+        const auto list = [&](const auto& self, const TreePart& part, int level) -> void {
+            const int below = part.ref.is_leaf() ? 0 : levels[part.ref.index()];
+            if (below > brick_levels_) {
+                topology_.for_each_child(
+                    part, [&](const TreePart& child) { self(self, child, level + 1); });
+                return;
+            }
+            // The domain itself may be a brick of fewer levels.
+            const int least = level == 0 ? below : level + brick_levels_;
+            topology_.for_each_leaf_in(part, [&](LeafIndex, const Box& box) {
+                coarse.push_back({box.centre(), least});
+            });
+        };
+        list(list, {topology_.root(), domain()}, 0);
+        const auto deepen = [&](const auto& self, const Point& inside, int least) -> void {
+            const LeafPlace place = topology_.locate(inside);
+            const Subdivision parts = Node::even_subdivision(domain(), place.level, place.box);
+            if (place.level >= least || !parts.is_proper()) return;
+            make_room_for(Node::arity - 1);
+            topology_.split(place, parts);
+            topology_.fit_jumps_roughly();
+            repeat(place.leaf, static_cast<std::size_t>(parts.children() - 1));
+            for (int c = 0; c < parts.children(); ++c) self(self, parts.child(c).centre(), least);
+        };
+        for (const Coarse& leaf : coarse) deepen(deepen, leaf.inside, leaf.level);
     }
 
     /// Throws InputError where the tree is not to have so many leaves more.
@@ -218,6 +252,10 @@ protected:
     SpaceOptions options_;
     int deepest_ = deepest_level<Node>;  // of what the storage or a finished form can hold
     bool balanced_;
+    /// If positive, leaves are cut together with all that have the same ancestor so many levels
+    /// above: they make bricks of (2^levels)^3 leaves of one size. The first levels are cut all
+    /// over.
+    int brick_levels_ = 0;
     Topology<Node> topology_;
     Storage storage_;
     bool is_finished_ = false;       // nothing has grown since `settle`
@@ -225,6 +263,38 @@ protected:
     std::size_t bytes_aside_ = 0;    // of what is to be entered into the tree
 
 private:
+    void split_alone(const LeafPlace& place, const Subdivision& subdivision,
+                     std::vector<LeafIndex>* cut, auto&&... watched) {
+        const auto first_new = static_cast<LeafIndex>(topology_.leaves());
+        topology_.split(place, subdivision);
+        topology_.fit_jumps_roughly();
+        (watched.before_split(storage_, subdivision, place.leaf), ...);
+        storage_.split(subdivision, place.leaf, first_new);
+        if (cut != nullptr) cut->push_back(place.leaf);
+    }
+    void split_brick(const LeafPlace& place, std::vector<LeafIndex>* cut, auto&&... watched) {
+        TreePart brick{topology_.root(), domain()};
+        for (int level = 0; level + brick_levels_ < place.level; ++level) {
+            const std::size_t slot =
+                topology_.node(brick.ref).descend(place.box.centre(), brick.box);
+            brick.ref = topology_.node(brick.ref).children[slot];
+        }
+        std::vector<Point> inside;
+        topology_.for_each_leaf_in(
+            brick, [&](LeafIndex, const Box& box) { inside.push_back(box.centre()); });
+        make_room_for(inside.size() * (Node::arity - 1));
+        for (const Point& x : inside) {
+            const LeafPlace leaf = topology_.locate(x);
+            const Subdivision parts = Node::even_subdivision(domain(), leaf.level, leaf.box);
+            if (parts.is_proper()) split_alone(leaf, parts, cut, watched...);
+        }
+    }
+
+    // How many leaves a cut adds beside those of a single leaf, at most.
+    std::size_t more_by_brick() const {
+        const std::size_t of_brick = std::size_t{1} << 3 * brick_levels_;
+        return (std::min(of_brick, topology_.leaves()) - 1) * (Node::arity - 1);
+    }
     GrowthStop growth_stop() const {
         if (outgrows_) return GrowthStop::memory;
         return options_.growth.is_late() ? GrowthStop::time : GrowthStop::none;

@@ -168,6 +168,12 @@ private:
     void collect() {
         if (are_collected_) return;
         if constexpr (CollectsRequests<Storage, Node>) {
+            if (Base::brick_levels_ > 0) {
+                Base::complete_bricks([&](LeafIndex leaf, std::size_t times) {
+                    make_room(requests_, times);
+                    requests_.insert(requests_.end(), times, Metric(requests_[leaf]));
+                });
+            }
             storage_.collect(topology_, requests_);
         }
         if (Base::balanced_) Base::balance();
