@@ -101,7 +101,7 @@ double LinearCodes::encode(std::uint8_t kind, std::span<const Metric> vertices,
     const auto [least, most] = std::ranges::minmax(vertices, {}, &Metric::xx);
     const std::uint16_t first = first_up_to(least.xx);
     std::memcpy(brick, &first, sizeof first);
-    const double last_code = kind == bytes ? 255 : 255 * words_a_byte;
+    const double last_code = kind == bytes ? 255 : 65535;
     const double needed = (most.xx / first_length(first) - 1) / 255;
     std::size_t share = 0;
     while (share + 1 < shares && share_of(share) < needed) ++share;
@@ -141,7 +141,7 @@ void LinearCodes::write(std::uint8_t kind, std::span<const Metric> vertices,
 bool LinearCodes::is_sound(std::uint8_t kind, const std::byte* brick, std::size_t vertices) {
     if (kind != floats) return true;
     for (std::uint32_t i = 0; i < vertices; ++i) {
-        if (!is_length(code<float>(brick, i))) return false;
+        if (!is_length(at<float>(brick, i))) return false;
     }
     return true;
 }

@@ -87,31 +87,34 @@ public:
     }
     void write(std::uint8_t kind, std::span<const Metric> vertices, std::byte* brick) const;
 
-    /// A length is base + scale times a number between those of the vertices.
+    /// A length is base + scale times a number between the codes of the vertices. Not of floats,
+    /// which are lengths.
     struct Scale {
         double base, scale;
     };
     [[gnu::always_inline]] Scale scale_of(std::uint8_t kind, const std::byte* brick) const {
-        if (kind == floats) return {0, 1};
         std::uint16_t first;
         std::memcpy(&first, brick, sizeof first);
         const double base = first_length(first);
         const double share = share_of(std::to_integer<std::size_t>(brick[2]));
-        return {base, base * (kind == bytes ? share : share / words_a_byte)};
+        return {base, base * (share * steps_a_byte[kind])};
     }
-    [[gnu::always_inline]] static double at(std::uint8_t kind, const std::byte* brick,
-                                            std::uint32_t vertex) {
-        if (kind == bytes) return code<std::uint8_t>(brick, vertex);
-        return kind == words ? code<std::uint16_t>(brick, vertex) : code<float>(brick, vertex);
+    template <class Number>
+    [[gnu::always_inline]] static Number at(const std::byte* brick, std::uint32_t vertex) {
+        Number number;
+        constexpr std::uint8_t kind = std::countr_zero(sizeof number);
+        std::memcpy(&number, brick + header(kind) + vertex * sizeof number, sizeof number);
+        return number;
     }
-    /// That of a vertex; or, as a `Read` of twice the bits, with the one behind it.
-    template <class Code, class Read = Code>
-    [[gnu::always_inline]] static Read code(const std::byte* brick, std::uint32_t vertex) {
-        Read read;
-        constexpr std::size_t first = sizeof(Code) == 1 ? header(bytes) : header(words);
-        std::memcpy(&read, brick + first + vertex * sizeof(Code), sizeof read);
-        return read;
+    /// The code of a vertex, and behind it that of the next, of either length without a branch: in
+    /// the lowest bits, code_bits of each. Reads up to two bytes behind the brick.
+    [[gnu::always_inline]] static std::uint32_t pair_at(std::uint8_t kind, const std::byte* brick,
+                                                        std::uint32_t vertex) {
+        std::uint32_t pair;
+        std::memcpy(&pair, brick + header(kind) + (vertex << kind), sizeof pair);
+        return pair;
     }
+    static constexpr std::uint32_t code_bits(std::uint8_t kind) { return 8U << kind; }
 
     static bool is_sound(std::uint8_t kind, const std::byte* brick, std::size_t vertices);
 
@@ -120,18 +123,20 @@ protected:
     LinearCodes(double shortest, double longest, double allowed);
 
 private:
+    // Of floats as of 16 bits.
     static constexpr std::size_t header(std::uint8_t kind) { return kind == bytes ? 3 : 4; }
     static constexpr std::size_t fine_steps = 256, shares = 256;
-    static constexpr double words_a_byte = 257;
+    static constexpr std::array<double, 2> steps_a_byte{1, 1.0 / 257};
     // Parts of an octave.
-    static constexpr std::array<double, 8> fine_shares{1,
-                                                       1.0905077326652577,
-                                                       1.189207115002721,
-                                                       1.2968395546510096,
-                                                       1.4142135623730951,
-                                                       1.5422108254079407,
-                                                       1.681792830507429,
-                                                       1.8340080864093424};
+    static constexpr std::array<double, 16> fine_shares = [] {
+        std::array<double, 16> powers{};
+        double power = 1;
+        for (double& p : powers) {
+            p = power;
+            power *= 1.0442737824274138;
+        }
+        return powers;
+    }();
 
     [[gnu::always_inline]] double first_length(std::size_t i) const {
         return double{coarse_[i / fine_steps]} * double{fine_[i % fine_steps]};

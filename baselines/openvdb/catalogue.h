@@ -37,13 +37,14 @@ std::unique_ptr<ControlSpaceBuilder> make_openvdb_tiles(const SpaceOptions& opti
 /// K_oV's octree in which leaves are cut together so that they fill bricks: insertion by l_min and
 /// tolerance, gradation, adaptation and proof are those of K_oV with such leaves, and it answers as
 /// this octree does, to rounding. A voxel is the finest brick, larger ones are tiles; a value is
-/// the number of a brick in one pool, and its level. Up to 512 voxels along an axis nodes have 8^3
-/// children (3-3-3), beyond it is the standard tree; beyond 4096 a query asks the root, which is
-/// slower, and the footprint says so. Bricks are cut to level 16 at most.
+/// the place of a brick in one pool, its kind and its level. Up to 32 voxels along an axis the tree
+/// has two levels (2-3), up to 512 nodes have 8^3 children (3-3-3), beyond it is the standard tree;
+/// beyond 4096 a query asks the root, which is slower, and the footprint says so. Bricks are cut to
+/// level 16 at most.
 ///
-/// Codes of 16 bits are those of the trees. In codes of 8 bits each brick has a range of its own,
-/// which never rounds more than those of the trees, and mostly much less. Throws MemoryLimitError
-/// before bricks or nodes outgrow the cap on memory.
+/// In codes each brick has its own range, in equal steps of its lengths: no code rounds more than
+/// those of as many bits in trees do, and a brick for which that takes more bits gets them. Throws
+/// MemoryLimitError before bricks or nodes outgrow the cap on memory.
 std::unique_ptr<ControlSpaceBuilder> make_openvdb_bricks(const SpaceOptions& options);
 
 /// The form in which other programs could read a field of metrics: two of OpenVDB's own Vec3S

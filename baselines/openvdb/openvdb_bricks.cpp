@@ -203,7 +203,7 @@ public:
           kinds_(octree->saved() ? octree->saved()->kinds : kinds_of(*octree, bricks)) {
         const std::vector<std::size_t> first = first_units();
         require_room(bricks, first.back(), octree->options().max_bytes);
-        pool_.resize((first.back() * unit_ + sizeof(Line) - 1) / sizeof(Line), Line{});
+        pool_.resize(first.back() * unit_ / sizeof(Line) + 1, Line{});  // LinearCodes::pair_at
         set_scales(bricks);
         fill(tree_, bricks.boxes, [&](LeafIndex brick) {
             return BrickRef::of(first[brick], kinds_[brick], bricks.level[brick]);
@@ -429,11 +429,25 @@ private:
     }
     Metric vertex(BrickRef ref, std::uint32_t number) const {
         if constexpr (Codes::are_codes) {
-            const auto [base, scale] = codes_.scale_of(ref.kind(), brick_of(ref));
-            return Metric::isotropic(base + scale * Codes::at(ref.kind(), brick_of(ref), number));
+            return length(number_between(ref.kind(), brick_of(ref),
+                                         [&](const auto& at) { return at(number); }));
         } else {
             return Codes::at(brick_of(ref), number);
         }
+    }
+    // A length, of between(at): at(vertex) is the number that a vertex has.
+    template <class Between>
+    [[gnu::always_inline]] double number_between(
+        std::uint8_t kind, const std::byte* brick,
+        const Between& between) const requires Codes::are_codes {
+        const auto at = [&]<class Number>(Number) {
+            return between([&](std::uint32_t vertex) {
+                return static_cast<double>(Codes::template at<Number>(brick, vertex));
+            });
+        };
+        if (kind == Codes::floats) return at(float());
+        const auto [base, scale] = codes_.scale_of(kind, brick);
+        return base + scale * (kind == Codes::bytes ? at(std::uint8_t()) : at(std::uint16_t()));
     }
 
     // Along an axis, from the low face of a brick; 1 is reached but for rounding. Comparisons with
@@ -460,19 +474,10 @@ private:
                                           std::uint32_t vertex, double x, double y,
                                           double z) const {
         if constexpr (Codes::are_codes) {
-            const std::uint8_t kind = ref.kind();
-            const auto [base, scale] = codes_.scale_of(kind, brick);
-            const auto between = [&]<class Code>(Code) {
-                const auto at = [&](std::size_t c) {
-                    return static_cast<double>(
-                        Codes::template code<Code>(brick, vertex + to_corner_[c]));
-                };
+            return length(number_between(ref.kind(), brick, [&](const auto& number) {
+                const auto at = [&](std::size_t c) { return number(vertex + to_corner_[c]); };
                 return trilinear(at, x, y, z);
-            };
-            const double number = kind == Codes::bytes   ? between(std::uint8_t())
-                                  : kind == Codes::words ? between(std::uint16_t())
-                                                         : between(float());
-            return length(base + scale * number);
+            }));
         } else if constexpr (are_lengths) {
             const auto at = [&](std::size_t c) {
                 return double{Codes::at(brick, vertex + to_corner_[c]).h};
@@ -518,7 +523,7 @@ private:
         std::array<Each<double>, 3> t;
         // Of codes: those at the ends of the cell's edges along z, side by side in one number.
         std::array<Each<std::uint32_t>, 4> pair;
-        Each<std::uint32_t> mask, bits;
+        Each<std::uint32_t> bits;
         Each<double> base, scale, value;
     };
     // put(i, value) for all places, some at a time: references first, then where places are in
@@ -567,27 +572,29 @@ private:
             }
         }
     }
-    // As value_in does, side by side; bricks of floats one by one.
+    // As value_in does, side by side; bricks of floats one by one. On a plane across z the second
+    // code of a pair is another's, which weighs nothing.
     void decode(std::size_t count, Batch& batch) const requires Codes::are_codes {
         std::array<std::uint8_t, Batch::most> in_floats;
         std::size_t floats = 0;
         for (std::size_t i = 0; i < count; ++i) {
-            const std::uint8_t kind = batch.ref[i].kind();
+            in_floats[floats] = static_cast<std::uint8_t>(i);
+            floats += batch.ref[i].kind() == Codes::floats ? 1 : 0;
+            const std::uint8_t kind = batch.ref[i].kind() & 1;
             const std::byte* brick = batch.brick[i];
             const auto [base, scale] = codes_.scale_of(kind, brick);
             batch.base[i] = base;
             batch.scale[i] = scale;
-            if (kind == Codes::words) {
-                enter_codes<std::uint16_t, std::uint32_t>(i, brick, batch);
-            } else {
-                enter_codes<std::uint8_t, std::uint16_t>(i, brick, batch);
-                if (kind == Codes::floats) in_floats[floats++] = static_cast<std::uint8_t>(i);
+            batch.bits[i] = Codes::code_bits(kind);
+            for (std::size_t c = 0; c < 4; ++c) {
+                batch.pair[c][i] = Codes::pair_at(kind, brick, batch.vertex[i] + to_corner_[c]);
             }
         }
         for (std::size_t i = 0; i < count; ++i) {
+            const std::uint32_t mask = (1U << batch.bits[i]) - 1;
             const auto at = [&](std::size_t c) {
                 const std::uint32_t code = batch.pair[c & 3][i] >> (c < 4 ? 0 : batch.bits[i]);
-                return double(static_cast<std::int32_t>(code & batch.mask[i]));
+                return static_cast<double>(static_cast<std::int32_t>(code & mask));
             };
             batch.value[i] =
                 batch.base[i] +
@@ -598,17 +605,6 @@ private:
                                       batch.t[1][i], batch.t[2][i])
                                  .h;
         }
-    }
-    // On a plane across z the second of a pair is another's, which weighs nothing.
-    template <class Code, class Pair>
-    [[gnu::always_inline]] void enter_codes(std::size_t i, const std::byte* brick,
-                                            Batch& batch) const {
-        for (std::size_t c = 0; c < 4; ++c) {
-            batch.pair[c][i] =
-                Codes::template code<Code, Pair>(brick, batch.vertex[i] + to_corner_[c]);
-        }
-        batch.bits[i] = 8 * sizeof(Code);
-        batch.mask[i] = std::numeric_limits<Code>::max();
     }
     // The four edges along z.
     [[gnu::always_inline]] void prefetch_cell(const std::byte* brick, std::uint32_t vertex) const

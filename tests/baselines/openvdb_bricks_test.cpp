@@ -179,8 +179,8 @@ TEST_CASE("codes of bricks round by half a step of their own range, and by what 
             longest = std::max(longest, exact->length_at(inside));
         }
         const double factor = largest_ratio(exact->metric_at(x), codes->metric_at(x));
-        // Steps are up to 1.1 times as long as they would have to be.
-        REQUIRE(factor <= 1 + 1.1 * (longest / shortest - 1) / 510 + 1e-6);
+        // Steps are up to 1.05 times as long as they would have to be.
+        REQUIRE(factor <= 1 + 1.05 * (longest / shortest - 1) / 510 + 1e-6);
         most = std::max(most, factor);
     }
     CHECK(most <= half_step(*exact));
