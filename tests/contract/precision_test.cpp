@@ -245,7 +245,7 @@ STRUCTURE_CASE(is_grid, "voxels chosen for a target keep it, and much larger one
     CHECK(recipe_of(space->built())->options.voxel > 1.2 * voxel);
 }
 
-STRUCTURE_CASE(is_plain_grid, "of tensors voxels are chosen by probes") {
+STRUCTURE_CASE(is_plain_grid, "of tensors voxels are chosen by probes", "[long]") {
     const Work work = anisotropic_sphere();
     constexpr double target = 0.5;
     const auto space = editable(structure.make(work.options()));

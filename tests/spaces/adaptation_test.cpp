@@ -313,7 +313,8 @@ TEST_CASE("thinned sources take their share of the target, and no other field is
     CHECK(usual.target() == target);
 }
 
-CASE_OF_EACH(entry, bounded_trees(), "trees of thinned sources keep the target of all sources") {
+CASE_OF_EACH(entry, bounded_trees(), "trees of thinned sources keep the target of all sources",
+             "[long]") {
     const std::vector<PointSource> sources = on_cones(16000);
     const auto space = editable(entry.make({.domain = domain}));
     const AdaptationReport report = space->adapt({.sources = sources,
