@@ -20,7 +20,7 @@ bool is_length(double h) { return h > 0 && std::isfinite(h); }
 std::vector<double> range_of(std::span<const Metric> metrics) {
     const auto [shortest, longest] = std::ranges::minmax(metrics, {}, &Metric::xx);
     const std::array ends{shortest, longest};
-    StoredMetrics<StoredLength<std::uint8_t>>{ends};
+    [[maybe_unused]] const StoredMetrics<StoredLength<std::uint8_t>> held(ends);
     return {shortest.xx, longest.xx};
 }
 

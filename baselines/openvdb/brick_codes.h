@@ -40,7 +40,7 @@ public:
 
     /// For bricks of these metrics. Throws InputError where one cannot be held.
     explicit BrickCodes(std::span<const Metric> metrics);
-    explicit BrickCodes(std::vector<double> /*range*/) {}
+    explicit BrickCodes(const std::vector<double>& /*range*/) {}
     static std::vector<double> range() { return {}; }
     static constexpr std::size_t table_bytes() { return 0; }
 

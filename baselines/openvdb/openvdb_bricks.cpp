@@ -440,9 +440,9 @@ private:
     [[gnu::always_inline]] double number_between(
         std::uint8_t kind, const std::byte* brick,
         const Between& between) const requires Codes::are_codes {
-        const auto at = [&]<class Number>(Number) {
+        const auto at = [&](auto number) {
             return between([&](std::uint32_t vertex) {
-                return static_cast<double>(Codes::template at<Number>(brick, vertex));
+                return static_cast<double>(Codes::template at<decltype(number)>(brick, vertex));
             });
         };
         if (kind == Codes::floats) return at(float());

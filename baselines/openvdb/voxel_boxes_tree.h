@@ -37,7 +37,8 @@ double bytes_for(const VoxelBoxes& boxes) {
             }
         }
         std::ranges::sort(nodes);
-        return static_cast<double>(std::ranges::unique(nodes).begin() - nodes.begin());
+        nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+        return static_cast<double>(nodes.size());
     };
     // What lies outside of all children is a tile of the root, in a map.
     constexpr double root_entry = 80;
