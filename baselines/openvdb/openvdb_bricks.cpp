@@ -19,6 +19,7 @@
 
 #include "baselines/openvdb/brick_codes.h"
 #include "baselines/openvdb/catalogue.h"
+#include "baselines/openvdb/index_reader.h"
 #include "baselines/openvdb/octree_voxels.h"
 #include "baselines/openvdb/openvdb_value.h"
 #include "baselines/openvdb/voxel_boxes_tree.h"
@@ -64,7 +65,7 @@ private:
 class BrickLattice {
 public:
     static constexpr int most = 4;  // cells along an axis
-    static constexpr std::size_t most_vertices = (most + 1) * (most + 1) * (most + 1);
+    static constexpr std::size_t most_vertices = std::size_t{most + 1} * (most + 1) * (most + 1);
 
     explicit BrickLattice(const Box& domain) {
         std::uint32_t vertices = 1;
@@ -208,7 +209,7 @@ public:
         fill(tree_, bricks.boxes, [&](LeafIndex brick) {
             return BrickRef::of(first[brick], kinds_[brick], bricks.level[brick]);
         });
-        reader_ = TreeReader<Tree>(tree_);
+        reader_ = IndexReader<Tree>(tree_);
         if (const auto& saved = octree->saved()) {
             std::memcpy(pool_.data(), saved->pool.data(), saved->pool.size());
             control_nodes_ = leaf_vertices(octree->octants()).positions.size();
@@ -447,7 +448,8 @@ private:
         };
         if (kind == Codes::floats) return at(float());
         const auto [base, scale] = codes_.scale_of(kind, brick);
-        return base + scale * (kind == Codes::bytes ? at(std::uint8_t()) : at(std::uint16_t()));
+        if (kind == Codes::bytes) return base + scale * at(std::uint8_t());
+        return base + scale * at(std::uint16_t());
     }
 
     // Along an axis, from the low face of a brick; 1 is reached but for rounding. Comparisons with
@@ -626,7 +628,7 @@ private:
     std::vector<Line> pool_;
     std::array<Scales, 3> scales_;
     std::shared_ptr<const BrickOctree> octree_;
-    TreeReader<Tree> reader_{tree_};
+    IndexReader<Tree> reader_{tree_};
 };
 
 /// make(std::type_identity<M>()) for the type that metrics are stored in.

@@ -44,7 +44,9 @@ double bytes_for(const VoxelBoxes& boxes) {
     constexpr double root_entry = 80;
     double in_root = 1;
     for (const std::int32_t n : boxes.voxels) {
-        in_root *= n / Tree::RootNodeType::ChildNodeType::DIM + 1;
+        constexpr auto side = static_cast<std::int32_t>(Tree::RootNodeType::ChildNodeType::DIM);
+        const std::int32_t children = n / side + 1;
+        in_root *= children;
     }
     return bytes_of_nodes<Tree>(count) + in_root * root_entry;
 }

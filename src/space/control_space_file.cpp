@@ -209,7 +209,8 @@ std::string state_in_vdb(const std::string& bytes, const std::string& name,
 
 }  // namespace
 
-std::string Saved::vdb_file(StateWriter) const {
+// Others take the state over.
+std::string Saved::vdb_file(StateWriter) const {  // NOLINT(performance-unnecessary-value-param)
     throw InputError("only openvdb-tiles can be saved to a .vdb, not its builder: name a .ctrl");
 }
 
