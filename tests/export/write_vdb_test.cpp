@@ -12,6 +12,7 @@
 
 #include "controlspace/io/metric_grids.h"
 #include "controlspace/metric/nonconformity.h"
+#include "controlspace/sources/source_columns.h"
 #include "export/fixtures.h"
 
 namespace controlspace::write_vdb_test {
@@ -218,9 +219,15 @@ TEST_CASE("the number of threads does not matter") {
 TEST_CASE("sources become points with their metrics") {
     const ScratchDirectory folder;
     const fs::path path = folder.path() / "field.vdb";
-    const PointSource sources[] = {{{-0.5, 0.25, 2.5}, {0.1, 0.2, 0.3, 0.01, 0.02, 0.03}},
-                                   {{0.75, 0.125, 2.25}, Metric::isotropic(0.5)}};
-    write(path, {.voxel = 0.1, .grids = {"density"}, .sources = sources});
+    const std::vector<PointSource> sources = {
+        {{-0.5, 0.25, 2.5}, {0.1, 0.2, 0.3, 0.01, 0.02, 0.03}},
+        {{0.75, 0.125, 2.25}, Metric::isotropic(0.5)}};
+    // Options keep what they are given: columns make arrays as they are asked.
+    VdbOptions options;
+    options.voxel = 0.1;
+    options.grids = {"density"};
+    options.sources = columns_of(sources).all();
+    write(path, options);
     const auto grid = read_grid<openvdb::points::PointDataGrid>(path, "sources");
     REQUIRE(grid);
     std::size_t points = 0;

@@ -191,9 +191,9 @@ double scale_of(double voxel) {
 VdbReport write_scaled(const std::filesystem::path& path, const ControlSpace& field,
                        const Box& domain, VdbOptions options, double scale) {
     const auto larger = scaled(field, scale);
-    std::vector<PointSource> sources(options.sources.begin(), options.sources.end());
-    for (PointSource& s : sources) s = {scale * s.position, scale * s.metric, s.growth};
-    options.sources = sources;
+    for (PointSource& s : options.sources) {
+        s = {scale * s.position, scale * s.metric, s.growth};
+    }
     options.voxel *= scale;
     options.notes.emplace_back(scale_note, scale);
     VdbReport report = write_vdb(path, *larger, {scale * domain.low, scale * domain.high}, options);

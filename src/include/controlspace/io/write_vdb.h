@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -35,7 +34,7 @@ struct VdbOptions {
     /// Written as a grid of points `sources`, with the attributes pscale (the smallest length,
     /// which Houdini draws), metric_diag and metric_off; none: no such grid. Blender 3.4 lists it,
     /// but draws no points.
-    std::span<const PointSource> sources = {};
+    std::vector<PointSource> sources = {};
     std::size_t max_bytes = std::size_t{4} << 30;  ///< cap on the memory of the grids
     /// Called, by one thread at a time, with the number of voxels sampled so far; may be empty.
     std::function<void(std::size_t done, std::size_t all)> progress = {};
