@@ -18,7 +18,8 @@ std::vector<CatalogueEntry> openvdb_rows() {
     rows.push_back({.id = "openvdb-tiles",
                     .description = "OpenVDB tree, sparse: K_oL's leaves as tiles and voxels",
                     .construct = make_openvdb_tiles,
-                    .capabilities = {SourceLeaves(), MetricNodes(), CompactForm(), VdbFiles()}});
+                    .capabilities = {SourceLeaves(), MetricNodes(), CompactForm(),
+                                     VdbFiles{state_in_tiles_file}}});
     rows.push_back({.id = "openvdb-bricks",
                     .description = "OpenVDB tree, sparse, of bricks of 4^3 cells, trilinear",
                     .order = 1,

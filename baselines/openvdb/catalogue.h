@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "baselines/lattice/voxels.h"
@@ -31,6 +32,10 @@ std::unique_ptr<ControlSpaceBuilder> make_openvdb_grid(const SpaceOptions& optio
 /// query asks the root, which is slower, and the footprint says so; leaves are cut to level 16 at
 /// most. Throws MemoryLimitError before nodes outgrow the cap on memory.
 std::unique_ptr<ControlSpaceBuilder> make_openvdb_tiles(const SpaceOptions& options);
+
+/// The state of a .ctrl in a .vdb file of the same (tiles_file.h). Throws InputError, which names
+/// `file`.
+std::string state_in_tiles_file(const std::string& bytes, const std::string& file);
 
 /// A sparse tree of OpenVDB that refers to bricks, the counterpart of K_V and K_oV: boxes of 4^3
 /// cells, or 4^2 on a plane, each with all of its 5^3 vertices, trilinear between them. It is

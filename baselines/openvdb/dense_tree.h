@@ -8,7 +8,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 #include <vector>
 
 #include "baselines/lattice/stencil.h"
@@ -56,25 +55,52 @@ void fill_densely(Tree& tree, const Lattice& lattice, ValueOf&& value_of) {
     });
 }
 
-/// Reads the voxels of a tree, one by one or those of many cells side by side (Stencil::sample).
-///
-/// It descends from the only node below the root itself, with whole numbers in place of a Coord:
-/// faster at random places than a ValueAccessor (bench/results/overhead), with nothing to
-/// register or to keep for each thread. Where there are several such nodes, beyond 4096 voxels
-/// along an axis, it asks the root.
+/// What readers descend from: the only node below the root itself, with whole numbers in place of a
+/// Coord. At random places that is faster than a ValueAccessor (bench/results/overhead), with
+/// nothing to register or to keep for each thread. Where there are several such nodes, beyond 4096
+/// voxels along an axis of the standard tree, they ask the root.
 template <class Tree>
-class TreeReader {
-    using Value = typename Tree::ValueType;
+class TreeTop {
+protected:
     using Leaf = typename Tree::LeafNodeType;
-    using Upper = typename Tree::RootNodeType::ChildNodeType;
-    using Lower = typename Upper::ChildNodeType;
+    using Top = typename Tree::RootNodeType::ChildNodeType;
 
-public:
-    explicit TreeReader(const Tree& tree) : root_(&tree.root()) {
+    explicit TreeTop(const Tree& tree) : root_(&tree.root()) {
         if (root_->getTableSize() != 1) return;
         const auto only = root_->cbeginChildOn();
         if (only && only->origin() == openvdb::Coord()) top_ = &*only;
     }
+
+    template <class Node>
+    static std::uint32_t child_of(std::int32_t i, std::int32_t j, std::int32_t k) {
+        const auto part = [](std::int32_t c) {
+            return static_cast<std::uint32_t>(c) >> Node::ChildNodeType::TOTAL &
+                   ((1U << Node::LOG2DIM) - 1);
+        };
+        return (part(i) << Node::LOG2DIM | part(j)) << Node::LOG2DIM | part(k);
+    }
+    static std::int32_t offset(std::int32_t i, std::int32_t j, std::int32_t k) {
+        constexpr auto side = static_cast<std::int32_t>(Leaf::DIM);
+        return ((i & (side - 1)) * side + (j & (side - 1))) * side + (k & (side - 1));
+    }
+
+    const typename Tree::RootNodeType* root_;
+    const Top* top_ = nullptr;
+};
+
+/// Reads the voxels of a tree of three levels, one by one or those of many cells side by side
+/// (Stencil::sample).
+template <class Tree>
+class TreeReader : TreeTop<Tree> {
+    using Base = TreeTop<Tree>;
+    using Base::root_, Base::top_, Base::offset;
+    using typename Base::Leaf;
+    using Value = typename Tree::ValueType;
+    using Upper = typename Base::Top;
+    using Lower = typename Upper::ChildNodeType;
+
+public:
+    explicit TreeReader(const Tree& tree) : Base(tree) {}
 
     const Value& operator()(std::uint32_t i, std::uint32_t j, std::uint32_t k) const {
         return value(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j),
@@ -118,28 +144,16 @@ private:
         const Value* tile;
     };
 
-    template <class Node>
-    static std::uint32_t child_of(std::int32_t i, std::int32_t j, std::int32_t k) {
-        const auto part = [](std::int32_t c) {
-            return static_cast<std::uint32_t>(c) >> Node::ChildNodeType::TOTAL &
-                   ((1U << Node::LOG2DIM) - 1);
-        };
-        return (part(i) << Node::LOG2DIM | part(j)) << Node::LOG2DIM | part(k);
-    }
-    static std::int32_t offset(std::int32_t i, std::int32_t j, std::int32_t k) {
-        constexpr auto side = static_cast<std::int32_t>(Leaf::DIM);
-        return ((i & (side - 1)) * side + (j & (side - 1))) * side + (k & (side - 1));
-    }
     [[gnu::always_inline]] Found descend(std::int32_t i, std::int32_t j, std::int32_t k) const {
         if (top_ == nullptr) {
             const openvdb::Coord at(i, j, k);
             const Leaf* leaf = root_->probeConstLeaf(at);
             return {leaf, leaf == nullptr ? &root_->getValue(at) : nullptr};
         }
-        const std::uint32_t in_top = child_of<Upper>(i, j, k);
+        const std::uint32_t in_top = Base::template child_of<Upper>(i, j, k);
         const auto& lower = top_->getTable()[in_top];
         if (!top_->isChildMaskOn(in_top)) return {nullptr, &lower.getValue()};
-        const std::uint32_t in_lower = child_of<Lower>(i, j, k);
+        const std::uint32_t in_lower = Base::template child_of<Lower>(i, j, k);
         const auto& leaf = lower.getChild()->getTable()[in_lower];
         if (!lower.getChild()->isChildMaskOn(in_lower)) return {nullptr, &leaf.getValue()};
         return {leaf.getChild(), nullptr};
@@ -148,9 +162,6 @@ private:
         const Found found = descend(i, j, k);
         return found.leaf == nullptr ? *found.tile : found.leaf->buffer().data()[offset(i, j, k)];
     }
-
-    const typename Tree::RootNodeType* root_;
-    const Upper* top_ = nullptr;
 };
 
 /// Bytes of the values of a leaf.

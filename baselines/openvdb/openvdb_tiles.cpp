@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -10,13 +8,11 @@
 #include <vector>
 
 #include "baselines/openvdb/catalogue.h"
-#include "baselines/openvdb/octree_voxels.h"
+#include "baselines/openvdb/octree_form.h"
 #include "baselines/openvdb/stored_value.h"
 #include "baselines/openvdb/tiles_file.h"
 #include "baselines/openvdb/voxel_boxes_tree.h"
-#include "controlspace/input_errors.h"
 #include "controlspace/space/detail/plain_cursor.h"
-#include "controlspace/space/detail/saved.h"
 #include "controlspace/space/detail/shared_builder.h"
 #include "controlspace/trees/detail/leaf_graph.h"
 #include "controlspace/trees/detail/metric_tree.h"
@@ -43,15 +39,13 @@ public:
 
     static std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const Octree>& octree,
                                                   std::optional<Precision> precision);
-    static std::string state_in_vdb(const std::string& bytes, const std::string& file) {
-        return state_in_tiles_file(bytes, file);
-    }
 };
 
 /// The metrics of an octree's leaves, stored as `M`, in a tree of OpenVDB: a leaf that is as large
 /// as a node becomes a tile, others voxels.
 template <class M, class Tree>
-class VdbTiles final : public ControlSpace, public HasControlNodes, public Saved {
+class VdbTiles final : public OctreeForm<Octree> {
+    using Base = OctreeForm<Octree>;
     using Value = VdbValue<M>;
     static constexpr bool are_lengths = is_stored_length<M>;
 
@@ -59,14 +53,9 @@ public:
     /// A form that is only read, or one that keeps the octree for what comes later.
     VdbTiles(const std::shared_ptr<const Octree>& octree, const VoxelBoxes& boxes,
              bool is_only_read)
-        : voxel_of_(octree->domain(), boxes.voxels),
-          cuts_(octree->octants()),
+        : Base(octree, boxes.voxels, Cuts(octree->octants()), is_only_read),
           control_nodes_(boxes.leaves.size()) {
-        const double bytes = bytes_for<Tree>(boxes);
-        const std::size_t most = octree->options().max_bytes;
-        if (bytes > static_cast<double>(most)) {
-            fail_too_large(static_cast<std::size_t>(bytes), most);
-        }
+        Base::require_room(bytes_for<Tree>(boxes), *octree);
         const std::span<const Metric> metrics = octree->metrics();
         if constexpr (std::is_same_v<M, Metric>) {
             fill(tree_, boxes, [&](LeafIndex leaf) { return Value::of(metrics[leaf]); });
@@ -75,7 +64,6 @@ public:
             fill(tree_, boxes, [&](LeafIndex leaf) { return Value::of(stored_->items()[leaf]); });
             stored_->drop_items();
         }
-        if (!is_only_read) octree_ = octree;
     }
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override { answer(x, out); }
@@ -86,10 +74,10 @@ public:
             ControlSpace::sample_lengths(x, out);
         }
     }
-    Metric metric_at(const Point& x) const override { return value_in(voxel_of_(x)); }
+    Metric metric_at(const Point& x) const override { return value_in(Base::voxel_of()(x)); }
     double length_at(const Point& x) const override {
         if constexpr (are_lengths) {
-            return length_of(value_in(voxel_of_(x)));
+            return length_of(value_in(Base::voxel_of()(x)));
         } else {
             return ControlSpace::length_at(x);
         }
@@ -97,45 +85,16 @@ public:
     std::unique_ptr<Cursor> cursor() const override {
         return std::make_unique<PlainCursor<VdbTiles>>(*this);
     }
-    Box domain() const override { return voxel_of_.domain(); }
-
-    /// A leaf of the octree.
-    std::optional<Box> cell_at(const Point& x) const override {
-        if (octree_) return octree_->cell_at(x);
-        return cuts_.leaf_at(nearest_in(domain(), x), domain());
-    }
 
     Footprint footprint() const override {
-        Footprint footprint;
-        footprint.tree_nodes = tree_.leafCount() + tree_.nonLeafCount();
+        Footprint footprint = Base::footprint_of(tree_);
         footprint.cells = footprint.control_nodes = control_nodes_;  // leaves, as cell_at answers
-        footprint.depth = Tree::DEPTH - 1;
         add_dense_bytes(tree_, footprint);
         if (stored_) footprint.bytes_payload += stored_->bytes();
-        footprint.bytes_auxiliary = cuts_.bytes();
-        if (octree_) footprint.bytes_auxiliary += octree_->footprint().bytes_total();
-        if (given()) footprint.bytes_auxiliary += given()->bytes();
-        if (tree_.root().getTableSize() > 1) {
-            footprint.remark = fmt::format("{} upper nodes, which a query finds by the root",
-                                           tree_.root().getTableSize());
-        }
         return footprint;
     }
-    /// Those of the octree.
-    ControlNodes control_nodes(Neighbourhood neighbourhood) const override {
-        if (octree_) return octree_->control_nodes(neighbourhood);
-        const Octants octants = cuts_.octants(domain());
-        return {leaf_graph(octants, neighbourhood).graph, metrics(octants)};
-    }
-    /// As the octree is saved.
-    void save(StateWriter& state) const override {
-        if (octree_) return octree_->save(state);
-        const Octants octants = cuts_.octants(domain());
-        controlspace::save(octants, state);
-        NodeMetrics::exchange(saved_metrics<M>(metrics(octants)), state);
-    }
     std::string vdb_file(StateWriter state) const override {
-        const Octants octants = cuts_.octants(domain());
+        const Octants octants = Base::cuts().octants(this->domain());
         const std::vector<Metric> all = metrics(octants);
         if (!std::ranges::all_of(all, is_isotropic)) {
             refuse("tensors are not saved to a .vdb: name a .ctrl");
@@ -148,6 +107,13 @@ public:
     }
 
 private:
+    ControlNodes nodes_of(const Octants& octants, Neighbourhood neighbourhood) const override {
+        return {leaf_graph(octants, neighbourhood).graph, metrics(octants)};
+    }
+    void save_field(const Octants& octants, StateWriter& state) const override {
+        NodeMetrics::exchange(saved_metrics<M>(metrics(octants)), state);
+    }
+
     StoredReader<M, Tree> reader() const { return {tree_, vdb_value<M>(stored_)}; }
     auto value_in(const Cell& voxel) const {
         return reader()(static_cast<std::uint32_t>(voxel[0]), static_cast<std::uint32_t>(voxel[1]),
@@ -159,7 +125,7 @@ private:
         sample_cells<1>(
             x, read, out,
             [&](std::span<const Point> places, CellBatch& batch) {
-                voxel_of_.locate(places, batch);
+                Base::voxel_of().locate(places, batch);
             },
             [&](const auto& at, const CellBatch&, std::size_t) {
                 return answer_of<Answer>(read.metric(at, 0));
@@ -175,12 +141,9 @@ private:
         return metrics;
     }
 
-    VoxelOfPlace voxel_of_;
     VdbStored<M> stored_;  // how codes are packed, without items
     Tree tree_{typename Value::Type(0)};
-    Cuts cuts_;
     std::size_t control_nodes_;
-    std::shared_ptr<const Octree> octree_;
 };
 
 std::unique_ptr<ControlSpace> Octree::finished(const std::shared_ptr<const Octree>& octree,

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "baselines/openvdb/catalogue.h"
 #include "baselines/openvdb/voxel_boxes_tree.h"
 #include "controlspace/trees/detail/topology_state.h"
 #include "controlspace/trees/node_metrics.h"

@@ -20,8 +20,4 @@ namespace controlspace {
 /// depth first.
 std::string tiles_file(StateWriter state, const Octants& octree, std::span<const float> lengths);
 
-/// The state of a .ctrl, with octree and lengths, of such a file. Throws InputError, which names
-/// `file`.
-std::string state_in_tiles_file(const std::string& bytes, const std::string& file);
-
 }  // namespace controlspace

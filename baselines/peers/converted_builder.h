@@ -15,7 +15,8 @@
 namespace controlspace {
 
 /// The builder of a system that stores what a structure of ours holds: it fills that structure, of
-/// which `Space` is made.
+/// which `Space` is made. Space::rounding() is the largest factor between its lengths and those of
+/// ours, usual_rounding a guess before it is made; 1 where nothing is rounded.
 template <class Space>
 class ConvertedBuilder final : public ControlSpaceBuilder {
 public:
@@ -23,21 +24,20 @@ public:
 
     using ControlSpaceBuilder::insert;
     InsertionReport insert(std::span<const PointSource> sources) override {
-        return ours_->insert(sources);
+        return changed().insert(sources);
     }
-    InsertionReport insert(const SourceColumns& sources) override { return ours_->insert(sources); }
+    InsertionReport insert(const SourceColumns& sources) override {
+        return changed().insert(sources);
+    }
     GradationReport grade(const GradationOptions& options) override {
-        return ours_->grade(options);
+        return changed().grade(options);
     }
     AdaptationReport adapt(const AdaptationGoal& goal) override {
-        if constexpr (requires(const Space& space) { space.rounding(); }) {
-            return adapt_before_rounding(goal);
-        } else {
-            return ours_->adapt(goal);
-        }
+        return Space::usual_rounding > 1 ? adapt_before_rounding(goal) : changed().adapt(goal);
     }
     std::unique_ptr<ControlSpace> build(const BuildOptions& options) override {
         if (options.precision) refuse_precision();
+        if (made_) return std::move(made_);
         return std::make_unique<Space>(*ours_->build());
     }
     Box domain() const override { return ours_->domain(); }
@@ -57,21 +57,28 @@ private:
             }
             AdaptationGoal own = goal;
             own.target = nonconformity_of_factor(allowed / rounding);
-            report = ours_->adapt(own);
-            const double taken = Space(*ours_->build()).rounding();
+            report = changed().adapt(own);
+            made_ = std::make_unique<Space>(*ours_->build());
+            const double taken = made_->rounding();
+            const bool was_met = report.met;
             report.reached = nonconformity_of_factor(largest_factor_within(report.reached) * taken);
-            if (!report.met || taken <= rounding) {
-                if (report.met) report.reached = std::min(report.reached, goal.target);
-                return report;
-            }
+            // But for the rounding of these factors.
+            if (was_met && taken <= rounding)
+                report.reached = std::min(report.reached, goal.target);
+            report.met = was_met && report.reached <= goal.target;
+            if (report.met || !was_met) return report;
             rounding = 1 + 1.1 * (taken - 1);
         }
-        report.met = report.reached <= goal.target;
-        if (!report.met) report.shortfall = "rounding takes more than was left for it";
+        report.shortfall = "rounding takes more than was left for it";
         return report;
+    }
+    ControlSpaceBuilder& changed() {
+        made_.reset();
+        return *ours_;
     }
 
     std::unique_ptr<ControlSpaceBuilder> ours_;
+    std::unique_ptr<Space> made_;  // of them, where its rounding was measured
 };
 
 /// The row of a system that `Space` makes of what `Space::ours(options)` builds.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
+#include <string>
 
 #include "modules/load.h"
 #include "modules/tables.h"
@@ -26,6 +27,10 @@ std::unique_ptr<ControlSpaceBuilder> make_openvdb_tiles(const SpaceOptions& opti
 }
 std::unique_ptr<ControlSpaceBuilder> make_openvdb_vec3s(const SpaceOptions& options) {
     return openvdb().make_openvdb_vec3s(options);
+}
+
+std::string state_in_tiles_file(const std::string& bytes, const std::string& file) {
+    return openvdb().state_in_tiles_file(bytes, file);
 }
 
 std::vector<PointSource> read_vdb_sources(const fs::path& path, const VdbSurface& surface) {

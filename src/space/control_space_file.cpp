@@ -203,8 +203,7 @@ std::string state_in_vdb(const std::string& bytes, const std::string& name,
         throw InputError(name +
                          " is OpenVDB's, which this program does not have: use one that has it");
     }
-    const auto builder = entry->make({.domain = {Point::Zero(), Point::Ones()}});
-    return dynamic_cast<const SavedBuilder&>(*builder).state_in_vdb(bytes, name);
+    return entry->find<VdbFiles>()->state_in(bytes, name);
 }
 
 }  // namespace
@@ -212,10 +211,6 @@ std::string state_in_vdb(const std::string& bytes, const std::string& name,
 // Others take the state over.
 std::string Saved::vdb_file(StateWriter) const {  // NOLINT(performance-unnecessary-value-param)
     throw InputError("only openvdb-tiles can be saved to a .vdb, not its builder: name a .ctrl");
-}
-
-std::string SavedBuilder::state_in_vdb(const std::string&, const std::string& file) const {
-    throw InputError(file + " cannot be loaded as this structure: save a .ctrl");
 }
 
 std::optional<Recipe> recipe_of(const ControlSpace& space) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "baselines/fixtures.h"
+#include "baselines/octree_scenes.h"
 #include "controlspace/geometry/extent.h"
 #include "controlspace/input_errors.h"
 #include "controlspace/measure/access_time.h"
@@ -15,46 +16,10 @@
 #include "counting_allocator.h"
 
 namespace controlspace::openvdb_bricks_test {
+
+using octree_scenes::g, octree_scenes::Scene;
+
 namespace {
-
-constexpr double g = 1.25;
-
-struct Scene {
-    Box domain;
-    std::vector<PointSource> sources;
-
-    SpaceOptions options() const { return {.domain = domain, .finest_length = 1}; }
-    std::unique_ptr<ControlSpaceBuilder> adapted(double target, Precision precision) const {
-        auto builder = structure_with_id("openvdb-bricks").make(options());
-        AdaptationGoal goal{sources, nullptr, g, target};
-        goal.precision = precision;
-        const AdaptationReport report = builder->adapt(goal);
-        REQUIRE(report.met);
-        REQUIRE(report.is_bound);
-        return builder;
-    }
-    double exact(const Point& x) const {
-        double h = domain.half_diagonal();
-        for (const PointSource& s : sources) {
-            h = std::min(h, s.metric.xx + (g - 1) * (x - s.position).norm());
-        }
-        return h;
-    }
-};
-// Cubes, oblong boxes, those away from the origin, flat ones.
-Scene scene(int number) {
-    const Box boxes[] = {{Point(-1, -1, -1), Point(1, 1, 1)},
-                         {Point(3, -2, 7), Point(11, -0.9, 8.3)},
-                         {Point(5e5, 4e6, 0), Point(5.1e5, 4.01e6, 0)},
-                         {Point(-1e-7, 2e-7, 0), Point(1e-7, 3e-7, 2e-7)}};
-    Scene scene{boxes[number], {}};
-    const Vector edges = scene.domain.edges();
-    for (const Point& place : random_points(scene.domain, 20, 5)) {
-        const double h = edges.maxCoeff() * (scene.sources.size() % 2 == 0 ? 0.01 : 0.04);
-        scene.sources.push_back({place, Metric::isotropic(h)});
-    }
-    return scene;
-}
 
 // Anywhere, near sources, and on the faces of cells and beside them.
 std::vector<Point> places(const Scene& scene, const ControlSpace& space) {
@@ -104,13 +69,14 @@ double half_step(const ControlSpace& space) {
 }  // namespace
 
 TEST_CASE("what is read from bricks keeps the target everywhere, in every precision") {
-    const Scene scene = openvdb_bricks_test::scene(GENERATE(0, 1, 2, 3));
+    const Scene scene = octree_scenes::scene(GENERATE(0, 1, 2, 3));
     CAPTURE(scene.domain);
     constexpr double target = 0.1;
     for (const Precision precision :
          {Precision::doubles, Precision::floats, Precision::log16, Precision::log8}) {
         CAPTURE(static_cast<int>(precision));
-        const auto space = scene.adapted(target, precision)->build({.precision = precision});
+        const auto space =
+            scene.builder("openvdb-bricks", target, precision)->build({.precision = precision});
         const std::vector<Point> x = places(scene, *space);
         std::vector<double> lengths(x.size());
         space->sample_lengths(x, lengths);
@@ -126,10 +92,10 @@ TEST_CASE("what is read from bricks keeps the target everywhere, in every precis
 }
 
 TEST_CASE("cells fill bricks, and answers in a cell are trilinear between its corners") {
-    const Scene scene = openvdb_bricks_test::scene(GENERATE(0, 1, 2));
+    const Scene scene = octree_scenes::scene(GENERATE(0, 1, 2));
     CAPTURE(scene.domain);
     const bool is_flat = scene.domain.edges().minCoeff() == 0;
-    const auto builder = scene.adapted(0.1, Precision::doubles);
+    const auto builder = scene.builder("openvdb-bricks", 0.1, Precision::doubles);
     const auto made = builder->build();
     const auto space = builder->build({.precision = Precision::doubles});
     for (const Point& x : random_points(scene.domain, 500, 3)) {
@@ -161,9 +127,9 @@ TEST_CASE("cells fill bricks, and answers in a cell are trilinear between its co
 }
 
 TEST_CASE("codes of bricks round by half a step of their own range, and by what they say") {
-    const Scene scene = openvdb_bricks_test::scene(GENERATE(0, 1, 2));
+    const Scene scene = octree_scenes::scene(GENERATE(0, 1, 2));
     CAPTURE(scene.domain);
-    const auto builder = scene.adapted(0.1, Precision::log8);
+    const auto builder = scene.builder("openvdb-bricks", 0.1, Precision::log8);
     const auto exact = builder->build({.precision = Precision::doubles});
     const auto codes = builder->build({.precision = Precision::log8});
     double most = 1;
@@ -232,16 +198,17 @@ TEST_CASE("tensors in bricks are positive definite, in floats to some 1e-6") {
 }
 
 TEST_CASE("bricks take the memory that they say") {
-    const Scene scene = openvdb_bricks_test::scene(0);
-    const auto builder = scene.adapted(0.1, Precision::log8);
+    const Scene scene = octree_scenes::scene(0);
+    const auto builder = scene.builder("openvdb-bricks", 0.1, Precision::log8);
     for (const Precision precision : {Precision::doubles, Precision::floats, Precision::log8}) {
         CAPTURE(static_cast<int>(precision));
         const std::size_t before = live_bytes();
         const auto space = builder->build({.precision = precision});
         const std::size_t taken = live_bytes() - before;
-        const auto counted = static_cast<double>(space->footprint().bytes_total());
+        const std::size_t counted = space->footprint().bytes_total();
         // OpenVDB does not count some 16 bytes a block; the recipe is beside.
-        CHECK(static_cast<double>(taken) == Approx(counted).epsilon(0.05));
+        CHECK(taken >= counted);
+        CHECK(taken <= counted + 5000);
     }
     const auto floats = builder->build({.precision = Precision::floats})->footprint();
     const auto codes = builder->build({.precision = Precision::log8})->footprint();
@@ -250,11 +217,8 @@ TEST_CASE("bricks take the memory that they say") {
 }
 
 TEST_CASE("bricks beyond the child of the root are told, and those beyond memory refused") {
-    // The finest bricks are less than 1 / 4096 of the domain.
-    Scene scene{{Point(0, 0, 0), Point(1e5, 1e5, 1e5)},
-                {{Point(2e4, 3e4, 4e4), Metric::isotropic(1)},
-                 {Point(9e4, 8e4, 7e4), Metric::isotropic(1)}}};
-    const auto builder = scene.adapted(0.5, Precision::floats);
+    const Scene scene = octree_scenes::far_below_the_root();
+    const auto builder = scene.builder("openvdb-bricks", 0.5, Precision::floats);
     const auto space = builder->build({.precision = Precision::floats});
     CHECK_THAT(space->footprint().remark, Catch::Contains("upper nodes"));
     double worst = 0;
@@ -275,7 +239,7 @@ TEST_CASE("bricks beyond the child of the root are told, and those beyond memory
 }
 
 TEST_CASE("bricks are cut whole, as far as the leaves that are allowed reach") {
-    const Scene scene = openvdb_bricks_test::scene(0);
+    const Scene scene = octree_scenes::scene(0);
     const auto builder = structure_with_id("openvdb-bricks").make(scene.options());
     AdaptationGoal goal{scene.sources, nullptr, g, 0.05};
     goal.max_leaves = 3000;

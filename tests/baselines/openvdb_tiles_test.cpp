@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "baselines/fixtures.h"
-#include "baselines/tiles_scenes.h"
+#include "baselines/octree_scenes.h"
 #include "controlspace/measure/access_time.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/sampled_surfaces.h"
@@ -14,16 +14,16 @@
 
 namespace controlspace::openvdb_tiles_test {
 
-using tiles_scenes::adapted, tiles_scenes::g, tiles_scenes::scene;
+using octree_scenes::g, octree_scenes::Scene;
 
 TEST_CASE("tiles answer as the octree does that they are made of") {
-    const auto [domain, sources] = scene(GENERATE(0, 1, 2));
+    const Scene scene = octree_scenes::scene(GENERATE(0, 1, 2));
+    const Box& domain = scene.domain;
     CAPTURE(domain);
-    const SpaceOptions options{.domain = domain, .finest_length = 1};
     std::vector<Point> x = random_points(domain, 20000, 1);
-    for (const PointSource& source : sources) x.push_back(source.position);
+    for (const PointSource& source : scene.sources) x.push_back(source.position);
     // Faces of leaves, as the octree halves its boxes, and beside them.
-    const auto halved = adapted("K_oL", options, sources, 0.2, {});
+    const auto halved = scene.adapted("K_oL", 0.2, {});
     for (std::size_t i = 0; i < 2000; ++i) {
         const Box leaf = halved->cell_at(x[i]).value();
         for (Axis a = 0; a < 3; ++a) {
@@ -42,8 +42,8 @@ TEST_CASE("tiles answer as the octree does that they are made of") {
     }
     for (const auto& precision : std::initializer_list<std::optional<Precision>>{
              {}, Precision::doubles, Precision::floats, Precision::log16, Precision::log8}) {
-        const auto octree = adapted("K_oL", options, sources, 0.2, precision);
-        const auto tiles = adapted("openvdb-tiles", options, sources, 0.2, precision);
+        const auto octree = scene.adapted("K_oL", 0.2, precision);
+        const auto tiles = scene.adapted("openvdb-tiles", 0.2, precision);
         for (const Point& p : x) REQUIRE(sample_at(*octree, p) == sample_at(*tiles, p));
         std::vector<Metric> theirs(x.size()), own(x.size());
         octree->sample(x, theirs);
@@ -77,37 +77,33 @@ TEST_CASE("tiles of tensors answer as the octree does") {
 }
 
 TEST_CASE("tiles hold one number a voxel where all is isotropic, as they say") {
-    const auto [domain, sources] = scene(0);
-    const SpaceOptions options{.domain = domain, .finest_length = 1};
-    const auto floats = adapted("openvdb-tiles", options, sources, 0.2, Precision::floats);
-    const auto doubles = adapted("openvdb-tiles", options, sources, 0.2, Precision::doubles);
-    const auto codes = adapted("openvdb-tiles", options, sources, 0.2, Precision::log8);
+    const Scene scene = octree_scenes::scene(0);
+    const auto floats = scene.adapted("openvdb-tiles", 0.2, Precision::floats);
+    const auto doubles = scene.adapted("openvdb-tiles", 0.2, Precision::doubles);
+    const auto codes = scene.adapted("openvdb-tiles", 0.2, Precision::log8);
     CHECK(2 * floats->footprint().bytes_payload == doubles->footprint().bytes_payload);
     CHECK(4 * codes->footprint().bytes_total() < floats->footprint().bytes_total());
     // What the allocator is asked for, but for some 16 bytes a block that OpenVDB does not count.
     const Footprint footprint = floats->footprint();
     const std::size_t before = live_bytes();
-    const auto again = adapted("openvdb-tiles", options, sources, 0.2, Precision::floats);
+    const auto again = scene.adapted("openvdb-tiles", 0.2, Precision::floats);
     const auto counted = static_cast<double>(footprint.bytes_total());
     CHECK(static_cast<double>(live_bytes() - before) == Approx(counted).epsilon(0.03));
 }
 
 TEST_CASE("tiles beyond the child of the root are told, and those beyond memory refused") {
-    // The finest leaves are less than 1 / 4096 of the domain.
-    const Box domain{Point(0, 0, 0), Point(1e5, 1e5, 1e5)};
-    const std::vector<PointSource> sources{{Point(2e4, 3e4, 4e4), Metric::isotropic(1)},
-                                           {Point(9e4, 8e4, 7e4), Metric::isotropic(1)}};
-    SpaceOptions options{.domain = domain, .finest_length = 1};
-    const auto tiles = adapted("openvdb-tiles", options, sources, 0.5, Precision::floats);
+    const Scene scene = octree_scenes::far_below_the_root();
+    const auto tiles = scene.adapted("openvdb-tiles", 0.5, Precision::floats);
     CHECK_THAT(tiles->footprint().remark, Catch::Contains("upper nodes"));
-    const auto octree = adapted("K_oL", options, sources, 0.5, Precision::floats);
-    for (const Point& p : random_points(domain, 20000, 1)) {
+    const auto octree = scene.adapted("K_oL", 0.5, Precision::floats);
+    for (const Point& p : random_points(scene.domain, 20000, 1)) {
         REQUIRE(sample_at(*octree, p) == sample_at(*tiles, p));
     }
     const std::size_t bytes = tiles->footprint().bytes_total();
+    SpaceOptions options = scene.options();
     options.max_bytes = bytes - bytes / 10;
     const auto builder = structure_with_id("openvdb-tiles").make(options);
-    REQUIRE(builder->adapt({sources, nullptr, g, 0.5}).met);
+    REQUIRE(builder->adapt({scene.sources, nullptr, g, 0.5}).met);
     CHECK_THROWS_AS(builder->build({.precision = Precision::floats}), MemoryLimitError);
 }
 

@@ -28,6 +28,9 @@ namespace {
 /// is cut, of two.
 class Forest final : public ControlSpace {
 public:
+    static constexpr double usual_rounding = 1;
+    static constexpr double rounding() { return 1; }
+
     explicit Forest(const ControlSpace& octree) : octree_(&octree), domain_(octree.domain()) {
         footprint_.depth = octree.footprint().depth;
         if (footprint_.depth > P8EST_QMAXLEVEL) {

@@ -38,7 +38,10 @@ struct VoxelSize {};
 struct Pruning {};
 /// What it holds in floats can be saved to a file of OpenVDB (.vdb), too, which other programs
 /// read.
-struct VdbFiles {};
+struct VdbFiles {
+    /// The state (control_space_file.h) in such a file, intact ones alone; `file` is for messages.
+    std::string (*state_in)(const std::string& bytes, const std::string& file) = nullptr;
+};
 
 using Capability = std::variant<SourceLeaves, SplitRules, MetricNodes, KeptSources, QuadraticLeaves,
                                 CompactForm, VoxelSize, Pruning, VdbFiles>;

@@ -54,8 +54,6 @@ class SavedBuilder : public Saved {
 public:
     /// Into a new builder, made with the same options.
     virtual void load(const StateReader& state) = 0;
-    /// What vdb_file was given, with what save would add. `file` is for messages.
-    virtual std::string state_in_vdb(const std::string& bytes, const std::string& file) const;
 };
 
 }  // namespace controlspace

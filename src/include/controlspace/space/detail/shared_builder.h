@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -222,13 +221,6 @@ public:
 
     void save(StateWriter& state) const override { data_->save(state); }
     void load(const StateReader& state) override { edit().load(state); }
-    std::string state_in_vdb(const std::string& bytes, const std::string& file) const override {
-        if constexpr (requires { Data::state_in_vdb(bytes, file); }) {
-            return Data::state_in_vdb(bytes, file);
-        } else {
-            return SavedBuilder::state_in_vdb(bytes, file);
-        }
-    }
 
 private:
     // What they request counts in gradation, whether they change nodes or not.

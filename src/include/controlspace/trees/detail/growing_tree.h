@@ -166,7 +166,7 @@ protected:
         const std::vector<std::uint8_t> levels = topology_.levels_below();
         struct Coarse {
             Point inside;
-            int level;  // that it lacks
+            int level;  // that it, or its parts, are to have
         };
         std::vector<Coarse> coarse;
         const auto list = [&](const auto& self, const TreePart& part, int level) -> void {
