@@ -109,8 +109,8 @@ std::vector<FieldFormat> add_vdb_formats(Options& options) {
     options.add(
         {"--grids", "TEXT,...",
          fmt::format("Grids to write, of {}and {}, the sources as points (left out: all but "
-                     "these)",
-                     names, sources_grid),
+                     "these; of isotropic fields density and {})",
+                     names, sources_grid, lengths_grid),
          group},
         vdb->options.grids, 0);
     options.add({"--compression", "TEXT", "blosc, zip or none (default: blosc)", group},

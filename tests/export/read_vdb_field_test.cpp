@@ -6,6 +6,7 @@
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/io/read_vdb.h"
 #include "controlspace/io/write_vdb.h"
+#include "controlspace/measure/access_time.h"
 #include "controlspace/metric/nonconformity.h"
 #include "editable_space.h"
 #include "export/fixtures.h"
@@ -99,6 +100,31 @@ TEST_CASE("between centres fields are linear, and beyond the box as at its neare
     CHECK(value_at(*field, {7, 0.05, 0.05}) == value_at(*field, {0.95, 0.05, 0.05}));
     const double nan = std::numeric_limits<double>::quiet_NaN();
     CHECK(is_positive_definite(value_at(*field, {nan, nan, nan})));
+}
+
+TEST_CASE("isotropic metrics are written as lengths, once, and read as the field") {
+    const ScratchDirectory folder;
+    const fs::path path = folder.path() / "field.vdb";
+    const FormulaField field(around_sphere);
+    write_vdb(path, field, two_cube, {.voxel = 0.1, .tolerance = 0});
+    openvdb::io::File file(path.string());
+    file.open();
+    std::vector<std::string> names;
+    for (auto name = file.beginName(); name != file.endName(); ++name) names.push_back(*name);
+    CHECK(names == std::vector<std::string>{"density", "h_min"});
+    const fs::path all = folder.path() / "all.vdb";
+    write_vdb(all, field, two_cube,
+              {.voxel = 0.1, .tolerance = 0, .grids = {"metric_diag", "metric_off"}});
+    const auto read = read_vdb_field(path).field;
+    const auto tensors = read_vdb_field(all).field;
+    for (const Point& x : random_points(two_cube, 1000, 3)) {
+        const Metric m = value_at(*read, x);
+        REQUIRE(is_isotropic(m));
+        REQUIRE(m.xx == Approx(value_at(*tensors, x).xx).epsilon(1e-6));
+    }
+    // Smallest lengths of tensors are not the field.
+    write_vdb(path, FormulaField(wavy), two_cube, {.voxel = 0.1, .grids = {"density", "h_min"}});
+    CHECK_THAT(error_of([&] { read_vdb_field(path); }), Catch::Contains("no grid 'metric_diag'"));
 }
 
 TEST_CASE("voxels that are too small for OpenVDB are written in another unit, and read in theirs") {

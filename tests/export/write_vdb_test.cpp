@@ -10,9 +10,11 @@
 #include <map>
 #include <sstream>
 
+#include "controlspace/baselines/catalogue.h"
 #include "controlspace/io/metric_grids.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/source_columns.h"
+#include "controlspace/space/control_space_file.h"
 #include "export/fixtures.h"
 
 namespace controlspace::write_vdb_test {
@@ -246,6 +248,15 @@ TEST_CASE("sources become points with their metrics") {
         }
     }
     CHECK(points == 2);
+}
+
+TEST_CASE("a picture of a field is not taken for the field") {
+    const ScratchDirectory folder;
+    const fs::path path = folder.path() / "picture.vdb";
+    write(path, {.voxel = 0.25});
+    CHECK_FALSE(holds_control_space(path));
+    CHECK_THAT(error_of([&] { load_control_space(path, structures()); }),
+               Contains("no control space"));
 }
 
 TEST_CASE("options out of range are refused, and nothing is written") {

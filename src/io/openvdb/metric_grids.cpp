@@ -14,17 +14,17 @@ Values smallest(const Metric&, const EigenFrame& frame) { return {frame.lengths[
 const MetricGrid grids[] = {
     {"density", GridKind::fog,
      "refinement: 1 where the smallest length is finest, 0 where coarsest", smallest},
-    {"h_min", GridKind::number, "smallest length", smallest},
+    {lengths_grid, GridKind::number, "smallest length", smallest},
     {"h_max", GridKind::number, "largest length",
      [](const Metric&, const EigenFrame& frame) {
          return Values{frame.lengths[2], 0, 0};
      },
-     "h_min"},
+     lengths_grid},
     {"h_mean", GridKind::number, "mean of the three lengths",
      [](const Metric& m, const EigenFrame&) {
          return Values{mean_length(m), 0, 0};
      },
-     "h_min"},
+     lengths_grid},
     {"anisotropy", GridKind::number, "largest length / smallest length",
      [](const Metric&, const EigenFrame& frame) {
          return Values{frame.lengths[2] / frame.lengths[0], 0, 0};

@@ -214,6 +214,16 @@ AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
                     what.density ? scale * what.density->coarsest : coarsest, finest);
 }
 
+/// Whether write_vdb wrote isotropic metrics, and no tensors.
+bool holds_lengths_alone(const VdbFile& file) {
+    if (file.has(diagonal_grid) || file.has(off_diagonal_grid) || !file.has(lengths_grid)) {
+        return false;
+    }
+    const auto note = file.read_as<openvdb::FloatGrid>(lengths_grid)
+                          ->getMetadata<openvdb::BoolMetadata>(isotropic_note);
+    return note && note->value();
+}
+
 }  // namespace
 
 AnalyticField read_vdb_field(const std::filesystem::path& path, const VdbLengths& what) {
@@ -224,6 +234,7 @@ AnalyticField read_vdb_field(const std::filesystem::path& path, const VdbLengths
     const VdbFile file(path);
     if (!what.grid.empty()) return length_field(file, what);
     if (what.density) file.fail("name the grid of densities: it holds {}", file.listing());
+    if (holds_lengths_alone(file)) return length_field(file, {.grid = std::string(lengths_grid)});
     return tensor_field(file);
 }
 

@@ -67,6 +67,8 @@ private:
 
 /// Metadatum of a grid whose places and lengths are multiplied by that number.
 inline constexpr const char* scale_note = "scale";
+/// Metadatum of a grid: whether all metrics of its field are isotropic.
+inline constexpr const char* isotropic_note = "isotropic";
 
 /// That number; 1 where there is none.
 double scale_of(const openvdb::GridBase& grid);

@@ -153,13 +153,15 @@ openvdb::math::Transform::Ptr transform_of(const VoxelLattice& lattice) {
     return transform;
 }
 
-void annotate(openvdb::GridBase& grid, const Box& domain, const VdbOptions& options) {
+void annotate(openvdb::GridBase& grid, const Box& domain, bool isotropic,
+              const VdbOptions& options) {
     const auto corner_of = [](const Point& x) {
         return openvdb::Vec3DMetadata({x.x(), x.y(), x.z()});
     };
     grid.setCreator("controlspace");
     grid.insertMeta("domain_low", corner_of(domain.low));
     grid.insertMeta("domain_high", corner_of(domain.high));
+    grid.insertMeta(isotropic_note, openvdb::BoolMetadata(isotropic));
     grid.insertMeta("tolerance", openvdb::DoubleMetadata(options.tolerance));
     for (const auto& [name, value] : options.notes) {
         if (const double* number = std::get_if<double>(&value)) {
@@ -178,6 +180,15 @@ void share_trees(const std::vector<MetricGrid>& kinds, const openvdb::GridPtrVec
             if (kinds[j].name == kinds[i].isotropic_twin)
                 grids[i]->setTree(grids[j]->baseTreePtr());
         }
+    }
+}
+
+/// Of isotropic metrics all other grids would hold the same again, or nothing.
+void leave_lengths(std::vector<MetricGrid>& kinds, Builders& builders) {
+    for (std::size_t i = kinds.size(); i-- > 0;) {
+        if (kinds[i].kind == GridKind::fog || kinds[i].name == lengths_grid) continue;
+        kinds.erase(kinds.begin() + static_cast<std::ptrdiff_t>(i));
+        builders.erase(builders.begin() + static_cast<std::ptrdiff_t>(i));
     }
 }
 
@@ -212,7 +223,7 @@ VdbReport write_vdb(const std::filesystem::path& path, const ControlSpace& field
     if (!std::isfinite(options.tolerance) || options.tolerance < 0) {
         refuse("a tolerance of {}: give a finite one, 0 or more", options.tolerance);
     }
-    const std::vector<MetricGrid> kinds = chosen_grids(options.grids);
+    std::vector<MetricGrid> kinds = chosen_grids(options.grids);
     const VoxelLattice lattice = voxel_lattice(domain, options.voxel);
     openvdb::initialize();
 
@@ -220,6 +231,7 @@ VdbReport write_vdb(const std::filesystem::path& path, const ControlSpace& field
     for (const MetricGrid& kind : kinds) builders.push_back(make_vdb_builder(kind));
     const auto [bytes, extremes] = fill(builders, field, lattice, options);
     require_numbers_hold(extremes, options.half);
+    if (options.grids.empty() && extremes.isotropic) leave_lengths(kinds, builders);
 
     VdbReport report{.voxel = lattice.voxel,
                      .counts = lattice.counts,
@@ -242,7 +254,7 @@ VdbReport write_vdb(const std::filesystem::path& path, const ControlSpace& field
     }
     for (const openvdb::GridBase::Ptr& grid : grids) {
         grid->setTransform(transform->copy());
-        annotate(*grid, domain, options);
+        annotate(*grid, domain, extremes.isotropic, options);
     }
     report.file = write_vdb_file(path, {grids.begin(), grids.end()}, options.compression);
     return report;

@@ -36,6 +36,8 @@ std::span<const MetricGrid> metric_grids();
 /// Names of the two grids that together store complete metrics.
 inline constexpr std::string_view diagonal_grid = "metric_diag";
 inline constexpr std::string_view off_diagonal_grid = "metric_off";
+/// Name of the grid that stores complete metrics where all are isotropic.
+inline constexpr std::string_view lengths_grid = "h_min";
 /// Name of the grid of points.
 inline constexpr std::string_view sources_grid = "sources";
 

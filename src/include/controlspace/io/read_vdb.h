@@ -49,7 +49,7 @@ struct DensitySizes {
 /// The grids of a .vdb file that define a field, and the meaning of their values.
 struct VdbLengths {
     /// A grid of one number a voxel; empty: metric_diag (xx yy zz) and metric_off (xy xz yz), the
-    /// tensor M of lengths, not M^-2.
+    /// tensor M of lengths, not M^-2, or the lengths that write_vdb wrote in their place.
     std::string grid = {};
     /// The numbers of `grid` are densities; none: they are lengths.
     std::optional<DensitySizes> density = {};

@@ -29,7 +29,7 @@ struct VdbOptions {
     double tolerance = 0.01;
     bool half = false;  ///< numbers of 16 bits in the file
     VdbCompression compression = VdbCompression::blosc;
-    std::vector<std::string> grids = {};  ///< names of metric_grids(); none: all of them
+    std::vector<std::string> grids = {};  ///< names of metric_grids(); none: see below
     std::vector<VdbNote> notes = {};
     /// Written as a grid of points `sources`, with the attributes pscale (the smallest length,
     /// which Houdini draws), metric_diag and metric_off; none: no such grid. Blender 3.4 lists it,
@@ -55,6 +55,7 @@ struct VdbReport {
 /// .vdb file `path`, in the units of the domain; tensors are M, whose eigenvalues are lengths.
 /// OpenVDB has no voxels below some 1e-5: of smaller ones places and lengths are multiplied by a
 /// power of ten, the metadatum `scale` of each grid, which read_vdb_field divides by.
+/// Unless grids are named, all are written, or, where all metrics are isotropic, density and h_min.
 /// The lengths of every active voxel are those of the field at its centre within a factor of
 /// 1 + tolerance; 8^3 voxels that share a metric become a tile. Runs on all of TBB's threads; the
 /// grids do not depend on their number.
