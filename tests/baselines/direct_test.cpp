@@ -156,7 +156,7 @@ TEST_CASE("direct says how many of its sources can matter") {
 TEST_CASE("direct ends the comparison with its target at a limit of time, and says so") {
     int stop = 1;
     SpaceOptions options = with_ratio(1.25);
-    const auto sources = sources_for(options, 300, false);
+    const auto sources = sources_for(options, 40, false);
     const AdaptationGoal goal{
         .sources = sources, .continuous = nullptr, .ratio = 1.25, .target = 0.1};
     const auto entry = *find_entry(structures(), "direct");

@@ -184,7 +184,7 @@ TEST_CASE("lengths of many orders in one brick are kept in more bits") {
 
 TEST_CASE("tensors in bricks are positive definite, in floats to some 1e-6") {
     const SpaceOptions options{.domain = {Point(-1, -1, -1), Point(1, 1, 1)}, .finest_length = 1};
-    const std::vector<PointSource> sources = sample_sphere({.h = 0.2, .s_a = 2, .s_n = 0.2});
+    const std::vector<PointSource> sources = sample_sphere({.h = 0.3, .s_a = 2, .s_n = 0.2});
     const auto builder = structure_with_id("openvdb-bricks").make(options);
     AdaptationGoal goal{sources, nullptr, g, 1};
     CHECK(builder->adapt(goal).met);

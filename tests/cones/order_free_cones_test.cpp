@@ -201,7 +201,7 @@ TEST_CASE("order-free cones: the same bits whatever the order of sources and pla
     std::mt19937 engine(1);
     for (const Work& work : works()) {
         CAPTURE(work.name, work.anisotropy);
-        std::vector<Point> points = places(work, draw, 60);
+        std::vector<Point> points = places(work, draw, 20);
         const ConeField field = field_of(work, 1e-2);
         const std::vector<Metric> answers = evaluated(field, points);
 
@@ -239,7 +239,7 @@ TEST_CASE("order-free cones: of those close to a start alone, the volume is no l
         CAPTURE(work.name);
         const OrderFreeCones cones(work.sources, g, work.largest, tolerance);
         int alike = 0;
-        const std::vector<Point> all = places(work, draw, 60);
+        const std::vector<Point> all = places(work, draw, 30);
         for (const Point& p : all) {
             OrderFreeCones::Search search;
             OrderFreeCones::Start start;

@@ -146,7 +146,7 @@ STRUCTURE_CASE(stores_node_values,
 
 STRUCTURE_CASE(keeps_node_values,
                "tensors, other laws, passes: all graded anew, with the bits of all at once") {
-    const std::vector<Batch> batches{scattered(30, 7), layered(15, 8), scattered(15, 9)};
+    const std::vector<Batch> batches{scattered(20, 7), layered(10, 8), scattered(10, 9)};
     const GradationOptions gradation =
         GENERATE(GradationOptions{}, queue,
                  GradationOptions{GradationLaw::mean_length, GradationSchedule::passes, 1.25});

@@ -121,7 +121,7 @@ STRUCTURE_CASE(is_linear, "what is read back keeps the target, in every precisio
     CHECK(report.is_bound);
     CHECK(report.reached <= target);
     const auto built = space->compact(precision);
-    std::vector<Point> x = random_points(work.domain, 20'000, 3);
+    std::vector<Point> x = random_points(work.domain, 5'000, 3);
     for (const PointSource& s : work.sources) x.push_back(s.position);
     double worst = 0;
     for (const Point& p : x) {
@@ -190,7 +190,7 @@ STRUCTURE_CASE(is_quadratic, "codes make room for weights beyond 1, too") {
     CHECK(report.met);
     const auto built = space->compact(Precision::log8);
     const auto unrounded = space->compact(Precision::doubles);
-    const std::vector<Point> x = random_points(work.domain, 20'000, 3);
+    const std::vector<Point> x = random_points(work.domain, 5'000, 3);
     const double rounded = largest_factor(*built, *unrounded, x);
     CHECK(rounded <= std::pow(half_step(*unrounded), 2) * (1 + 1e-12));
     double worst = 0;
@@ -209,7 +209,7 @@ STRUCTURE_CASE(is_tree, "codes that take more than a third of what a target allo
                      .continuous = nullptr,
                      .target = target,
                      .precision = precision,
-                     .max_leaves = 2000});
+                     .max_leaves = 200});
     };
     CHECK_THROWS_WITH(adapt(1e-4, Precision::log8),
                       Contains("8 bits") && Contains("a third") && Contains("16 bits"));

@@ -268,8 +268,8 @@ TEST_CASE("The isotropic field grows with the gradation ratio") {
 TEST_CASE("Answers do not depend on the number of threads or on the batch") {
     const auto rule = GENERATE(IntersectionRule::order_free, in_turn);
     Draw draw(18);
-    const auto sources = scattered(draw, Layout::cube, 6000, 5, 10);
-    const auto points = probes(draw, 300);
+    const auto sources = scattered(draw, Layout::cube, 2000, 5, 10);
+    const auto points = probes(draw, 150);
     const auto many = evaluated(*exact_reference(sources, 1.25, wide, 0, rule), points);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const auto field = exact_reference(sources, 1.25, wide, 0, rule);

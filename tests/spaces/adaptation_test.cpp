@@ -226,7 +226,7 @@ CASE_OF_EACH(
 CASE_OF_EACH(entry, anchored_catalogue(),
              "tensors and a continuous field: trees that keep sources keep the target of both") {
     constexpr double target = 0.1;
-    const std::vector<PointSource> sources = tensors(12);
+    const std::vector<PointSource> sources = tensors(6);
     const auto ramp = std::make_shared<Ramp>();
     const auto field = exact_reference(sources, g, largest_metric(domain), 1e-3,
                                        IntersectionRule::order_free, ramp);
@@ -264,7 +264,7 @@ CASE_OF_EACH(entry, bounded_trees(), "trees keep the target everywhere, as bound
     }
     for (const auto& sources : {scattered, sample_sphere({.h = 0.08})}) {
         const auto field = exact_reference(sources, g, largest_metric(domain));
-        const Probes probes = make_probes(*field, random_points(domain, 200000, 19));
+        const Probes probes = make_probes(*field, random_points(domain, 50000, 19));
         const auto space = editable(entry.make({.domain = domain}));
         const AdaptationReport report = space->adapt({sources, nullptr, g, 0.2});
         CHECK(report.met);

@@ -129,7 +129,7 @@ CASE_OF_EACH(entry, anchored_catalogue(), "thin tensors are graded without cuts"
     // Discs, needles and others, of 1000:1, turned at random.
     Draw draw(9);
     std::vector<PointSource> sources;
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < 12; ++i) {
         const double h = draw.uniform(0.1, 0.3);
         const std::array lengths{h / 1000, h * std::pow(1000, -draw.uniform(0, 1)), h};
         const Point q(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
@@ -144,7 +144,7 @@ CASE_OF_EACH(entry, anchored_catalogue(), "thin tensors are graded without cuts"
         if (rule == IntersectionRule::in_turn) continue;  // jumps
         const auto field = exact_reference(sources, g, largest_metric(domain), 1e-3);
         std::vector<Point> x;
-        for (int i = 0; i < 2000; ++i) {
+        for (int i = 0; i < 1000; ++i) {
             x.emplace_back(draw.uniform(-1, 1), draw.uniform(-1, 1), draw.uniform(-1, 1));
         }
         const auto own = answers(*space, x);
@@ -155,7 +155,7 @@ CASE_OF_EACH(entry, anchored_catalogue(), "thin tensors are graded without cuts"
             CHECK(delta < 0.5);
             sum += delta;
         }
-        CHECK(sum < 5e-4 * static_cast<double>(x.size()));
+        CHECK(sum < 1e-3 * static_cast<double>(x.size()));  // what the reference is exact to
     }
 }
 

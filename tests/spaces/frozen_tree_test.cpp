@@ -55,18 +55,18 @@ std::vector<TreeUnderTest> trees() {
     return all;
 }
 
-std::vector<PointSource> sphere(double s_n) {
-    return sample_sphere({.h = 0.07, .s_a = 3, .s_n = s_n, .rho = 1});
+std::vector<PointSource> sphere(double s_n, double h = 0.14) {
+    return sample_sphere({.h = h, .s_a = 3, .s_n = s_n, .rho = 1});
 }
 
 // Random places, places on planes of cuts, and places outside.
 std::vector<Point> places() {
-    std::vector<Point> x = random_points({Point(-1.1, -1.1, -1.1), Point(1.1, 1.7, 1.1)}, 3000, 7);
+    std::vector<Point> x = random_points({Point(-1.1, -1.1, -1.1), Point(1.1, 1.7, 1.1)}, 1500, 7);
     RandomFractions fraction(8);
     const auto step = [&](Axis a) {
         return domain.low[a] + std::floor(65 * fraction()) / 64 * (domain.high[a] - domain.low[a]);
     };
-    for (int i = 0; i < 3000; ++i) x.emplace_back(step(0), step(1), step(2));
+    for (int i = 0; i < 1500; ++i) x.emplace_back(step(0), step(1), step(2));
     return x;
 }
 
@@ -208,7 +208,7 @@ CASE_OF_EACH(tree, trees(),
 }
 
 TEST_CASE("lengths in floats and codes take few bytes a leaf, beside the lookup grid") {
-    const std::vector<PointSource> sources = sphere(1);
+    const std::vector<PointSource> sources = sphere(1, 0.07);
     const std::tuple<const char*, double, double, double> most[] = {
         {"K_L", 21, 19, 19}, {"K_oL", 14, 12, 12}, {"K_V", 61, 45, 39}, {"K_oV", 54, 38, 31}};
     for (const auto& [id, floats, log16, log8] : most) {

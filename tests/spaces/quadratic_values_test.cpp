@@ -71,7 +71,7 @@ void check_answers(const ControlSpace& space) {
 TEST_CASE("K_Li interpolates between the leaf and its neighbours, however they are found") {
     for (const double s_n : {1.0, 0.2}) {
         const std::vector<PointSource> sources =
-            sample_sphere({.h = 0.1, .s_a = 3, .s_n = s_n, .rho = 1});
+            sample_sphere({.h = 0.2, .s_a = 3, .s_n = s_n, .rho = 1});
         for (const SplitRule split : {SplitRule::middle, SplitRule::golden, SplitRule::metric}) {
             CAPTURE(s_n, static_cast<int>(split));
             const auto space = quadratic(split);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Grids of the catalogue, made equal by their voxels.
-#include "study/equal_setting.h"
-
 #include <catch2/catch.hpp>
 
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/study/run.h"
+#include "study/equal_setting.h"
 
-namespace controlspace::equal_setting_test {
+namespace controlspace::equal_grids_test {
 namespace {
 
 std::vector<Row> rows_of(const Run& run) {
@@ -51,4 +50,4 @@ TEST_CASE("every grid keeps to a memory, and uses it", "[long]") {
     }
 }
 
-}  // namespace controlspace::equal_setting_test
+}  // namespace controlspace::equal_grids_test
