@@ -22,7 +22,6 @@
 
 #include "controlspace/error.h"
 #include "files/child_process.h"
-#include "io/give_up_rights.h"
 #include "io/text/metric_rows.h"
 #include "refuse.h"
 
@@ -91,7 +90,6 @@ void end_on_crashes() {
     limit(RLIMIT_CPU, time_limit(file));
     constexpr unsigned slowest = 10;  // times the processor's, where others use it too
     ::alarm(slowest * time_limit(file));
-    give_up_rights();
     int status = failed;
     try {
         read();

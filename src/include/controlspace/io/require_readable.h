@@ -13,9 +13,8 @@ namespace controlspace {
 ///     require_readable(file, read);
 ///     const auto sources = read();
 ///
-/// The child may neither write, rename or remove files, nor open sockets, nor start programs. It
-/// has the memory and the time that a file of this size can justify. A crash ends it, whatever
-/// handlers of signals the program has.
+/// The child has the memory and the time that a file of this size can justify. A crash ends it,
+/// whatever handlers of signals the program has.
 ///
 /// Throws InputError if the child crashes, needs more than that, or throws InputError (with its
 /// text). `read` must not start threads, and its loops of TBB run on one; let no other thread of
