@@ -213,7 +213,7 @@ STRUCTURE_CASE(does_not_round,
     CAPTURE(work.name);
     const Vector beyond = work.domain.edges() / 16;  // some are outside of the domain
     const std::vector<Point> x =
-        random_points({work.domain.low - beyond, work.domain.high + beyond}, 4000, 5);
+        random_points({work.domain.low - beyond, work.domain.high + beyond}, 1500, 5);
     std::vector<std::size_t> order(x.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::shuffle(order.begin(), order.end(), std::mt19937(6));

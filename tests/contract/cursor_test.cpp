@@ -19,8 +19,8 @@ namespace {
 std::vector<Point> places_of(const ControlSpace& space) {
     const Box domain = space.domain();
     const Vector beyond = domain.edges() / 8;
-    const std::vector<Point> away = random_points(domain, 250, 1);
-    const std::vector<Point> ways = random_points({-domain.edges(), domain.edges()}, 250, 2);
+    const std::vector<Point> away = random_points(domain, 100, 1);
+    const std::vector<Point> ways = random_points({-domain.edges(), domain.edges()}, 100, 2);
     std::vector<Point> places;
     for (const double step : {0.002, 0.02, 0.2}) {
         Point x = domain.centre();
