@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -14,11 +15,13 @@
 #include "baselines/openvdb/brick_pool.h"
 #include "baselines/openvdb/catalogue.h"
 #include "baselines/openvdb/index_reader.h"
+#include "baselines/openvdb/octree_file.h"
 #include "baselines/openvdb/octree_form.h"
 #include "baselines/openvdb/openvdb_value.h"
 #include "baselines/openvdb/voxel_boxes_tree.h"
 #include "controlspace/space/detail/plain_cursor.h"
 #include "controlspace/space/detail/shared_builder.h"
+#include "refuse.h"
 #include "trees/topology/leaf_vertices.h"
 
 namespace controlspace {
@@ -83,6 +86,14 @@ public:
         footprint.bytes_auxiliary += pool_.bytes_auxiliary();
         return footprint;
     }
+    std::string vdb_file(StateWriter state) const override {
+        if constexpr (are_lengths) {
+            const Octants octants = Base::cuts().octants(this->domain());
+            return bricks_file(std::move(state), octants, floats_of_vertices(Bricks(octants)));
+        } else {
+            refuse("tensors are not saved to a .vdb: name a .ctrl");
+        }
+    }
 
 private:
     // Of the bricks of each level, along an axis: where they begin, of the bits of a voxel's
@@ -126,6 +137,18 @@ private:
         }
         return {vertex_graph(vertices.of_leaves, std::move(vertices.positions), neighbourhood),
                 std::move(metrics)};
+    }
+    // Of all vertices, brick by brick. Throws InputError for what is beyond floats.
+    std::vector<float> floats_of_vertices(const Bricks& bricks) const {
+        std::vector<Metric> metrics;
+        metrics.reserve(bricks.parts.size() * pool_.lattice().vertices());
+        for (const VoxelBox& box : bricks.boxes.leaves) {
+            const BrickRef ref = ref_at(box.low);
+            for (std::uint32_t vertex = 0; vertex < pool_.lattice().vertices(); ++vertex) {
+                metrics.push_back(pool_.vertex(ref, vertex));
+            }
+        }
+        return lengths_in_floats(metrics);
     }
     // Bricks in place of metrics.
     void save_field(const Octants& octants, StateWriter& state) const override {
