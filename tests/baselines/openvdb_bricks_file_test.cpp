@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The .vdb of openvdb-bricks: what this program and others find in it.
 #include <openvdb/io/File.h>
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
 
@@ -8,6 +9,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
+#include <limits>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -19,6 +22,7 @@
 #include "controlspace/space/control_space_file.h"
 #include "damaged_copies.h"
 #include "scratch_directory.h"
+#include "space/sealed_vdb.h"
 
 namespace controlspace::openvdb_bricks_file_test {
 
@@ -231,6 +235,36 @@ TEST_CASE("a damaged .vdb of bricks is refused in one line") {
         REQUIRE(std::ranges::count(error, '\n') == 0);
     });
     CHECK(count > 200);
+}
+
+TEST_CASE("a .vdb of bricks that lies about its grids is refused, though its seal is intact") {
+    const Scene scene = octree_scenes::scene(0);
+    const ScratchDirectory folder;
+    const auto path = folder / "field.vdb";
+    save_control_space(path, *scene.adapted("openvdb-bricks", 1, Precision::floats));
+    openvdb::io::File file(path.string());
+    file.open(false);
+    openvdb::MetaMap notes = *file.getMetadata();
+    notes.insertMeta(std::string(seal_name), openvdb::StringMetadata(std::string(unsealed)));
+    const auto error_with = [&](const openvdb::GridCPtrVec& grids) {
+        std::ostringstream stream;
+        openvdb::io::Stream(stream).write(grids, notes);
+        std::string bytes = std::move(stream).str();
+        seal_vdb(bytes);
+        std::ofstream(folder / "other.vdb", std::ios::binary) << bytes;
+        return error_of([&] { load_control_space(folder / "other.vdb", structures()); });
+    };
+    const auto grids = grids_of(path);
+    CHECK(error_with({grids.begin(), grids.end()}).empty());
+    CHECK_THAT(error_with({grids.begin() + 1, grids.end()}),
+               Catch::Contains("its grid " + grids[0]->getName() + " is missing"));
+    for (const float bad : {0.0F, -1.0F, std::numeric_limits<float>::quiet_NaN()}) {
+        const auto altered = grids[0]->deepCopy();
+        altered->tree().setValueOn(altered->tree().cbeginValueOn().getCoord(), bad);
+        openvdb::GridCPtrVec all(grids.begin(), grids.end());
+        all[0] = altered;
+        CHECK_THAT(error_with(all), Catch::Contains("bricks.pool"));
+    }
 }
 
 }  // namespace controlspace::openvdb_bricks_file_test
