@@ -70,6 +70,7 @@ class BrickPool {
 
 public:
     static constexpr bool are_lengths = is_stored_length<M>;
+    static constexpr bool are_codes = Codes::are_codes;
     using Value = std::conditional_t<are_lengths, StoredLength<double>, Metric>;
 
     /// Where bricks will be, before there is memory for them.

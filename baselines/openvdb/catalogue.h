@@ -33,10 +33,6 @@ std::unique_ptr<ControlSpaceBuilder> make_openvdb_grid(const SpaceOptions& optio
 /// most. Throws MemoryLimitError before nodes outgrow the cap on memory.
 std::unique_ptr<ControlSpaceBuilder> make_openvdb_tiles(const SpaceOptions& options);
 
-/// The state of a .ctrl in a .vdb file of the same (tiles_file.h). Throws InputError, which names
-/// `file`.
-std::string state_in_tiles_file(const std::string& bytes, const std::string& file);
-
 /// A sparse tree of OpenVDB that refers to bricks, the counterpart of K_V and K_oV: boxes of 4^3
 /// cells, or 4^2 on a plane, each with all of its 5^3 vertices, trilinear between them. It is
 /// K_oV's octree in which leaves are cut together so that they fill bricks: insertion by l_min and
@@ -51,6 +47,10 @@ std::string state_in_tiles_file(const std::string& bytes, const std::string& fil
 /// those of as many bits in trees do, and a brick for which that takes more bits gets them. Throws
 /// MemoryLimitError before bricks or nodes outgrow the cap on memory.
 std::unique_ptr<ControlSpaceBuilder> make_openvdb_bricks(const SpaceOptions& options);
+
+/// The state of a .ctrl in a .vdb file of tiles or bricks (octree_file.h). Throws InputError, which
+/// names `file`.
+std::string state_in_octree_file(const std::string& bytes, const std::string& file);
 
 /// The form in which other programs could read a field of metrics: two of OpenVDB's own Vec3S
 /// trees, dense over the domain, one of (xx, yy, zz) and one of (xy, xz, yz), in floats; a metric

@@ -76,6 +76,10 @@ public:
     VoxelOfPlace(const Box& domain, const Cell& voxels);
 
     const Box& domain() const { return domain_; }
+    /// Along each axis.
+    const Cell& voxels() const { return voxels_; }
+    /// How near to the face of a voxel rounding counts, along an axis, in voxels.
+    double near(std::size_t axis) const { return near_[static_cast<Axis>(axis)]; }
 
     /// Where a place, or the nearest one in the domain, is along an axis, in voxels.
     [[gnu::always_inline]] double in_voxels(double x, std::size_t axis) const {

@@ -3,9 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -14,11 +16,13 @@
 #include "baselines/openvdb/brick_pool.h"
 #include "baselines/openvdb/catalogue.h"
 #include "baselines/openvdb/index_reader.h"
+#include "baselines/openvdb/octree_file.h"
 #include "baselines/openvdb/octree_form.h"
 #include "baselines/openvdb/openvdb_value.h"
 #include "baselines/openvdb/voxel_boxes_tree.h"
 #include "controlspace/space/detail/plain_cursor.h"
 #include "controlspace/space/detail/shared_builder.h"
+#include "refuse.h"
 #include "trees/topology/leaf_vertices.h"
 
 namespace controlspace {
@@ -71,7 +75,10 @@ public:
         }
     }
     std::unique_ptr<Cursor> cursor() const override {
-        return std::make_unique<PlainCursor<VdbBricks>>(*this);
+        // Between floats or doubles a length takes no longer than what remembering a brick saves.
+        constexpr bool is_plain = are_lengths && !Pool::are_codes;
+        return std::make_unique<std::conditional_t<is_plain, PlainCursor<VdbBricks>, BrickCursor>>(
+            *this);
     }
 
     Footprint footprint() const override {
@@ -82,6 +89,14 @@ public:
         footprint.bytes_payload = pool_.bytes_payload();
         footprint.bytes_auxiliary += pool_.bytes_auxiliary();
         return footprint;
+    }
+    std::string vdb_file(StateWriter state) const override {
+        if constexpr (are_lengths) {
+            const Octants octants = Base::cuts().octants(this->domain());
+            return bricks_file(std::move(state), octants, floats_of_vertices(Bricks(octants)));
+        } else {
+            refuse("tensors are not saved to a .vdb: name a .ctrl");
+        }
     }
 
 private:
@@ -127,6 +142,18 @@ private:
         return {vertex_graph(vertices.of_leaves, std::move(vertices.positions), neighbourhood),
                 std::move(metrics)};
     }
+    // Of all vertices, brick by brick. Throws InputError for what is beyond floats.
+    std::vector<float> floats_of_vertices(const Bricks& bricks) const {
+        std::vector<Metric> metrics;
+        metrics.reserve(bricks.parts.size() * pool_.lattice().vertices());
+        for (const VoxelBox& box : bricks.boxes.leaves) {
+            const BrickRef ref = ref_at(box.low);
+            for (std::uint32_t vertex = 0; vertex < pool_.lattice().vertices(); ++vertex) {
+                metrics.push_back(pool_.vertex(ref, vertex));
+            }
+        }
+        return lengths_in_floats(metrics);
+    }
     // Bricks in place of metrics.
     void save_field(const Octants& octants, StateWriter& state) const override {
         const SavedBricks saved = pool_.saved(Bricks(octants).parts.size());
@@ -149,24 +176,100 @@ private:
         const auto cell = static_cast<std::int32_t>(within);
         return {cell, within - cell};
     }
-    Value value_at(const Point& x) const {
-        const VoxelOfPlace& voxel_of = Base::voxel_of();
+    // A brick: its low corner in voxels, and its cells a voxel.
+    struct Entered {
+        BrickRef ref;
+        const std::byte* brick;
+        std::array<double, 3> low, cells;
+    };
+    [[gnu::always_inline]] Entered entered(const Cell& voxel) const {
+        Entered at{ref_at(voxel), nullptr, {}, {}};
+        at.brick = pool_.brick_of(at.ref);
+        for (std::size_t a = 0; a < 3; ++a) {
+            at.low[a] = voxel[a] & scales_[a].begin[at.ref.level()];
+            at.cells[a] = scales_[a].cells[at.ref.level()];
+        }
+        return at;
+    }
+    [[gnu::always_inline]] Value value_in(const Entered& at,
+                                          const std::array<double, 3>& in_voxels) const {
         const BrickLattice& lattice = pool_.lattice();
-        const Cell voxel = voxel_of(x);
-        const BrickRef ref = ref_at(voxel);
         std::uint32_t vertex = 0;
         std::array<double, 3> t;
         for (std::size_t a = 0; a < 3; ++a) {
-            const double in_voxels = voxel_of.in_voxels(x[static_cast<Axis>(a)], a);
-            const Scales& scale = scales_[a];
-            const std::int32_t low = voxel[a] & scale.begin[ref.level()];
-            const double in_cells = (in_voxels - low) * scale.cells[ref.level()];
+            const double in_cells = (in_voxels[a] - at.low[a]) * at.cells[a];
             const Along in = along(in_cells, lattice.below_end(a));
             vertex += static_cast<std::uint32_t>(in.cell) * lattice.step(a);
             t[a] = in.t;
         }
-        return pool_.value_in(ref, pool_.brick_of(ref), vertex, t[0], t[1], t[2]);
+        return pool_.value_in(at.ref, at.brick, vertex, t[0], t[1], t[2]);
     }
+    [[gnu::always_inline]] std::array<double, 3> in_voxels(const Point& x) const {
+        const VoxelOfPlace& voxel_of = Base::voxel_of();
+        return {voxel_of.in_voxels(x.x(), 0), voxel_of.in_voxels(x.y(), 1),
+                voxel_of.in_voxels(x.z(), 2)};
+    }
+    Value value_at(const Point& x) const {
+        return value_in(entered(Base::voxel_of()(x)), in_voxels(x));
+    }
+
+    /// For one caller: remembers the brick that was entered last, which holds most of the next
+    /// places of a walk. Near its faces, where rounding decides who answers, it enters anew. Where
+    /// fewer than three of four places are in it, it works without for a while.
+    class BrickCursor final : public Cursor {
+    public:
+        explicit BrickCursor(const VdbBricks& space) : space_(space) {}
+
+        Metric metric_at(const Point& x) override { return value_at(x); }
+        double length_at(const Point& x) override {
+            if constexpr (are_lengths) {
+                return value_at(x).h;
+            } else {
+                return Cursor::length_at(x);
+            }
+        }
+
+    private:
+        [[gnu::always_inline]] Value value_at(const Point& x) {
+            if (without_ > 0) return without(x);
+            ++asked_;
+            const std::array<double, 3> t = space_.in_voxels(x);
+            const bool is_within = (t[0] > above_[0]) & (t[0] < below_[0]) & (t[1] > above_[1]) &
+                                   (t[1] < below_[1]) & (t[2] > above_[2]) & (t[2] < below_[2]);
+            if (!is_within) return enter(x);
+            return space_.value_in(at_, t);
+        }
+        // Not inlined: otherwise what they need is also done for places in the brick.
+        [[gnu::noinline]] Value without(const Point& x) {
+            --without_;
+            return space_.value_at(x);
+        }
+        [[gnu::noinline]] Value enter(const Point& x) {
+            if (++entered_ == most_entered) {
+                if (asked_ < few_asked) without_ = long_without;
+                asked_ = entered_ = 0;
+            }
+            const VoxelOfPlace& voxel_of = space_.voxel_of();
+            const Entered at = space_.entered(voxel_of(x));
+            for (std::size_t a = 0; a < 3; ++a) {
+                // On faces of the domain nobody else answers.
+                constexpr double infinity = std::numeric_limits<double>::infinity();
+                const double high = at.low[a] - space_.scales_[a].begin[at.ref.level()];
+                const double near = voxel_of.near(a);
+                above_[a] = at.low[a] > 0 ? at.low[a] + near : -infinity;
+                below_[a] = high < voxel_of.voxels()[a] ? high - near : infinity;
+            }
+            at_ = at;
+            return space_.value_in(at, space_.in_voxels(x));
+        }
+
+        const VdbBricks& space_;
+        // Places between these are in the brick.
+        std::array<double, 3> above_{}, below_{};
+        Entered at_{};
+        static constexpr std::uint32_t most_entered = 32, few_asked = 128, long_without = 1024;
+        std::uint32_t asked_ = 0, entered_ = 0, without_ = 0;
+    };
 
     // put(i, value) for all places, some at a time: references first, then where places are in
     // their bricks, while these are on their way.

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "baselines/openvdb/catalogue.h"
+#include "baselines/openvdb/octree_file.h"
 #include "baselines/openvdb/octree_form.h"
 #include "baselines/openvdb/stored_value.h"
-#include "baselines/openvdb/tiles_file.h"
 #include "baselines/openvdb/voxel_boxes_tree.h"
 #include "controlspace/space/detail/plain_cursor.h"
 #include "controlspace/space/detail/shared_builder.h"
@@ -99,11 +99,7 @@ public:
         if (!std::ranges::all_of(all, is_isotropic)) {
             refuse("tensors are not saved to a .vdb: name a .ctrl");
         }
-        // Refuses lengths that are beyond floats.
-        const StoredMetrics<StoredLength<float>> stored(all);
-        std::vector<float> lengths;
-        for (const StoredLength<float>& length : stored.items()) lengths.push_back(length.h);
-        return tiles_file(std::move(state), octants, lengths);
+        return tiles_file(std::move(state), octants, lengths_in_floats(all));
     }
 
 private:

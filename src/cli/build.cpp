@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command `build`: builds and grades one structure, and saves it.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/filled_space.h"
@@ -24,10 +26,14 @@ void set_what_vdb_holds(Job& job) {
     const auto rows = structures();
     const auto entry = std::ranges::find_if(rows, has_files);
     if (entry == rows.end()) refuse("this program has no OpenVDB: name a .ctrl");
+    std::vector<std::string> able;
+    for (const CatalogueEntry& row : rows) {
+        if (has_files(row)) able.push_back(row.id);
+    }
     for (const std::string& id : job.given["structures"]) {
         const CatalogueEntry* row = find_entry(rows, id);
         if (row != nullptr && !has_files(*row)) {
-            refuse("{} cannot be saved to a .vdb: name a .ctrl, or {}", id, entry->id);
+            refuse("{} cannot be saved to a .vdb: name a .ctrl, or {}", id, fmt::join(able, ", "));
         }
     }
     if (job.input.extension() == ".toml") return;
@@ -57,10 +63,12 @@ int build(Job job) {
 Action add_build(Options& options) {
     const auto job = std::make_shared<Job>();
     add_study_input(options, job->input);
-    options.add(
-        {"-o,--output", "FILE",
-         "File to write: .ctrl, or, of openvdb-tiles, its lengths in floats in a .vdb", "", true},
-        job->output);
+    options.add({"-o,--output", "FILE",
+                 "File to write: .ctrl, or, of openvdb-tiles and openvdb-bricks, their lengths in "
+                 "floats in "
+                 "a .vdb",
+                 "", true},
+                job->output);
     add_making_options(options, *job);
     return [job](const std::string&) { return build(*job); };
 }

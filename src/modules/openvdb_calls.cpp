@@ -29,8 +29,8 @@ std::unique_ptr<ControlSpaceBuilder> make_openvdb_vec3s(const SpaceOptions& opti
     return openvdb().make_openvdb_vec3s(options);
 }
 
-std::string state_in_tiles_file(const std::string& bytes, const std::string& file) {
-    return openvdb().state_in_tiles_file(bytes, file);
+std::string state_in_octree_file(const std::string& bytes, const std::string& file) {
+    return openvdb().state_in_octree_file(bytes, file);
 }
 
 std::vector<PointSource> read_vdb_sources(const fs::path& path, const VdbSurface& surface) {

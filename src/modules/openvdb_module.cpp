@@ -10,7 +10,7 @@ CONTROLSPACE_MODULE {
         .make_openvdb_bricks = controlspace::make_openvdb_bricks,
         .make_openvdb_tiles = controlspace::make_openvdb_tiles,
         .make_openvdb_vec3s = controlspace::make_openvdb_vec3s,
-        .state_in_tiles_file = controlspace::state_in_tiles_file,
+        .state_in_octree_file = controlspace::state_in_octree_file,
         .read_vdb_sources = controlspace::read_vdb_sources,
         .read_vdb_field = controlspace::read_vdb_field,
         .write_vdb = controlspace::write_vdb};

@@ -25,7 +25,7 @@ struct OpenvdbModule {
     decltype(&controlspace::make_openvdb_bricks) make_openvdb_bricks;
     decltype(&controlspace::make_openvdb_tiles) make_openvdb_tiles;
     decltype(&controlspace::make_openvdb_vec3s) make_openvdb_vec3s;
-    decltype(&controlspace::state_in_tiles_file) state_in_tiles_file;
+    decltype(&controlspace::state_in_octree_file) state_in_octree_file;
     decltype(&controlspace::read_vdb_sources) read_vdb_sources;
     decltype(&controlspace::read_vdb_field) read_vdb_field;
     VdbReport (*write_vdb)(const std::filesystem::path&, const ControlSpace&, const VdbOptions&);

@@ -210,7 +210,9 @@ std::string state_in_vdb(const std::string& bytes, const std::string& name,
 
 // Others take the state over.
 std::string Saved::vdb_file(StateWriter) const {  // NOLINT(performance-unnecessary-value-param)
-    throw InputError("only openvdb-tiles can be saved to a .vdb, not its builder: name a .ctrl");
+    throw InputError(
+        "only openvdb-tiles and openvdb-bricks can be saved to a .vdb, not their builders: name a "
+        ".ctrl");
 }
 
 std::optional<Recipe> recipe_of(const ControlSpace& space) {

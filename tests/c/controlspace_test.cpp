@@ -551,6 +551,30 @@ TEST_CASE("C: a loaded space grades by the ratio that it was created with") {
     cspace_free(space);
 }
 
+TEST_CASE("C: a .vdb holds the lengths of structures that can be saved to one, as floats") {
+    const ScratchDirectory folder;
+    const std::string file = (folder / "field.vdb").string();
+    for (const CatalogueEntry& entry : structures()) {
+        CAPTURE(entry.id);
+        cspace *space = made(entry.id.c_str()), *loaded = nullptr;
+        const double length = 0.1;
+        REQUIRE(cspace_insert_lengths(space, 1, place.data(), &length) == CSPACE_OK);
+        REQUIRE(cspace_grade(space, 1.5) == CSPACE_OK);
+        if (entry.has<VdbFiles>()) {
+            REQUIRE(cspace_save(space, file.c_str()) == CSPACE_OK);
+            REQUIRE(cspace_load(file.c_str(), &loaded) == CSPACE_OK);
+            const std::vector<double> theirs = sampled(loaded), own = sampled(space);
+            for (std::size_t i = 0; i < own.size(); ++i) {
+                REQUIRE(theirs[i] == Approx(own[i]).epsilon(1e-7));
+            }
+            cspace_free(loaded);
+        } else {
+            CHECK(cspace_save(space, file.c_str()) == CSPACE_BAD_INPUT);
+        }
+        cspace_free(space);
+    }
+}
+
 TEST_CASE("C: large batches run on all cores, with the same bits", "[threads]") {
     cspace* space = made("K_oV");
     REQUIRE(cspace_insert(space, 1, place.data(), tensor.data()) == CSPACE_OK);

@@ -73,8 +73,37 @@ TEST_CASE("a .vdb is built, adapted unless told, and taken by every command as a
                Contains("--within: f.vdb was made with its own"));
     const Outcome other = box.run("build s.csv -o g.vdb --structures K_oV");
     CHECK(other.status == 2);
-    CHECK_THAT(other.err, Contains("K_oV cannot be saved to a .vdb"));
+    CHECK_THAT(other.err, Contains("K_oV cannot be saved to a .vdb") &&
+                              Contains("openvdb-tiles, openvdb-bricks"));
     CHECK_FALSE(fs::exists(box / "g.vdb"));
+}
+
+TEST_CASE("bricks are built as a .vdb, and taken by every command as their .ctrl is") {
+    const Sandbox box("build-bricks");
+    box.write("s.csv", sources_csv);
+    box.write("places.csv", places_csv);
+    const std::string build = "build s.csv --structures openvdb-bricks";
+    const Outcome built = box.run(build + " -o f.vdb");
+    INFO(built.err);
+    REQUIRE(built.status == 0);
+    CHECK_THAT(built.out, Contains("f.vdb: openvdb-bricks with"));
+    CHECK_THAT(built.err, Contains("everywhere: lengths within 1."));
+    REQUIRE(box.run(build + " -o f.ctrl --precision float").status == 0);
+    CHECK(box.run("query f.vdb places.csv").out == box.run("query f.ctrl places.csv").out);
+    CHECK_THAT(box.run("info f.vdb").out, Contains("structure    openvdb-bricks") &&
+                                              Contains("precision    float: read-only"));
+    REQUIRE(box.run("export f.vdb -o a.csv").status == 0);
+    REQUIRE(box.run("export f.ctrl -o b.csv").status == 0);
+    CHECK(file_text(box / "a.csv") == file_text(box / "b.csv"));
+
+    REQUIRE(box.run(build + " -o codes.vdb --precision log8").status == 0);
+    CHECK_THAT(box.run("info codes.vdb").out, Contains("precision    float: read-only"));
+    box.write("t.csv",
+              "x,y,z,m_xx,m_yy,m_zz,m_xy,m_xz,m_yz\n0,0,0,0.1,0.2,0.2,0,0,0\n"
+              "1,1,1,0.4,0.3,0.4,0,0,0\n");
+    check_refused(box.run("build t.csv --structures openvdb-bricks --tau 0.5 -o t.vdb"),
+                  "name a .ctrl");
+    CHECK_FALSE(fs::exists(box / "t.vdb"));
 }
 #endif
 

@@ -121,6 +121,20 @@ def check_picture(volume, material, path):
           "%s shows the volume" % os.path.basename(path))
 
 
+def check_bricks(volume):
+    """A grid a level, whose vertices lie on those of 4^3 cells in each part of the domain."""
+    grids = {grid.name: grid for grid in volume.data.grids}
+    check(len(grids) > 2 and all(name.startswith("length_") for name in grids),
+          "grids of bricks: " + ", ".join(sorted(grids)))
+    for name, grid in grids.items():
+        edge = 2 / 4 / 2 ** int(name.removeprefix("length_"))
+        wanted = [[edge, 0, 0, -1], [0, edge, 0, -1], [0, 0, edge, -1], [0, 0, 0, 1]]
+        check(grid.data_type == "FLOAT" and
+              all(abs(grid.matrix_object[r][c] - wanted[r][c]) < 1e-6
+                  for r in range(4) for c in range(4)),
+              "%s is of numbers, %g apart from the domain's low corner on" % (name, edge))
+
+
 def main(folder):
     coarse = import_volume(os.path.join(folder, "all.vdb"))
     check_grids(coarse, 0.1, FLOATS, VECTORS, {"sources": "POINTS"})
@@ -143,6 +157,7 @@ def main(folder):
     check(edge > 1.9 and all(abs(d - edge) < 1e-5 for d in tiles.dimensions),
           "tiles fill the domain, from the first centre to the last one")
     check_picture(tiles, attribute_material("length"), os.path.join(folder, "tiles.png"))
+    check_bricks(import_volume(os.path.join(folder, "bricks.vdb")))
 
 
 main(sys.argv[sys.argv.index("--") + 1])

@@ -19,4 +19,6 @@ trap 'rm -rf "$folder"' EXIT
     --grids density,h_min,h_max,h_mean,anisotropy,sizes,e1,metric_diag,metric_off,sources
 "$controlspace" build ball:0.3,0.3,0.3,r=0.05,h=0.01 -o "$folder/tiles.vdb" \
     --domain -1 1 -1 1 -1 1 --within 1.2
+"$controlspace" build ball:0.3,0.3,0.3,r=0.05,h=0.01 -o "$folder/bricks.vdb" \
+    --structures openvdb-bricks --domain -1 1 -1 1 -1 1 --within 1.2
 "$blender" -b --factory-startup --python-exit-code 1 --python "$here/blender_check.py" -- "$folder"

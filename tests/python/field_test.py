@@ -154,6 +154,11 @@ class Fields(unittest.TestCase):
                 field = controlspace.build(points, m, name, BOX)
                 field.save(file)
                 np.testing.assert_array_equal(controlspace.load(file).metric(x), field.metric(x))
+            vdb = pathlib.Path(folder, "field.vdb")
+            for name in {"openvdb-tiles", "openvdb-bricks"}.intersection(controlspace.structures()):
+                field = controlspace.build(*sources(), name, BOX)
+                field.save(vdb)
+                np.testing.assert_allclose(controlspace.load(vdb).size(x), field.size(x), rtol=1e-6)
             table = pathlib.Path(folder, "-field.vti")
             field.export(table, slice=("z", 0.5), samples=16)
             self.assertGreater(table.stat().st_size, 1000)

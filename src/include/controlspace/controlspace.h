@@ -205,8 +205,8 @@ CSPACE_API cspace_status cspace_from_riemannian(size_t n, const double* riemanni
 /** The domain: x0 y0 z0 x1 y1 z1. */
 CSPACE_API cspace_status cspace_domain(const cspace* space, double* domain);
 
-/** Saves a control space to a .ctrl file, or one of openvdb-tiles, whose lengths are then floats,
- * to a .vdb. If that fails, no part of a file is left. */
+/** Saves a control space to a .ctrl file, or one of openvdb-tiles or openvdb-bricks, whose lengths
+ * are then floats, to a .vdb. If that fails, no part of a file is left. */
 CSPACE_API cspace_status cspace_save(const cspace* space, const char* file);
 
 /** Loads a saved control space, to be freed by cspace_free(); NULL after a failure. One that was

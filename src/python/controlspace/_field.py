@@ -124,8 +124,8 @@ class Field:
         return lengths
 
     def save(self, file: str | os.PathLike[str]) -> None:
-        """Writes a .ctrl file, or a .vdb for one of openvdb-tiles, whose lengths are then floats;
-        whole or not at all. ValueError where that fails."""
+        """Writes a .ctrl file, or a .vdb for one of openvdb-tiles or openvdb-bricks, whose lengths
+        are then floats; whole or not at all. ValueError where that fails."""
         call("save", self._handle, _arrays.path("file", file))
 
     def export(self, file: str | os.PathLike[str], **options: Any) -> None:

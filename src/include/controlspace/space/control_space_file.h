@@ -43,9 +43,12 @@ bool holds_control_space(const std::filesystem::path& file);
 /// CatalogueEntry, where it keeps a continuous field, and where writing fails.
 ///
 /// Where the file ends in .vdb, OpenVDB's, the lengths of a structure with VdbFiles, finished, are
-/// written in floats: a FloatGrid `length`, whose active tiles and voxels are the structure's, as
-/// other programs read it. What is loaded answers these floats, to the bit, whatever precision was
-/// saved. A file that another program has written anew holds no control space any more.
+/// written in floats, as other programs read them: of openvdb-tiles a FloatGrid `length`, whose
+/// active tiles and voxels are the structure's; of openvdb-bricks a FloatGrid for each level of
+/// its octree with bricks, `length_0` (the root's), `length_1` and so on, of their vertices. What
+/// is loaded answers these floats, to the bit, whatever precision was saved; where bricks in codes
+/// meet, which each round for themselves, those of one of them. A file that another program has
+/// written anew holds no control space any more.
 void save_control_space(const std::filesystem::path& file, const ControlSpace& space);
 void save_control_space(const std::filesystem::path& file, const ControlSpaceBuilder& builder);
 
