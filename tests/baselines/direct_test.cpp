@@ -153,7 +153,7 @@ TEST_CASE("direct says how many of its sources can matter") {
     CHECK_THAT(footprint.remark, Contains("1 of 3 sources"));
 }
 
-TEST_CASE("direct ends the comparison with its target at a limit of time, and says so") {
+TEST_CASE("direct ends the comparison with its target at a limit of time, and says so", "[long]") {
     int stop = 1;
     SpaceOptions options = with_ratio(1.25);
     const auto sources = sources_for(options, 40, false);
