@@ -234,9 +234,12 @@ private:
             if (without_ > 0) return without(x);
             ++asked_;
             const std::array<double, 3> t = space_.in_voxels(x);
-            const bool is_within = (t[0] > above_[0]) & (t[0] < below_[0]) & (t[1] > above_[1]) &
-                                   (t[1] < below_[1]) & (t[2] > above_[2]) & (t[2] < below_[2]);
-            if (!is_within) return enter(x);
+            unsigned within = 1;  // without a branch for each face
+            for (std::size_t a = 0; a < 3; ++a) {
+                within &= static_cast<unsigned>(t[a] > above_[a]);
+                within &= static_cast<unsigned>(t[a] < below_[a]);
+            }
+            if (within == 0) return enter(x);
             return space_.value_in(at_, t);
         }
         // Not inlined: otherwise what they need is also done for places in the brick.

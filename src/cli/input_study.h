@@ -36,8 +36,8 @@ bool are_given(const GivenSettings& given, std::initializer_list<const char*> ke
 /// The largest factor between lengths that trees are adapted to by default.
 double default_within_of(const Workload& workload);
 
-/// The target of K_oV, of what a .vdb can hold, and of what follows primitives or another field, where
-/// neither a study file nor a setting says how it is made: lengths within 1.1x of the exact
+/// The target of K_oV, of what a .vdb can hold, and of what follows primitives or another field,
+/// where neither a study file nor a setting says how it is made: lengths within 1.1x of the exact
 /// field's; with tensors 1.2x, or as near as 50000 leaves come, which is a target missed.
 class DefaultTarget {
 public:

@@ -128,6 +128,7 @@ TEST_CASE(".vdb files that cannot be used end with one line") {
     box.write("s.csv", sources_csv);
     box.write("text.vdb", "not a volume at all");
     REQUIRE(box.run("export s.csv -o out.vdb --voxel 0.2 --grids h_min,density").status == 0);
+    REQUIRE(box.run("export s.csv -o density.vdb --voxel 0.2 --grids density").status == 0);
     const auto [arguments, expected] = GENERATE(table<std::string, std::string>({
         {"--sources none.vdb --vdb-size 1", "none.vdb"},
         {"--sources text.vdb --vdb-size 1", "text.vdb"},
@@ -139,7 +140,7 @@ TEST_CASE(".vdb files that cannot be used end with one line") {
         {"--sources s.csv --vdb-size 1", "vdb_size"},
         {"--sources none --field file", "field_file"},
         {"--sources none --field sphere --field-file out.vdb", "field_file"},
-        {"--sources none --field file --field-file out.vdb", "metric_diag"},
+        {"--sources none --field file --field-file density.vdb", "metric_diag"},
         {"--sources none --field file --field-file no.vdb", "no.vdb"},
         {"--sources none --field file --field-file out.vdb --field-grid speed", "no grid 'speed'"},
     }));
