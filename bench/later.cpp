@@ -7,8 +7,7 @@
 // many sources at random places, each half as large as the exact field there.
 //
 // Names: SET/rho_R/STRUCTURE. Counters: later_ms and all_at_once_ms, means over the iterations, and
-// their quotient; later_sources; control nodes at the end; the visits of the later gradation, none
-// where all was graded anew. The time that is reported is later_ms.
+// their quotient; later_sources; control nodes at the end. The time that is reported is later_ms.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -70,13 +69,11 @@ std::unique_ptr<ControlSpaceBuilder> make(const CatalogueEntry& entry, const Wor
                        .takes_later_sources = true});
 }
 
-// The incremental one.
 constexpr GradationOptions gradation{.schedule = GradationSchedule::queue};
 
 void later(benchmark::State& state, const CatalogueEntry& entry, const Work& work) {
     double all_at_once = 0;
     double late = 0;
-    GradationReport report;
     for (auto _ : state) {
         Stopwatch time;
         auto space = make(entry, work);
@@ -90,13 +87,12 @@ void later(benchmark::State& state, const CatalogueEntry& entry, const Work& wor
         space->grade(gradation);
         time = {};
         space->insert(work.late);
-        report = space->grade(gradation);
+        space->grade(gradation);
         const double seconds = time.processor_seconds();
         late += seconds;
         state.SetIterationTime(seconds);
         state.counters["nodes"] = static_cast<double>(space->build()->footprint().control_nodes);
     }
-    if (report.visits) state.counters["visits"] = static_cast<double>(*report.visits);
     state.counters["later_sources"] = static_cast<double>(work.late.size());
     state.counters["later_ms"] = 1e3 * late / static_cast<double>(state.iterations());
     state.counters["all_at_once_ms"] = 1e3 * all_at_once / static_cast<double>(state.iterations());

@@ -23,7 +23,6 @@ namespace controlspace {
 ///
 ///   Stored          what it answers for a node: Metric, StoredMetric, or StoredLength
 ///   Storage(const std::shared_ptr<const LatticeData>&)   in parallel
-///   shares_field    whether it keeps the array of the data, which are a copy otherwise
 ///   bytes_for, and, if it does not keep all bits, stored: see GridKind
 ///   reader() -> r   for one thread: r(i, j, k) -> Stored, and what Stencil::sample requests
 ///   void add_to(Footprint&) const           its bytes
@@ -32,11 +31,11 @@ class GridSpace final : public ControlSpace, public HasControlNodes, public Save
     static constexpr bool are_lengths = is_stored_length<typename Storage::Stored>;
 
 public:
-    /// With `takes_later` it keeps what the builder needs to go on from its file.
-    GridSpace(std::shared_ptr<const LatticeData> data, bool takes_later)
-        : stencil_(data->domain(), data->cells()), storage_(data), remark_(data->remark()) {
-        if (takes_later) later_ = std::move(data);
-    }
+    explicit GridSpace(const std::shared_ptr<const LatticeData>& data)
+        : stencil_(data->domain(), data->cells()),
+          storage_(data),
+          remark_(data->remark()),
+          chosen_voxel_(data->chosen_voxel()) {}
 
     void sample(std::span<const Point> x, std::span<Metric> out) const override {
         stencil_.template sample<Metric>(x, storage_.reader(), out);
@@ -68,12 +67,7 @@ public:
         footprint.control_nodes = stencil_.lattice().size();
         footprint.remark = remark_;
         storage_.add_to(footprint);
-        if (given()) footprint.bytes_auxiliary += given()->bytes();
-        if (!later_) return footprint;
-        footprint.bytes_auxiliary += later_->later().requested.capacity() * sizeof(Metric);
-        if (!Storage::shares_field) {
-            footprint.bytes_auxiliary += later_->field().capacity() * sizeof(Metric);
-        }
+        footprint.bytes_auxiliary += given().bytes();
         return footprint;
     }
 
@@ -82,9 +76,7 @@ public:
         lattice.neighbourhood = neighbourhood;
         return {lattice, metrics()};
     }
-    void save(StateWriter& state) const override {
-        save_lattice(metrics(), later_ ? later_->later() : LaterSources(), state);
-    }
+    void save(StateWriter& state) const override { save_lattice(metrics(), chosen_voxel_, state); }
 
 private:
     /// Keeps one reader, which may remember nodes of a tree.
@@ -125,15 +117,8 @@ private:
     Stencil<interpolation> stencil_;
     Storage storage_;
     std::string remark_;
-    std::shared_ptr<const LatticeData> later_;  // where sources may come later
+    double chosen_voxel_;
 };
-
-/// The grid as its builder holds it.
-template <class Storage, Interpolation interpolation>
-std::unique_ptr<ControlSpace> grid_of(const std::shared_ptr<const LatticeData>& data) {
-    return std::make_unique<GridSpace<Storage, interpolation>>(data,
-                                                               data->options().takes_later_sources);
-}
 
 /// A grid in each precision: `Storage<M>` for what metrics are stored as, `Storage<Metric>` as its
 /// builder holds it.
@@ -145,12 +130,11 @@ struct AnyPrecision {
     template <Interpolation interpolation>
     static std::unique_ptr<ControlSpace> finish(const std::shared_ptr<const LatticeData>& data,
                                                 std::optional<Precision> precision) {
-        if (!precision) return grid_of<Storage<Metric>, interpolation>(data);
+        if (!precision) return std::make_unique<GridSpace<Storage<Metric>, interpolation>>(data);
         return with_stored<true>(
             *precision, data->field(),
             [&]<class M>(std::type_identity<M>) -> std::unique_ptr<ControlSpace> {
-                return std::make_unique<GridSpace<Storage<OrMetric<M>>, interpolation>>(data,
-                                                                                        false);
+                return std::make_unique<GridSpace<Storage<OrMetric<M>>, interpolation>>(data);
             });
     }
 };
@@ -166,9 +150,9 @@ struct OwnPrecision {
                                                 std::optional<Precision> precision) {
         if (precision) refuse_precision();
         if (!std::is_same_v<Storage, Lengths> && std::ranges::all_of(data->field(), is_isotropic)) {
-            return grid_of<Lengths, interpolation>(data);
+            return std::make_unique<GridSpace<Lengths, interpolation>>(data);
         }
-        return grid_of<Storage, interpolation>(data);
+        return std::make_unique<GridSpace<Storage, interpolation>>(data);
     }
 };
 

@@ -11,39 +11,9 @@
 #include "controlspace/geometry/detail/large_pages.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
-#include "controlspace/space/detail/past_gradation.h"
 #include "refuse.h"
 
 namespace controlspace {
-
-namespace {
-
-/// The nodes as Regradation wants them.
-struct RegradedNodes {
-    using Node = NodeIndex;
-
-    Lattice lattice;
-    std::span<const Metric> requested_metrics;
-    std::span<Metric> metrics;
-
-    double requested(NodeIndex node) const { return requested_metrics[node].xx; }
-    double field(NodeIndex node) const { return metrics[node].xx; }
-    void set(NodeIndex node, double h) { metrics[node] = Metric::isotropic(h); }
-    template <class Visit>
-    void for_each_link(NodeIndex node, Visit&& visit) const {
-        lattice.for_each_link(node, visit);
-    }
-};
-
-template <class Later, class State>
-void exchange(Later& later, State& state) {
-    exchange_past(later.past, state);
-    state("grid.requested", later.requested);
-    state("grid.lowered", later.lowered);
-    state("grid.requests_isotropic", later.requests_isotropic);
-}
-
-}  // namespace
 
 LatticeData::LatticeData(const SpaceOptions& options, const GridKind& kind)
     : options_(options),
@@ -60,9 +30,10 @@ LatticeData::LatticeData(const SpaceOptions& options, const GridKind& kind)
 }
 
 Voxels LatticeData::voxels_of(const SpaceOptions& options) const {
-    return choose_voxels(options, kind_.interpolation, [&](const Vector& nodes) {
-        return (options.takes_later_sources ? 2 : 1) * kind_.bytes_for(nodes);
-    });
+    // Where it is made again, both are there for a moment.
+    const double copies = options.takes_later_sources ? 2 : 1;
+    return choose_voxels(options, kind_.interpolation,
+                         [&](const Vector& nodes) { return copies * kind_.bytes_for(nodes); });
 }
 
 InsertionReport LatticeData::insert(std::span<const PointSource> sources) {
@@ -76,63 +47,32 @@ InsertionReport LatticeData::insert_between(std::span<const PointSource> sources
     const Stencil<interpolation> stencil(domain(), cells());
     const Lattice lattice = stencil.lattice();
     field();
-    std::vector<Metric>& requested = later_.requested.empty() ? field_ : later_.requested;
-    const auto lower = [this](Metric& metric, const Metric& by) {
-        metric = kind_.kept(intersection(metric, by));
-    };
     InsertionReport report;
     for (const PointSource& source : sources) {
         require_valid(source, report.sources, domain());
         ++report.sources;
         const Metric held =
             stencil.value(source.position, [&](auto i, auto j, auto k) -> const Metric& {
-                return requested[lattice.index(i, j, k)];
+                return field_[lattice.index(i, j, k)];
             });
         if (!calls_for_change(source.metric, held, options_.tolerance)) continue;
         ++report.inserted;
         stencil.for_each_node(source.position, [&](auto i, auto j, auto k) {
-            const NodeIndex node = lattice.index(i, j, k);
-            lower(field_[node], source.metric);
-            if (later_.requested.empty()) return;
-            lower(later_.requested[node], source.metric);
-            later_.lowered.push_back(node);
+            Metric& own = field_[lattice.index(i, j, k)];
+            own = kind_.kept(intersection(own, source.metric));
         });
-        later_.requests_isotropic = later_.requests_isotropic && is_isotropic(source.metric);
     }
     return report;
 }
 
 GradationReport LatticeData::grade(const NodeGradation& gradation) {
-    const GradationOptions& options = gradation.options;
     field();
-    GradationReport report;
-    if (!later_.requested.empty() && may_regrade(later_.past, options) &&
-        later_.requests_isotropic && !are_many(later_.lowered.size(), field_.size())) {
-        report = regrade();
-    } else {
-        if (!later_.requested.empty()) {
-            field_ = later_.requested;
-        } else if (options_.takes_later_sources) {
-            later_.requested = field_;
-        }
-        const Lattice nodes = lattice(neighbourhood_of(options));
-        report = gradation.field ? grade_to(*gradation.field, positions(nodes), field_)
-                                 : controlspace::grade(nodes, field_, options);
-        kind_.keep(field_);
-    }
-    later_.lowered.clear();
-    later_.past = {options, report.largest_ratio_left};
+    const Lattice nodes = lattice(neighbourhood_of(gradation.options));
+    const GradationReport report = gradation.field
+                                       ? grade_to(*gradation.field, positions(nodes), field_)
+                                       : controlspace::grade(nodes, field_, gradation.options);
+    kind_.keep(field_);
     return report;
-}
-
-GradationReport LatticeData::regrade() {
-    RegradedNodes nodes{lattice(neighbourhood_of(later_.past->options)), later_.requested, field_};
-    Regradation regradation(nodes, later_.past->options.ratio);
-    std::sort(later_.lowered.begin(), later_.lowered.end());
-    later_.lowered.erase(std::unique(later_.lowered.begin(), later_.lowered.end()),
-                         later_.lowered.end());
-    for (const NodeIndex node : later_.lowered) regradation.touch(node);
-    return regradation.run(later_.past->largest_ratio_left);
 }
 
 AdaptationReport LatticeData::adapt(const AdaptationGoal& goal) {
@@ -170,10 +110,9 @@ AdaptationReport LatticeData::adapt(const AdaptationGoal& goal) {
         if (fitted.is_stopped) stop = GrowthStop::time;
         voxels_ = std::move(fitted.voxels);
         options_.voxel = domain().edges().cwiseQuotient(voxels_.cells).maxCoeff();
+        chosen_voxel_ = options_.voxel;
     }
     field_ = std::move(fitted.nodes);
-    later_ = {};
-    later_.requests_isotropic = std::ranges::all_of(field_, is_isotropic);
 
     AdaptationReport report;
     report.reached = fitted.reached;
@@ -209,8 +148,6 @@ void LatticeData::assign(std::span<const Metric> metrics) {
     require_one_each(metrics.size(), lattice().size());
     field_.assign(metrics.begin(), metrics.end());
     kind_.keep(field_);
-    later_ = {};
-    later_.requests_isotropic = std::all_of(metrics.begin(), metrics.end(), is_isotropic);
 }
 
 std::unique_ptr<ControlSpace> LatticeData::finished(const std::shared_ptr<const LatticeData>& data,
@@ -219,22 +156,22 @@ std::unique_ptr<ControlSpace> LatticeData::finished(const std::shared_ptr<const 
     return data->kind_.finish(data, precision);
 }
 
-void save_lattice(const std::vector<Metric>& field, const LaterSources& later, StateWriter& state) {
+void save_lattice(const std::vector<Metric>& field, double chosen_voxel, StateWriter& state) {
     state("grid.field", field);
-    exchange(later, state);
+    if (chosen_voxel > 0) state("grid.chosen_voxel", chosen_voxel);
 }
 
 void LatticeData::load(const StateReader& state) {
-    const std::size_t nodes = lattice().size();
+    if (chooses_voxels_ && state.has("grid.chosen_voxel")) {
+        state("grid.chosen_voxel", chosen_voxel_);
+        state.require(is_length(chosen_voxel_), "grid.chosen_voxel", "is no length");
+        options_.voxel = chosen_voxel_;
+        voxels_ = voxels_of(options_);
+    }
     state("grid.field", field_);
-    exchange(later_, state);
-    constexpr auto misfit = "has another number of nodes than this grid";
-    state.require(field_.size() == nodes, "grid.field", misfit);
-    state.require(later_.requested.empty() || later_.requested.size() == nodes, "grid.requested",
-                  misfit);
+    state.require(field_.size() == lattice().size(), "grid.field",
+                  "has another number of nodes than this grid");
     require_metrics(state, "grid.field", field_);
-    require_metrics(state, "grid.requested", later_.requested);
-    require_below(state, "grid.lowered", later_.lowered, nodes);
 }
 
 Lattice LatticeData::lattice(Neighbourhood neighbourhood) const {

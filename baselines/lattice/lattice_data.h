@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "baselines/lattice/voxels.h"
-#include "controlspace/gradation/detail/regrade.h"
 #include "controlspace/gradation/node_graph.h"
 #include "controlspace/metric/stored_metric.h"
 #include "controlspace/space/control_space_builder.h"
@@ -19,14 +18,6 @@
 namespace controlspace {
 
 class LatticeData;
-
-/// What has to be known where sources may come after gradation.
-struct LaterSources {
-    std::vector<Metric> requested;   ///< by the sources alone; empty until it is kept apart
-    std::vector<NodeIndex> lowered;  ///< since the last gradation, with repetitions
-    std::optional<PastGradation> past;
-    bool requests_isotropic = true;
-};
 
 /// A grid of some system, as its builder needs it.
 struct GridKind {
@@ -48,7 +39,7 @@ struct GridKind {
 };
 
 /// Writes what LatticeData::load reads.
-void save_lattice(const std::vector<Metric>& field, const LaterSources& later, StateWriter& state);
+void save_lattice(const std::vector<Metric>& field, double chosen_voxel, StateWriter& state);
 
 /// What SharedBuilder makes grids with a regular lattice of nodes from, whatever their system: a
 /// flat array of metrics is filled and graded; the finished grid is made of it, in parallel, by the
@@ -70,7 +61,7 @@ public:
     static std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const LatticeData>& data,
                                                   std::optional<Precision> precision);
 
-    void save(StateWriter& state) const { save_lattice(field(), later_, state); }
+    void save(StateWriter& state) const { save_lattice(field(), chosen_voxel_, state); }
     void load(const StateReader& state);
 
     const Box& domain() const { return options_.domain; }
@@ -82,21 +73,20 @@ public:
     const std::string& remark() const { return voxels_.remark; }
     /// Metrics of all nodes, x fastest.
     const std::vector<Metric>& field() const;
-    const LaterSources& later() const { return later_; }
+    /// By adaptation; 0 where it chose none.
+    double chosen_voxel() const { return chosen_voxel_; }
 
 private:
     template <Interpolation interpolation>
     InsertionReport insert_between(std::span<const PointSource> sources);
     Voxels voxels_of(const SpaceOptions& options) const;
-    GradationReport regrade();
 
     SpaceOptions options_;  // with the voxel that was chosen, if one was
     GridKind kind_;
     bool chooses_voxels_;
+    double chosen_voxel_ = 0;
     Voxels voxels_;
     mutable std::vector<Metric> field_;  // empty until it is needed, so that files can be checked
-
-    LaterSources later_;
 };
 
 }  // namespace controlspace

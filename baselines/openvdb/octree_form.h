@@ -74,7 +74,7 @@ protected:
         footprint.depth = Tree::DEPTH - 1;
         footprint.bytes_auxiliary = cuts_.bytes();
         if (octree_) footprint.bytes_auxiliary += octree_->footprint().bytes_total();
-        if (given()) footprint.bytes_auxiliary += given()->bytes();
+        footprint.bytes_auxiliary += given().bytes();
         if (tree.root().getTableSize() > 1) {
             footprint.remark = fmt::format("{} upper nodes, which a query finds by the root",
                                            tree.root().getTableSize());

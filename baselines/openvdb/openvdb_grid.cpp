@@ -20,7 +20,6 @@ class VdbTree {
 
 public:
     using Stored = M;
-    static constexpr bool shares_field = false;
 
     explicit VdbTree(const std::shared_ptr<const LatticeData>& data) {
         if constexpr (std::is_same_v<M, Metric>) {

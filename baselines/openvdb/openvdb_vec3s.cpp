@@ -18,7 +18,6 @@ using Vec3sTree = openvdb::tree::Tree4<Vec3s, 5, 4, 3>::Type;
 class Vec3sPair {
 public:
     using Stored = Metric;
-    static constexpr bool shares_field = false;
 
     explicit Vec3sPair(const std::shared_ptr<const LatticeData>& data)
         : diagonals_(diagonal(largest_metric(data->options()))), off_diagonals_(Vec3s(0)) {

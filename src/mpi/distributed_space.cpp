@@ -106,8 +106,8 @@ struct DistributedSpace::Impl {
     void require_possible() const {
         const SpaceOptions& space = options.space;
         const std::string& name = options.structure;
-        const bool is_in_turn = space.vertices_in_turn || space.takes_later_sources;
-        const bool has_order = (name == "K_oV" || name == "K_oLB") && !options.target && is_in_turn;
+        const bool has_order =
+            (name == "K_oV" || name == "K_oLB") && !options.target && space.vertices_in_turn;
         if (has_order || (name != "K_oL" && name != "K_oV" && name != "K_oLB")) {
             refuse(
                 "{} depends on the order in which the whole tree is made, and is not built by "

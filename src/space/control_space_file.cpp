@@ -31,6 +31,9 @@ constexpr std::string_view signature =
     "\x89"
     "CTRL\r\n\x1a";
 constexpr std::uint32_t order_mark = 0x01020304;
+// Where sources may come later, builders kept what they requested beside the field, which is not
+// read: they build again from the sources.
+constexpr std::uint32_t oldest_version = 5;
 
 struct Header {
     std::uint32_t version = control_space_file_version;
@@ -39,6 +42,12 @@ struct Header {
 };
 constexpr std::size_t header_size = signature.size() + sizeof(Header);
 constexpr std::size_t checksum_size = sizeof(std::uint64_t);
+
+Header header_of(std::string_view bytes) {
+    Header header;
+    std::memcpy(&header, bytes.data() + signature.size(), sizeof header);
+    return header;
+}
 
 std::string_view bytes_of(const auto& value) {
     return {reinterpret_cast<const char*>(&value), sizeof value};
@@ -102,9 +111,6 @@ void fill(const CatalogueEntry& entry, const StateReader& state, SavedControlSpa
     }
     own->set_recipe(saved.recipe);
     own->load(state);
-    constexpr std::string_view given = "given";
-    own->set_given(has_sources(state, given) ? std::optional(load_sources(state, given))
-                                             : std::nullopt);
     own->set_grows_apart(state.has(grows_apart));
     saved.space = builder->build({.precision = saved.recipe.precision});
     if (!saved.recipe.precision) saved.builder = std::move(builder);
@@ -119,8 +125,7 @@ std::string_view checked_body(std::string_view bytes, const std::string& name) {
     if (bytes.size() < header_size + checksum_size) {
         fail("is truncated: copy it again, or save the control space again");
     }
-    Header header;
-    std::memcpy(&header, bytes.data() + signature.size(), sizeof header);
+    const Header header = header_of(bytes);
     if (header.order != order_mark) {
         fail("is altered (its order of bytes): copy it again, or save the control space again");
     }
@@ -128,7 +133,7 @@ std::string_view checked_body(std::string_view bytes, const std::string& name) {
         fail(fmt::format("has format version {}, this program reads up to {}: use a newer one",
                          header.version, control_space_file_version));
     }
-    if (header.version < control_space_file_version) {
+    if (header.version < oldest_version) {
         fail(
             fmt::format("has format version {}, which is read no longer: build it again from its "
                         "sources",
@@ -189,7 +194,7 @@ void save(const std::filesystem::path& file, const Saved* saved) {
         return out.commit();
     }
     saved->save(state);
-    if (saved->given()) controlspace::save(state, "given", *saved->given());
+    controlspace::save(state, saved->given(), recipe.options.takes_later_sources);
     if (saved->grows_apart()) state(grows_apart, std::uint64_t{1});
     write(file, state);
 }
@@ -262,7 +267,8 @@ SavedControlSpace open_control_space(const std::filesystem::path& file,
         state("compact.precision", saved.recipe.precision.emplace(), Precision::log8);
     }
     state("written_by", saved.saved_by);
-    saved.saved_by += fmt::format(", format {}", control_space_file_version);
+    saved.saved_by += fmt::format(
+        ", format {}", was_openvdbs ? control_space_file_version : header_of(bytes).version);
     fill(*entry, state, saved);
     return saved;
 }

@@ -89,6 +89,69 @@ SourceColumns load_sources(const StateReader& state, std::string_view name) {
             load_growths(state, name, count)};
 }
 
+std::size_t Given::bytes() const {
+    return (sources ? sources->bytes() : 0) + places.capacity() * sizeof(Point) +
+           (base ? base->capacity() : 0);
+}
+
+AdaptationGoal Given::goal_of(std::span<const PointSource> all) const {
+    AdaptationGoal complete = *goal;
+    complete.sources = all;
+    complete.places = places;
+    return complete;
+}
+
+namespace {
+
+constexpr std::string_view sources_name = "given";
+constexpr std::string_view base_name = "given.base";
+constexpr std::string_view is_inserted_name = "given.is_inserted";
+constexpr std::string_view places_name = "goal.places";
+
+template <class Goal, class State>
+void exchange(Goal& goal, State& state) {
+    state("goal.ratio", goal.ratio);
+    state("goal.target", goal.target);
+    state("goal.intersection", goal.intersection, IntersectionRule::in_turn);
+    state("goal.h_max", goal.h_max);
+    state("goal.precision", goal.precision, Precision::log8);
+    state("goal.max_leaves", goal.max_leaves);
+}
+
+}  // namespace
+
+void save(StateWriter& state, const Given& given, bool takes_later) {
+    if (!given.sources || (given.goal && given.goal->continuous)) return;
+    save(state, sources_name, *given.sources);
+    if (!takes_later) return;
+    state(is_inserted_name, given.is_inserted);
+    if (given.base) state(base_name, *given.base);
+    if (!given.goal) return;
+    exchange(*given.goal, state);
+    state(places_name, given.places);
+}
+
+Given load_given(const StateReader& state) {
+    Given given;
+    given.is_inserted = false;
+    if (!has_sources(state, sources_name)) return given;
+    given.sources = load_sources(state, sources_name);
+    if (state.has(is_inserted_name)) state(is_inserted_name, given.is_inserted);
+    if (state.has(base_name)) {
+        std::string base;
+        state(base_name, base);
+        given.base = std::make_shared<const std::string>(std::move(base));
+    }
+    if (state.has(places_name)) {
+        exchange(given.goal.emplace(), state);
+        state(places_name, given.places);
+        require_valid(GradationOptions{.ratio = given.goal->ratio});
+        state.require(given.goal->target > 0, "goal.target", "is no target");
+        state.require(is_length(given.goal->h_max), "goal.h_max", "is no length");
+    }
+    return given;
+}
+
 void require_alike_growth(std::span<const PointSource> sources) {
     for (std::size_t i = 0; i < sources.size(); ++i) {
         if (sources[i].growth == 0) continue;

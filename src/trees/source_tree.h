@@ -26,7 +26,7 @@ public:
     explicit SourceTree(const SpaceOptions& options) : Base(options, false) {}
 
     InsertionReport insert(std::span<const PointSource> sources) {
-        is_finished_ = options_.takes_later_sources;
+        is_finished_ = false;
         InsertionReport report;
         LongLists long_lists = storage_.long_lists();
         for (const PointSource& source : sources) {

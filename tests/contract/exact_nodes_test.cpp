@@ -116,7 +116,7 @@ STRUCTURE_CASE(holds_metrics,
     space->insert(all.first(all.size() - 40));
     space->grade({.ratio = 1.6});
     const std::vector<Metric> before = answers(*space, x);
-    CHECK(space->grade({.ratio = 1.6}).visits == 0u);
+    CHECK(space->grade({.ratio = 1.6}).operations == 0);
     CHECK(answers(*space, x) == before);
     space->grade({.ratio = g});
     CHECK(answers(*space, x) != before);

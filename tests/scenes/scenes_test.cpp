@@ -254,14 +254,14 @@ STRUCTURE_CASE(every_structure,
     });
 }
 
-STRUCTURE_CASE(keeps_node_values, "scenes whose sources come in three parts end as those at once") {
+STRUCTURE_CASE(does_not_round, "scenes whose sources come in three parts end as those at once") {
     for_each_scene([&](Scene scene, const auto& x, std::uint64_t seed) {
-        scene.options.takes_later_sources = true;
         // By the sources; or from node to node, where sources have no ratios of their own.
         const GradationOptions gradation =
             seed % 2 == 0 || scene.has_own_ratios() ? scene.gradation() : scene.from_node_to_node;
         const auto at_once = inserted(structure, scene);
         at_once->grade(gradation);
+        scene.options.takes_later_sources = true;
         const auto in_parts = editable(structure.make(scene.options));
         const std::span<const PointSource> all(scene.sources);
         const std::size_t third = all.size() / 3;

@@ -69,9 +69,9 @@ void sign(std::string& bytes) {
 TEST_CASE("files of control spaces: what they begin with") {
     const ScratchDirectory scratch("ctrl");
     const std::string bytes = saved(scratch, "K_oL");
-    // Signature, version 5, order of bytes, size: little-endian.
+    // Signature, version 6, order of bytes, size: little-endian.
     CHECK(bytes.substr(0, 16) == std::string("\x89"
-                                             "CTRL\r\n\x1a\5\0\0\0\4\3\2\1",
+                                             "CTRL\r\n\x1a\6\0\0\0\4\3\2\1",
                                              16));
     std::string signed_again = bytes;
     sign(signed_again);
@@ -91,7 +91,7 @@ TEST_CASE("files of control spaces: what is refused, and why") {
 
     std::string newer = bytes;
     put(newer, 8, control_space_file_version + 1);
-    CHECK_THAT(loading_error(scratch, newer), Contains("format version 6, this program reads up"));
+    CHECK_THAT(loading_error(scratch, newer), Contains("format version 7, this program reads up"));
     for (const std::uint32_t version : {1, 2, 3, 4}) {
         std::string older = bytes;
         put(older, 8, version);

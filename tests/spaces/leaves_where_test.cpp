@@ -75,22 +75,4 @@ TEMPLATE_TEST_CASE("leaves around a leaf: itself and its neighbours", "", KdNode
     });
 }
 
-TEMPLATE_TEST_CASE("leaves at a place: all that touch it", "", KdNode, OctreeNode) {
-    const Topology<TestType> tree = random_tree<TestType>();
-    std::mt19937 engine(2);
-    std::size_t most = 0;
-    for (int i = 0; i < 100; ++i) {
-        const Box box = tree.locate(random_place(engine)).box;
-        const Point x = corner(box, i % 8);
-        std::set<LeafIndex> expected, found;
-        tree.for_each_leaf([&](LeafIndex leaf, const Box& where) {
-            if (where.contains(x)) expected.insert(leaf);
-        });
-        for_each_leaf_at(tree, x, [&](LeafIndex leaf, const Box&) { found.insert(leaf); });
-        CHECK(found == expected);
-        most = std::max(most, found.size());
-    }
-    CHECK(most == 8);
-}
-
 }  // namespace controlspace::leaves_where_test

@@ -75,7 +75,6 @@ void add_bytes(const NanoHandle& handle, Footprint& footprint) {
 class NanoLengths {
 public:
     using Stored = StoredLength<float>;
-    static constexpr bool shares_field = false;
 
     explicit NanoLengths(const std::shared_ptr<const LatticeData>& data)
         : grid_(dense_lengths(data->lattice(), data->field())) {}
@@ -107,7 +106,6 @@ private:
 class NanoPair {
 public:
     using Stored = Metric;
-    static constexpr bool shares_field = false;
 
     explicit NanoPair(const std::shared_ptr<const LatticeData>& data)
         : grids_(data->lattice(), data->field()) {}

@@ -68,7 +68,7 @@ typedef struct cspace_sources {
     const double* lengths;   /**< n lengths, of isotropic sources */
     const double* growths; /**< NULL, or n gradation ratios of the sources' own, 1 or more; 0: that
                                 of the field. They need the exact field: structures that hold
-                                metrics refuse them once they were adapted, or loaded without
+                                metrics refuse them once they were adapted, or loaded, without
                                 takes_later_sources. */
 } cspace_sources;
 
@@ -120,7 +120,8 @@ CSPACE_API cspace_status cspace_build(const char* structure, const double* domai
  *                   finest_length (smallest length of the sources [length]: grids choose their
  *                   voxels by it), voxel (longest edge of a grid's voxels [length]), h_max (largest
  *                   length anywhere), g_r (gradation ratio), takes_later_sources (1: sources may
- *                   be inserted after gradation), max_memory [GiB]
+ *                   be inserted after gradation or adaptation, which cspace_grade() repeats with
+ *                   all sources), max_memory [GiB]
  * @param space      receives the control space; NULL after a failure */
 CSPACE_API cspace_status cspace_create(const char* structure, const double* domain,
                                        const char* options, cspace** space);
@@ -145,7 +146,8 @@ CSPACE_API cspace_status cspace_insert_sources(cspace* space, const cspace_sourc
 
 /** Limits the growth of lengths from point to point to the gradation ratio `ratio` (g_r >= 1; 0:
  * the g_r that it was created with): the control nodes get the exact field of the sources inserted.
- * To be called after all sources are inserted, unless the control space takes later sources. */
+ * To be called after all sources are inserted, unless the control space takes later sources: then
+ * it gives the field of all sources at once, and adapts again what was adapted, with this ratio. */
 CSPACE_API cspace_status cspace_grade(cspace* space, double ratio);
 
 /** Replaces the whole content, instead of insertion and gradation, by the graded field of `n`

@@ -54,7 +54,7 @@ public:
     }
 
     double ceiling(LeafIndex leaf, const Point&) const {
-        const Metric& m = metrics_.requested()[leaf];
+        const Metric& m = metrics_[leaf];
         if (form_ == QuadraticForm::published || !is_isotropic(m)) {
             return std::numeric_limits<double>::infinity();
         }
@@ -73,10 +73,7 @@ public:
         metrics_.lower(place.leaf, metric);
         isotropic_ = isotropic_ && is_isotropic(metric);
     }
-    void assigned() {
-        isotropic_ = std::ranges::all_of(metrics_.field(), is_isotropic) &&
-                     std::ranges::all_of(metrics_.requested(), is_isotropic);
-    }
+    void assigned() { isotropic_ = std::ranges::all_of(metrics_.field(), is_isotropic); }
     void graded(double ratio) {
         slope_ = ratio - 1;
         assigned();

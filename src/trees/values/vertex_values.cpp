@@ -29,16 +29,14 @@ VertexValues::VertexValues(const SpaceOptions& options) : corners_(1), metrics_(
 // corners; it is as large as the leaf's field there at most.
 NodeIndex VertexValues::vertex_at(const Point& x, const Box& box, const Corners& corners) {
     const auto weights = corner_weights((x - box.low).cwiseQuotient(divisible_edges(box)));
-    const Metric requested = interpolate(corners, weights, metrics_.requested());
+    const Metric requested = interpolate(corners, weights, metrics_.field());
     const auto next = static_cast<NodeIndex>(positions_.size());
     if (places_.is_empty()) places_ = PlaceIndex(positions_);
     const NodeIndex node = places_.find_or_enter(x, next, positions_);
     if (node == next) {
         make_room(positions_, 1);
         positions_.push_back(x);
-        metrics_.append(requested, metrics_.keeps_requested()
-                                       ? interpolate(corners, weights, metrics_.field())
-                                       : requested);
+        metrics_.append(requested);
     } else {
         metrics_.lower(node, requested);
     }

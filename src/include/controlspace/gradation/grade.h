@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "controlspace/gradation/law.h"
@@ -23,7 +22,8 @@ enum class GradationSchedule {
     /// Nothing is handed on from node to node. Where the field at a node is more than twice as long
     /// as a source in its cell requests, since the cell is too coarse, the request is kept.
     /// By the queue where that is not possible: under the mean-length law; for a field that was
-    /// assigned or adapted; in a builder that was loaded without its sources; and in `grade`.
+    /// assigned or adapted (SpaceOptions::takes_later_sources adapts it again); in a builder that
+    /// was loaded without its sources; and in `grade`.
     sources,
 };
 
@@ -42,13 +42,9 @@ struct GradationReport {
     /// Metrics made smaller, each counted every time; but once for isotropic metrics under the cone
     /// law and the queue schedule. By the sources: once each.
     std::uint64_t operations = 0;
-    /// Largest gradation ratio over all neighbours, under the law that was applied. After an
-    /// incremental gradation (gradation/regrade.h): an upper bound, over the nodes visited and all
-    /// neighbours of the gradation before. By the sources it is not evaluated, and stays 1: see
-    /// largest_gradation.
+    /// Largest gradation ratio over all neighbours, under the law that was applied. By the sources
+    /// it is not evaluated, and stays 1: see largest_gradation.
     double largest_ratio_left = 1;
-    /// Only for incremental gradation: how often a node's neighbours were visited.
-    std::optional<std::uint64_t> visits = std::nullopt;
 };
 
 /// The neighbours that are compared under these options.

@@ -22,8 +22,8 @@ namespace controlspace {
 //   ...        named arrays of numbers, each in chunks that Blosc has compressed (state.h)
 //   64 bits    checksum of all bytes before: XXH3
 
-/// Version of the format that is written, and the only one that is read.
-inline constexpr std::uint32_t control_space_file_version = 5;
+/// Version of the format that is written. Format 5 is read, too.
+inline constexpr std::uint32_t control_space_file_version = 6;
 
 /// How a structure was made.
 struct Recipe {

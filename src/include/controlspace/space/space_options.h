@@ -70,22 +70,24 @@ struct SpaceOptions {
     QuadraticForm quadratic_form = QuadraticForm::corrected;
     /// Of cones, in structures that keep sources, and in gradation by the sources.
     IntersectionRule intersection = IntersectionRule::order_free;
-    /// Sources may come after gradation. What they request is then kept beside the graded field:
-    /// insertion goes by it, and grading again gives the field of all sources at once, to the bit.
-    /// Of isotropic sources, under the cone law and by the queue, that costs in proportion to what
-    /// they change, as long as that is little; otherwise all is graded anew. Between the two, the
-    /// field is the old one, lowered at the new sources. Costs a second set of metrics and room to
-    /// grow; what is built keeps the sources, too.
+    /// Sources may come after gradation. The builder, and what it builds, then keep all that they
+    /// were given, and gradation builds again: the field is that of all sources at once, to the
+    /// bit. A builder that was adapted is adapted to all sources, to the same goal, with the ratio
+    /// of the gradation; a target that is missed then is not reported. Metrics that were assigned
+    /// stay what later sources are inserted into. Until then the field is the old one, lowered at
+    /// the new sources. Costs the memory of the sources, or of the assigned field, and while it is
+    /// built again that of the old field. A continuous field is not saved: what was adapted to one
+    /// goes on from its metrics once it is loaded.
     ///
     /// Without it, later sources are compared with the graded field, so that they cut fewer leaves,
-    /// and gradation from node to node starts from that. Structures that keep sources always accept
-    /// later ones: trees search the governing sources of all leaves again, which gives a field
-    /// close to that of all at once; `direct` builds its search anew.
+    /// and gradation from node to node starts from that. Trees that keep sources search the
+    /// governing sources of all leaves again, which gives a field close to that of all at once.
+    /// `direct` always gives the field of all sources.
     bool takes_later_sources = false;
     /// Trees with a metric a vertex (K_V, K_oV) and the balanced one (K_oLB), as published: sources
     /// are inserted one after the other; a new vertex takes what is interpolated there at that
     /// moment, and leaves are balanced after each source. Wanted for gradation from node to node
-    /// that is to give the paper's tables; where sources may come later it is done in any case.
+    /// that is to give the paper's tables.
     /// Otherwise leaves request what their sources do, as in K_L and K_oL, on all of TBB's threads;
     /// a vertex requests the intersection of the leaves around it, and leaves are balanced at the
     /// end.

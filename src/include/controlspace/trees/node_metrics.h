@@ -24,9 +24,7 @@ struct NodeView {
     decltype(auto) operator[](std::size_t node) const { return packing(metrics[node]); }
 };
 
-/// Metrics of the control nodes of a structure: the field, which gradation makes smaller; and,
-/// where sources may come after gradation (SpaceOptions::takes_later_sources), from the first
-/// gradation on also what the sources alone request.
+/// Metrics of the control nodes of a structure.
 class NodeMetrics {
 public:
     NodeMetrics(std::size_t nodes, const Metric& metric) : field_(nodes, metric) {}
@@ -37,37 +35,23 @@ public:
     std::span<const Metric> field() const { return field_; }
     std::span<Metric> field() { return field_; }
     NodeView<Metric> values() const { return {field_}; }
-    /// What the sources alone request: the field unless that is kept apart.
-    std::span<const Metric> requested() const { return keeps_requested() ? requested_ : field_; }
-    NodeView<Metric> requested_values() const { return {requested(), true}; }
-    bool keeps_requested() const { return !requested_.empty(); }
-    /// Whether all that is requested is isotropic; meaningless unless it is kept apart.
-    bool requests_isotropic() const { return requests_isotropic_; }
+    /// As insertion compares sources with.
+    NodeView<Metric> requested_values() const { return {field_, true}; }
 
     /// Appends `times` copies of a node.
     void repeat(std::size_t node, std::size_t times);
-    void append(const Metric& requested, const Metric& field);
-    /// Appends so many nodes, which are to be set; for a field that is what is requested.
+    void append(const Metric& m);
+    /// Appends so many nodes, which are to be set.
     void grow(std::size_t nodes);
-    /// Intersects what is requested, and so the field, with `m`.
+    /// Intersects a node with `m`.
     void lower(std::size_t node, const Metric& m);
-    /// Multiplies all lengths of a node, requested ones too.
+    /// Multiplies all lengths of a node.
     void scale(std::size_t node, double factor);
-    /// Sets the field alone.
     void set(std::size_t node, const Metric& m) { field_[node] = m; }
-
-    /// Makes the field what is requested, kept apart no longer, and returns a copy of it.
-    std::vector<Metric> release_requested();
-    /// Keeps what was requested before the field was graded.
-    void keep_requested(std::vector<Metric> requested);
-    /// From now on the field is what is requested.
-    void forget_requested() { requested_.clear(); }
 
     template <class Self, class State>
     static void exchange(Self&& self, State& state) {
         state("nodes.field", self.field_);
-        state("nodes.requested", self.requested_);
-        state("nodes.requests_isotropic", self.requests_isotropic_);
     }
     /// Throws InputError unless what was loaded are metrics, of so many nodes.
     void require_sound(const StateReader& state, std::size_t nodes) const;
@@ -80,8 +64,6 @@ public:
 
 private:
     std::vector<Metric> field_;
-    std::vector<Metric> requested_;  // empty unless kept apart
-    bool requests_isotropic_ = false;
 };
 
 }  // namespace controlspace

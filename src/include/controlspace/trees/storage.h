@@ -68,7 +68,6 @@ namespace controlspace {
 //                          longer after it
 //   assigned()             metrics were set from outside
 //   graded(ratio)          all metrics were graded with this ratio, or fitted to a field of it
-//                          (incremental gradation sets metrics alone)
 //   prefetch(leaf)         prefetches what value_in reads first
 //   ceiling(leaf, x)       upper bound of the requested isotropic length at x, now and after all
 //                          later insertions; infinity where there is none

@@ -2,14 +2,18 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "controlspace/gradation/grade.h"
 #include "controlspace/gradation/ordered_metrics.h"
 #include "controlspace/metric/metric.h"
 #include "controlspace/sources/point_source.h"
 #include "controlspace/sources/source_columns.h"
+#include "controlspace/space/adaptation.h"
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/detail/state.h"
 #include "controlspace/space/space_options.h"
@@ -26,6 +30,28 @@ void save(StateWriter& state, std::string_view name, const SourceColumns& source
 /// Throws InputError where they are not sound.
 SourceColumns load_sources(const StateReader& state, std::string_view name);
 bool has_sources(const StateReader& state, std::string_view name);
+
+/// What a builder was given, as far as it keeps that: from it the field is built again where
+/// sources come later (SpaceOptions::takes_later_sources).
+struct Given {
+    /// All sources; with a `base`, those that came after it. None where they are not known.
+    std::optional<SourceColumns> sources = {};
+    /// What it was adapted to, but for the sources; its spans are empty.
+    std::optional<AdaptationGoal> goal = {};
+    std::vector<Point> places = {};  ///< of the goal
+    /// The state of a field that was assigned, or loaded without its sources.
+    std::shared_ptr<const std::string> base = {};
+    bool is_inserted = true;  ///< nothing but one insertion of all sources has changed the field
+
+    std::size_t bytes() const;
+    AdaptationGoal goal_of(std::span<const PointSource> all) const;
+};
+
+/// The sources and, where sources may come later, the rest. A continuous field cannot be saved: the
+/// sources beside it are left out.
+void save(StateWriter& state, const Given& given, bool takes_later);
+/// Throws InputError where it is not sound, but for the base.
+Given load_given(const StateReader& state);
 
 /// Throws InputError if a source has a gradation ratio of its own: where the sources before it are
 /// not known, nodes are graded one by the other.

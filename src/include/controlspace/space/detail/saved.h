@@ -28,14 +28,10 @@ public:
     const std::optional<Recipe>& recipe() const { return recipe_; }
     void set_recipe(std::optional<Recipe> recipe) { recipe_ = std::move(recipe); }
 
-    /// The sources it was given, in builders of control nodes and, where sources may come later,
-    /// in what they build; none where they are not known or not needed.
-    const std::optional<SourceColumns>& given() const { return given_; }
-    void set_given(std::optional<SourceColumns> given) { given_ = std::move(given); }
-    /// Adds to them, where they are known.
-    void add_given(const auto& sources) {
-        if (given_) given_->add(sources);
-    }
+    /// What it was given: the sources, in builders of control nodes; and where sources may come
+    /// later, in all builders and in what they build.
+    const Given& given() const { return given_; }
+    void set_given(Given given) { given_ = std::move(given); }
 
     /// Whether sources have gradation ratios of their own: where the sources are not known any
     /// more, gradation from node to node would take the growth of such cones away.
@@ -45,7 +41,9 @@ public:
 private:
     bool grows_apart_ = false;
     std::optional<Recipe> recipe_;
-    std::optional<SourceColumns> given_;
+
+protected:
+    Given given_;
 };
 
 /// A builder that takes back what was saved. Throws InputError where what is read is not sound; it

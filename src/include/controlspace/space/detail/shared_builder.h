@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <ranges>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "controlspace/error.h"
 #include "controlspace/space/control_nodes.h"
@@ -58,7 +62,7 @@ public:
     Box domain() const override { return data_->domain(); }
     Footprint footprint() const override {
         Footprint footprint = data_->footprint();
-        if (given()) footprint.bytes_auxiliary += given()->bytes();
+        footprint.bytes_auxiliary += given().bytes();
         return footprint;
     }
     std::optional<Box> cell_at(const Point& x) const override { return data_->cell_at(x); }
@@ -106,93 +110,102 @@ concept HoldsMetrics = requires(Data& data, std::span<const Metric> metrics) {
 ///
 /// What it builds shares the data, which are copied before the next change as long as they are
 /// shared.
+///
+/// With SpaceOptions::takes_later_sources, gradation after anything but a single insertion makes
+/// the data anew from what was given, with one insertion of all sources. Data without options()
+/// keep all sources themselves.
 template <class Data>
 class SharedBuilder final
     : public std::conditional_t<HoldsMetrics<Data>, NodeBuilder, ControlSpaceBuilder>,
       public SavedBuilder {
     static constexpr bool has_nodes = HoldsMetrics<Data>;
     using Base = std::conditional_t<has_nodes, NodeBuilder, ControlSpaceBuilder>;
+    using Saved::given_;
 
 public:
     template <class... Arguments>
     explicit SharedBuilder(const Arguments&... arguments)
-        : data_(std::make_shared<Data>(arguments...)) {
-        if constexpr (has_nodes) this->set_given(SourceColumns());
+        : make_([arguments...] { return std::make_shared<Data>(arguments...); }), data_(make_()) {
+        if (has_nodes || takes_later()) given_.sources.emplace();
     }
 
     using ControlSpaceBuilder::insert;
     InsertionReport insert(std::span<const PointSource> sources) override {
-        if constexpr (has_nodes) {
-            const InsertionReport report = insert_and_keep(sources);
-            note_growth(sources);
+        if (has_nodes && !knows_sources()) require_alike_growth(sources);
+        begin_insertion();
+        const auto is_refused = [&](const PointSource& s) { return !is_valid(s, domain()); };
+        try {
+            const InsertionReport report = edit().insert(sources);
+            keep(sources);
             return report;
+        } catch (...) {
+            keep(std::span(sources.begin(), std::ranges::find_if(sources, is_refused)));
+            throw;
         }
-        return edit().insert(sources);
     }
     InsertionReport insert(const SourceColumns& sources) override {
         if constexpr (requires(Data & data) { data.insert(sources); }) {
             return edit().insert(sources);
-        } else if constexpr (has_nodes) {
-            if (!this->given()) return Base::insert(sources);
+        } else {
+            if (!knows_sources()) return Base::insert(sources);
             require_valid(sources, domain());
-            graded_by_sources_.reset();
-            this->add_given(sources);
-            const auto grows = [](double growth) { return growth != 0; };
-            if (std::ranges::any_of(sources.growths().values(), grows)) this->set_grows_apart(true);
+            begin_insertion();
+            given_.sources->add(sources);
+            note_growth(sources.growths().values());
             InsertionReport report;
             for_each_part(
                 sources, [&](std::span<const PointSource> part) { report += edit().insert(part); });
             return report;
-        } else {
-            return Base::insert(sources);
         }
     }
     GradationReport grade(const GradationOptions& options) override {
+        const bool builds_again = takes_later() && !given_.is_inserted;
+        if (given_.goal ? graded_ && graded_->ratio == options.ratio : graded_ == options)
+            return {};
+        if (given_.goal) {
+            adapt_again(options);
+            graded_ = options;
+            return {};
+        }
+        const auto grade = [&](const auto& wanted, bool is_settled) {
+            const auto data = builds_again ? data_from_given() : nullptr;
+            const GradationReport report = (data ? *data : edit()).grade(wanted);
+            if (data) data_ = data;
+            given_.is_inserted = false;
+            graded_.reset();
+            if (is_settled) graded_ = options;
+            return report;
+        };
         if constexpr (has_nodes) {
-            if (graded_by_sources_ == options) return {.visits = 0};
-            if (!this->given() && this->grows_apart()) {
+            if (!knows_sources() && this->grows_apart()) {
                 throw InputError(
                     "it holds sources with gradation ratios of their own, which are not known any "
                     "more: adapt it anew, or insert and grade them in a new one");
             }
-            const NodeGradation gradation(options, this->given() ? &*this->given() : nullptr,
+            const NodeGradation gradation(options, knows_sources() ? &*given_.sources : nullptr,
                                           data_->options());
-            const GradationReport report = edit().grade(gradation);
-            graded_by_sources_.reset();
-            if (gradation.field) graded_by_sources_ = options;
-            return report;
+            return grade(gradation, gradation.field || takes_later());
         } else {
-            return edit().grade(options);
+            return grade(options, takes_later());
         }
     }
     AdaptationReport adapt(const AdaptationGoal& goal) override {
-        forget_given();
+        given_ = {};
+        graded_.reset();
         if constexpr (has_nodes) {
             this->set_grows_apart(false);
-            note_growth(goal.sources);
+            note_growth(growths(goal.sources));
         }
-        const auto adapt = [this](const AdaptationGoal& g) {
-            if constexpr (requires(Data & data) { data.adapt(g); }) {
-                return edit().adapt(g);
-            } else {
-                return Base::adapt(g);
-            }
-        };
-        const AdaptationGoal wanted = bounded(goal);
-        if constexpr (has_nodes) {
-            const double longest = largest_metric(domain(), wanted.h_max).xx;
-            AdaptationReport report = adapt_for_precision(
-                wanted, longest, Data::order, adapt,
-                [this] { return data_->control_nodes(Neighbourhood::faces).metrics; });
-            if (this->recipe()) {
-                Recipe recipe = *this->recipe();
-                recipe.options.voxel = data_->options().voxel;  // a grid may have chosen it
-                this->set_recipe(std::move(recipe));
-            }
-            return report;
-        } else {
-            return adapt(wanted);
-        }
+        AdaptationReport report = adapt_data(goal);
+        given_ = {.is_inserted = false};
+        if (!takes_later()) return report;
+        given_.sources = columns_of(goal.sources);
+        given_.places.assign(goal.places.begin(), goal.places.end());
+        given_.goal = goal;
+        given_.goal->sources = {};
+        given_.goal->places = {};
+        graded_ = GradationOptions{.ratio = goal.ratio};
+        return report;
     }
     std::unique_ptr<ControlSpace> build(const BuildOptions& options) override {
         constexpr bool has_forms = requires { Data::finished(data_, options.precision); };
@@ -214,28 +227,91 @@ public:
     void assign(std::span<const Metric> metrics) {
         if constexpr (has_nodes) {
             edit().assign(metrics);
-            forget_given();
             this->set_grows_apart(false);
+            begin_with_field();
         }
     }
 
     void save(StateWriter& state) const override { data_->save(state); }
-    void load(const StateReader& state) override { edit().load(state); }
+    void load(const StateReader& state) override {
+        edit().load(state);
+        given_ = load_given(state);
+        graded_.reset();
+        if (!takes_later() || state.has("compact.precision")) return;
+        if (!given_.sources) begin_with_field();
+        if (given_.base) make_()->load(StateReader(*given_.base, "its base"));
+    }
 
 private:
+    bool takes_later() const {
+        if constexpr (requires { data_->options(); }) return data_->options().takes_later_sources;
+        return false;
+    }
+    // Whether the field is that of the sources given.
+    bool knows_sources() const { return given_.sources && !given_.base; }
+    void begin_insertion() {
+        graded_.reset();
+        if (given_.sources && !given_.sources->empty()) given_.is_inserted = false;
+    }
     // What they request counts in gradation, whether they change nodes or not.
-    InsertionReport insert_and_keep(std::span<const PointSource> sources) {
-        if (!this->given()) require_alike_growth(sources);
-        graded_by_sources_.reset();
-        const auto is_refused = [&](const PointSource& s) { return !is_valid(s, domain()); };
+    void keep(std::span<const PointSource> sources) {
+        if (given_.sources) given_.sources->add(sources);
+        note_growth(growths(sources));
+    }
+    // The field as it stands is what later sources are inserted into, each time.
+    void begin_with_field() {
+        given_ = {};
+        graded_.reset();
+        if (!takes_later()) return;
+        StateWriter state;
+        data_->save(state);
+        given_.sources.emplace();
+        given_.base = std::make_shared<const std::string>(state.bytes());
+    }
+    // With all sources inserted at once.
+    std::shared_ptr<Data> data_from_given() const {
+        std::shared_ptr<Data> data = make_();
+        if (given_.base) data->load(StateReader(*given_.base, "its base"));
+        for_each_part(*given_.sources,
+                      [&](std::span<const PointSource> part) { data->insert(part); });
+        return data;
+    }
+    // To the same goal and all sources, with another ratio.
+    void adapt_again(const GradationOptions& options) {
+        require_valid(options);
+        const std::vector<PointSource> all = given_.sources->all();
+        AdaptationGoal goal = given_.goal_of(all);
+        goal.ratio = options.ratio;
+        const std::shared_ptr<Data> before = std::exchange(data_, make_());
         try {
-            const InsertionReport report = edit().insert(sources);
-            this->add_given(sources);
-            return report;
+            adapt_data(goal);
         } catch (...) {
-            const auto first = std::ranges::find_if(sources, is_refused);
-            this->add_given(std::span(sources.begin(), first));
+            data_ = before;
             throw;
+        }
+    }
+    AdaptationReport adapt_data(const AdaptationGoal& goal) {
+        const auto adapt = [this](const AdaptationGoal& g) {
+            if constexpr (requires(Data & data) { data.adapt(g); }) {
+                return edit().adapt(g);
+            } else {
+                return Base::adapt(g);
+            }
+        };
+        const AdaptationGoal wanted = bounded(goal);
+        if constexpr (has_nodes) {
+            const double longest = largest_metric(domain(), wanted.h_max).xx;
+            AdaptationReport report = adapt_for_precision(
+                wanted, longest, Data::order, adapt,
+                [this] { return data_->control_nodes(Neighbourhood::faces).metrics; });
+            if (this->recipe() && !takes_later()) {
+                Recipe recipe = *this->recipe();
+                recipe.options.voxel = data_->options().voxel;  // a grid may have chosen it
+                this->set_recipe(std::move(recipe));
+            }
+            return report;
+        } else {
+            return adapt(wanted);
         }
     }
     AdaptationGoal bounded(AdaptationGoal goal) const {
@@ -244,14 +320,15 @@ private:
         }
         return goal;
     }
-    void note_growth(std::span<const PointSource> sources) {
-        const auto grows = [](const PointSource& s) { return s.growth != 0; };
-        if (std::ranges::any_of(sources, grows)) this->set_grows_apart(true);
+    static auto growths(std::span<const PointSource> sources) {
+        return sources | std::views::transform(&PointSource::growth);
     }
-    // The field is no longer that of sources inserted.
-    void forget_given() {
-        this->set_given({});
-        graded_by_sources_.reset();
+    void note_growth(const auto& growths) {
+        if constexpr (has_nodes) {
+            if (std::ranges::any_of(growths, [](double growth) { return growth != 0; })) {
+                this->set_grows_apart(true);
+            }
+        }
     }
 
     template <class Space>
@@ -265,9 +342,7 @@ private:
         }
         if (precision) return space;  // it is only read
         saved.set_grows_apart(this->grows_apart());
-        if constexpr (has_nodes) {
-            if (data_->options().takes_later_sources) saved.set_given(this->given());
-        }
+        if (takes_later()) saved.set_given(given_);
         return space;
     }
 
@@ -290,8 +365,9 @@ private:
         }
     }
 
+    std::function<std::shared_ptr<Data>()> make_;  // new ones
     std::shared_ptr<Data> data_;
-    std::optional<GradationOptions> graded_by_sources_;  // since the last change
+    std::optional<GradationOptions> graded_;  // by the last change, so that it makes no other
 };
 
 }  // namespace controlspace

@@ -76,7 +76,6 @@ template <class Node, class Storage>
 void assign_nodes(const Topology<Node>& tree, Storage& storage, std::span<const Metric> metrics) {
     NodeMetrics& own = storage.metrics();
     require_one_each(metrics.size(), own.size());
-    own.forget_requested();
     if constexpr (nodes_per_leaf<Storage> == 1) {
         auto next = metrics.begin();
         tree.for_each_leaf([&](LeafIndex leaf, const Box&) { own.set(leaf, *next++); });
@@ -118,7 +117,6 @@ template <class Node, class Storage>
 GradationReport grade_nodes(const Topology<Node>& tree, Storage& storage,
                             const NodeGradation& gradation) {
     const GradationOptions& options = gradation.options;
-    storage.metrics().forget_requested();
     GradationReport report;
     if (gradation.field) {
         report = grade_nodes_to(*gradation.field, tree, storage);

@@ -114,10 +114,10 @@ protected:
     }
 
     /// Cuts the leaf that holds the source until it is short enough. Returns its place.
-    LeafPlace cut_for(const PointSource& source, auto&&... watched) {
+    LeafPlace cut_for(const PointSource& source) {
         LeafPlace place = topology_.locate(source.position);
         while (const auto cut = cuts().cut(place, source)) {
-            split(place, *cut, nullptr, watched...);
+            split(place, *cut, nullptr);
             place = topology_.locate_from(place, source.position);
         }
         return place;
@@ -142,13 +142,13 @@ protected:
     }
 
     /// Appends to `cut`, if given, the leaf and all others that had to be split before it or with
-    /// it; `watched` are TreeChanges, or none.
-    void split(const LeafPlace& place, const Subdivision& subdivision, std::vector<LeafIndex>* cut,
-               auto&&... watched) {
-        if (brick_levels_ > 0) return split_brick(place, cut, watched...);
+    /// it.
+    void split(const LeafPlace& place, const Subdivision& subdivision,
+               std::vector<LeafIndex>* cut) {
+        if (brick_levels_ > 0) return split_brick(place, cut);
         make_room_for(Node::arity - 1);
-        if (balanced_) refine_coarser_neighbours(place, cut, watched...);
-        split_alone(place, subdivision, cut, watched...);
+        if (balanced_) refine_coarser_neighbours(place, cut);
+        split_alone(place, subdivision, cut);
     }
 
     /// Splits leaves until none has a neighbour across a face that is more than one level coarser:
@@ -264,15 +264,14 @@ protected:
 
 private:
     void split_alone(const LeafPlace& place, const Subdivision& subdivision,
-                     std::vector<LeafIndex>* cut, auto&&... watched) {
+                     std::vector<LeafIndex>* cut) {
         const auto first_new = static_cast<LeafIndex>(topology_.leaves());
         topology_.split(place, subdivision);
         topology_.fit_jumps_roughly();
-        (watched.before_split(storage_, subdivision, place.leaf), ...);
         storage_.split(subdivision, place.leaf, first_new);
         if (cut != nullptr) cut->push_back(place.leaf);
     }
-    void split_brick(const LeafPlace& place, std::vector<LeafIndex>* cut, auto&&... watched) {
+    void split_brick(const LeafPlace& place, std::vector<LeafIndex>* cut) {
         TreePart brick{topology_.root(), domain()};
         for (int level = 0; level + brick_levels_ < place.level; ++level) {
             const std::size_t slot =
@@ -286,7 +285,7 @@ private:
         for (const Point& x : inside) {
             const LeafPlace leaf = topology_.locate(x);
             const Subdivision parts = Node::even_subdivision(domain(), leaf.level, leaf.box);
-            if (parts.is_proper()) split_alone(leaf, parts, cut, watched...);
+            if (parts.is_proper()) split_alone(leaf, parts, cut);
         }
     }
 
@@ -313,14 +312,13 @@ private:
     }
     // Brings all face neighbours to the level of a leaf or inner node at least, so that it may be
     // split.
-    void refine_coarser_neighbours(const LeafPlace& place, std::vector<LeafIndex>* cut,
-                                   auto&&... watched) {
+    void refine_coarser_neighbours(const LeafPlace& place, std::vector<LeafIndex>* cut) {
         for (int face = 0; face < 6; ++face) {
             LeafPlace neighbour;
             while (locate_across(topology_, place.box, face, place.box.centre(), neighbour) &&
                    neighbour.level < place.level) {
                 split(neighbour, Node::even_subdivision(domain(), neighbour.level, neighbour.box),
-                      cut, watched...);
+                      cut);
             }
         }
     }

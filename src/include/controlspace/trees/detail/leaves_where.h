@@ -22,13 +22,6 @@ void for_each_leaf_where(const Topology<Node>& tree, const TreePart& part, const
         part, [&](const TreePart& child) { for_each_leaf_where(tree, child, keep, visit); });
 }
 
-/// Leaves that touch the place `x`.
-template <class Node, class Visit>
-void for_each_leaf_at(const Topology<Node>& tree, const Point& x, Visit&& visit) {
-    for_each_leaf_where(
-        tree, {tree.root(), tree.domain()}, [&](const Box& box) { return box.contains(x); }, visit);
-}
-
 /// Leaves that overlap `box` or share a part of a face with it that has an area; with the
 /// neighbourhood `all`, also those that touch it elsewhere.
 template <class Node, class Visit>

@@ -2,17 +2,13 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 
-#include "controlspace/gradation/detail/regrade.h"
-#include "controlspace/space/detail/past_gradation.h"
 #include "controlspace/trees/detail/control_nodes.h"
 #include "controlspace/trees/detail/growing_tree.h"
 #include "controlspace/trees/detail/leaf_growth.h"
 #include "controlspace/trees/detail/met_sources.h"
 #include "controlspace/trees/detail/packed_tree.h"
-#include "controlspace/trees/detail/tree_changes.h"
 
 namespace controlspace {
 
@@ -31,8 +27,7 @@ concept HasCursor = requires(const Storage& s, const Topology<Node>& tree) {
 
 /// A tree whose control nodes carry metrics, for SharedBuilder: the cut and the storage are
 /// independent of each other, insertion (paper §3.1) is the same for all. Balanced trees are
-/// balanced after insertion; after every source with SpaceOptions::vertices_in_turn, or where
-/// sources may come later.
+/// balanced after insertion; after every source with SpaceOptions::vertices_in_turn.
 template <class Node, class Storage>
 class MetricTree : public GrowingTree<Node, Storage> {
     using Base = GrowingTree<Node, Storage>;
@@ -44,19 +39,17 @@ public:
     static constexpr int order = Storage::order;
 
     explicit MetricTree(const SpaceOptions& options, bool balanced = false)
-        : Base(options, balanced),
-          collects_(!options.vertices_in_turn && !options.takes_later_sources) {}
+        : Base(options, balanced), collects_(!options.vertices_in_turn) {}
 
     InsertionReport insert(std::span<const PointSource> sources) {
-        // Copying everything would be out of proportion to a few sources more.
-        is_finished_ = options_.takes_later_sources;
+        is_finished_ = false;
         InsertionReport report;
         // A leaf is its own metric alone: leaves grow at the same time.
         if constexpr (HasConstantLeaves<Storage>) {
             // It is balanced later, so that it does not depend on which leaf was cut when.
             const bool balances = Base::balanced_ && collects_;
-            if (balances) is_finished_ = are_collected_ = false;
-            if (balances || (!Base::balanced_ && !metrics().keeps_requested())) {
+            if (balances) are_collected_ = false;
+            if (balances || !Base::balanced_) {
                 insert_by_leaf([&] { return metrics().field(); },
                                [&](std::size_t more) { metrics().grow(more); }, sources, report);
             }
@@ -65,7 +58,7 @@ public:
                 if (requests_.empty()) {
                     requests_.assign(topology_.leaves(), largest_metric(options_));
                 }
-                is_finished_ = are_collected_ = false;
+                are_collected_ = false;
                 Base::bytes_to_come_ = bytes_collected_per_leaf;
                 const auto grow = [&](std::size_t more) {
                     make_room(requests_, more);
@@ -91,20 +84,18 @@ public:
     void assign(std::span<const Metric> metrics) {
         end_collection();
         assign_nodes(topology_, storage_, metrics);
-        past_.reset();
     }
 
     GradationReport grade(const NodeGradation& gradation) {
         end_collection();
         if (!gradation.field) Base::require_memory_to_grade(gradation.options.neighbourhood);
         topology_.fit_jumps();
-        return options_.takes_later_sources ? grade_beside_requested(gradation)
-                                            : grade_nodes(topology_, storage_, gradation);
+        return grade_nodes(topology_, storage_, gradation);
     }
 
     AdaptationReport adapt(const AdaptationGoal& goal) {
         forget_requests();
-        AdaptationReport report = Base::adapt(goal, [&] { past_.reset(); });
+        AdaptationReport report = Base::adapt(goal, [] {});
         finish();
         return report;
     }
@@ -145,19 +136,12 @@ public:
         if (!are_collected_) return collected().save(state);
         controlspace::save(topology_, state);
         save_storage(storage_, metrics(), state);
-        if (!options_.takes_later_sources) return;
-        changes_.save(state);
-        exchange_past(past_, state);
     }
     void load(const StateReader& state) {
         forget_requests();
         is_finished_ = true;
         topology_ = load_topology<Node>(Base::domain(), state);
         load_storage(storage_, topology_, state);
-        // A compact form has no changes.
-        if (!options_.takes_later_sources || state.has("compact.precision")) return;
-        changes_.load(state, topology_.leaves(), metrics().size());
-        exchange_past(past_, state);
     }
 
 private:
@@ -239,32 +223,8 @@ private:
         if (!calls_for_change(source.metric, held, options_.tolerance)) {
             return Insertion::already_met;
         }
-        if (metrics().keeps_requested()) {
-            const LeafPlace place = Base::cut_for(source, changes_);
-            lower_nodes(storage_, place, source.metric);
-            changes_.lower(storage_, place);
-        } else {
-            lower_nodes(storage_, Base::cut_for(source), source.metric);
-        }
+        lower_nodes(storage_, Base::cut_for(source), source.metric);
         return Insertion::inserted;
-    }
-
-    // Grades what the sources request, which stays beside the field; where little has changed, that
-    // alone.
-    GradationReport grade_beside_requested(const NodeGradation& gradation) {
-        const GradationOptions& options = gradation.options;
-        GradationReport report;
-        if (may_regrade(past_, options) && metrics().requests_isotropic() &&
-            !are_many(changes_.count(topology_.leaves()), metrics().size())) {
-            report = changes_.regrade(topology_, storage_, *past_);
-        } else {
-            std::vector<Metric> requested = metrics().release_requested();
-            report = grade_nodes(topology_, storage_, gradation);
-            metrics().keep_requested(std::move(requested));
-        }
-        changes_.begin(topology_.leaves(), metrics().size());
-        past_ = {options, report.largest_ratio_left};
-        return report;
     }
 
     // As long as nothing but insertion has changed it: what leaves request (of a storage that
@@ -274,10 +234,6 @@ private:
     bool collects_;
     bool are_collected_ = true;
     std::vector<Metric> requests_;
-
-    // Since the last gradation, where sources may come after it.
-    TreeChanges<Storage> changes_;
-    std::optional<PastGradation> past_;
 };
 
 }  // namespace controlspace
