@@ -26,7 +26,7 @@ CASE_OF_EACH(entry, all_trees(), "the footprint of a tree is what it has allocat
     const std::size_t before = live_bytes();
     auto space = filled(entry);
     const std::size_t allocated = live_bytes() - before;
-    std::size_t not_counted = 1600;                                    // of objects, and
+    std::size_t not_counted = 2048;                                    // of objects, and
     if (entry.has<MetricNodes>()) not_counted += 32 * sources.size();  // what the builder keeps
     const Footprint footprint = space->footprint();
     CHECK(footprint.bytes_total() <= allocated);
