@@ -24,12 +24,11 @@ namespace {
 void set_what_vdb_holds(Job& job) {
     const auto has_files = [](const CatalogueEntry& entry) { return entry.has<VdbFiles>(); };
     const auto rows = structures();
-    const auto entry = std::ranges::find_if(rows, has_files);
-    if (entry == rows.end()) refuse("this program has no OpenVDB: name a .ctrl");
     std::vector<std::string> able;
     for (const CatalogueEntry& row : rows) {
         if (has_files(row)) able.push_back(row.id);
     }
+    if (able.empty()) refuse("this program has no OpenVDB: name a .ctrl");
     for (const std::string& id : job.given["structures"]) {
         const CatalogueEntry* row = find_entry(rows, id);
         if (row != nullptr && !has_files(*row)) {
@@ -37,7 +36,7 @@ void set_what_vdb_holds(Job& job) {
         }
     }
     if (job.input.extension() == ".toml") return;
-    if (job.given["structures"].empty()) job.given["structures"] = {entry->id};
+    if (job.given["structures"].empty()) job.given["structures"] = {able.front()};
     if (job.given["precision"].empty()) job.given["precision"] = {"float"};
 }
 
@@ -65,8 +64,7 @@ Action add_build(Options& options) {
     add_study_input(options, job->input);
     options.add({"-o,--output", "FILE",
                  "File to write: .ctrl, or, of openvdb-tiles and openvdb-bricks, their lengths in "
-                 "floats in "
-                 "a .vdb",
+                 "floats in a .vdb",
                  "", true},
                 job->output);
     add_making_options(options, *job);

@@ -8,35 +8,25 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "baselines/fixtures.h"
+#include "baselines/octree_files.h"
 #include "baselines/octree_scenes.h"
-#include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/control_space_file.h"
-#include "damaged_copies.h"
 #include "scratch_directory.h"
 #include "space/sealed_vdb.h"
 
 namespace controlspace::openvdb_bricks_file_test {
 
 using octree_scenes::Scene;
-namespace {
 
-std::string error_of(const auto& call) {
-    try {
-        call();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
-}
+namespace {
 
 // Anywhere, at sources, and at corners of cells.
 std::vector<Point> places(const Scene& scene, const ControlSpace& space) {
@@ -177,11 +167,7 @@ TEST_CASE("other programs find lengths and places in a .vdb of bricks") {
     }
 
     // Written by such a program, it is a picture.
-    openvdb::io::File again((folder / "again.vdb").string());
-    again.write(openvdb::GridCPtrVec(grids.begin(), grids.end()));
-    CHECK_FALSE(holds_control_space(folder / "again.vdb"));
-    CHECK_THAT(error_of([&] { load_control_space(folder / "again.vdb", structures()); }),
-               Catch::Contains("no control space"));
+    octree_files::check_is_picture({grids.begin(), grids.end()});
 }
 
 TEST_CASE("what is no lengths of bricks is not saved to a .vdb") {
@@ -223,18 +209,7 @@ TEST_CASE("one brick alone is saved to a .vdb, and bricks beyond the child of th
 TEST_CASE("a damaged .vdb of bricks is refused in one line") {
     const Scene scene = octree_scenes::scene(0);
     const auto bricks = scene.adapted("openvdb-bricks", 1, Precision::floats);
-    const ScratchDirectory folder;
-    save_control_space(folder / "field.vdb", *bricks);
-    const std::string bytes = file_text(folder / "field.vdb");
-    const int count = for_each_damaged_copy(bytes, 200, [&](const std::string& damaged) {
-        if (damaged == bytes) return;
-        std::ofstream(folder / "damaged.vdb", std::ios::binary) << damaged;
-        const std::string error =
-            error_of([&] { load_control_space(folder / "damaged.vdb", structures()); });
-        REQUIRE_THAT(error, Catch::Contains("damaged.vdb"));
-        REQUIRE(std::ranges::count(error, '\n') == 0);
-    });
-    CHECK(count > 200);
+    octree_files::check_damaged_copies(*bricks);
 }
 
 TEST_CASE("a .vdb of bricks that lies about its grids is refused, though its seal is intact") {
@@ -251,8 +226,7 @@ TEST_CASE("a .vdb of bricks that lies about its grids is refused, though its sea
         openvdb::io::Stream(stream).write(grids, notes);
         std::string bytes = std::move(stream).str();
         seal_vdb(bytes);
-        std::ofstream(folder / "other.vdb", std::ios::binary) << bytes;
-        return error_of([&] { load_control_space(folder / "other.vdb", structures()); });
+        return octree_files::error_of_file(folder / "other.vdb", bytes);
     };
     const auto grids = grids_of(path);
     CHECK(error_with({grids.begin(), grids.end()}).empty());

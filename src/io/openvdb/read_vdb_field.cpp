@@ -187,8 +187,8 @@ AnalyticField tensor_field(const VdbFile& file) {
     return field_of({nullptr, diagonal, off_diagonal}, coarsest, finest);
 }
 
-AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
-    const auto grid = file.read_as<openvdb::FloatGrid>(what.grid);
+AnalyticField length_field(const VdbFile& file, const openvdb::FloatGrid::Ptr& grid,
+                           const VdbLengths& what) {
     // Lengths of densities are in the unit of the field, the others in that of the grid.
     const double scale = scale_of(*grid);
     double finest = largest_magnitude;
@@ -214,14 +214,14 @@ AnalyticField length_field(const VdbFile& file, const VdbLengths& what) {
                     what.density ? scale * what.density->coarsest : coarsest, finest);
 }
 
-/// Whether write_vdb wrote isotropic metrics, and no tensors.
-bool holds_lengths_alone(const VdbFile& file) {
+/// The lengths, where write_vdb wrote isotropic metrics and no tensors; or null.
+openvdb::FloatGrid::Ptr lengths_alone(const VdbFile& file) {
     if (file.has(diagonal_grid) || file.has(off_diagonal_grid) || !file.has(lengths_grid)) {
-        return false;
+        return nullptr;
     }
-    const auto note = file.read_as<openvdb::FloatGrid>(lengths_grid)
-                          ->getMetadata<openvdb::BoolMetadata>(isotropic_note);
-    return note && note->value();
+    auto grid = file.read_as<openvdb::FloatGrid>(lengths_grid);
+    const auto note = grid->getMetadata<openvdb::BoolMetadata>(isotropic_note);
+    return note && note->value() ? grid : nullptr;
 }
 
 }  // namespace
@@ -232,9 +232,13 @@ AnalyticField read_vdb_field(const std::filesystem::path& path, const VdbLengths
                what.density->coarsest);
     }
     const VdbFile file(path);
-    if (!what.grid.empty()) return length_field(file, what);
+    if (!what.grid.empty()) {
+        return length_field(file, file.read_as<openvdb::FloatGrid>(what.grid), what);
+    }
     if (what.density) file.fail("name the grid of densities: it holds {}", file.listing());
-    if (holds_lengths_alone(file)) return length_field(file, {.grid = std::string(lengths_grid)});
+    if (const auto grid = lengths_alone(file)) {
+        return length_field(file, grid, {.grid = std::string(lengths_grid)});
+    }
     return tensor_field(file);
 }
 

@@ -73,10 +73,9 @@ inline Metric sample_at(const ControlSpace& space, const Point& x) { return spac
 /// last four leaves, with the lengths at their corners. Where they are adapted to a field, so that
 /// leaves are longer than elements, a query along a walk takes 0.5 to 1 times as long as without;
 /// where leaves are as short as steps, and at random places, it stops remembering. openvdb-bricks
-/// remember the last brick of tensors (0.7 to 1 times) and codes (0.9 to 1). Other trees search as
-/// length_at does, which takes no longer than looking at what would be remembered; so do tensors.
-/// Keeps a reference to the space, which must outlive it, and is for one thread
-/// (otherwise: ThreadCursor).
+/// remember the last brick of tensors and of codes. Other trees, and trees of tensors, search as
+/// length_at does, which takes no longer than looking at what would be remembered. Keeps a
+/// reference to the space, which must outlive it, and is for one thread (otherwise: ThreadCursor).
 class Cursor {
 public:
     virtual ~Cursor() = default;
