@@ -61,8 +61,9 @@ STRUCTURE_CASE(does_not_round,
 
 STRUCTURE_CASE(every_structure,
                "columns of sources are inserted as an array is, and stay as they are") {
-    const Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
+    Work work = GENERATE(isotropic_sphere(), anisotropic_sphere());
     CAPTURE(work.name);
+    work.sources.resize(work.sources.size() / 4);
     const std::size_t half = work.sources.size() / 2;
     const auto sources = std::span(work.sources).first(half);
     const auto more = std::span(work.sources).subspan(half);
