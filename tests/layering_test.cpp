@@ -28,9 +28,11 @@ struct Include {
     bool is_public;  // of a public header
 };
 
-// Of the sources below a folder; includes of the compiler's and of libraries' headers left out.
-std::vector<Include> includes_in(const fs::path& folder) {
-    static const std::regex quoted("^#include \"([^\"]+)\".*");
+const std::regex quoted("^#include \"([^\"]+)\".*"), in_brackets("^#include <([^>]+)>.*");
+
+// Of the sources below a folder; includes of the compiler's and of libraries' headers are in
+// brackets.
+std::vector<Include> includes_in(const fs::path& folder, const std::regex& form = quoted) {
     std::vector<Include> includes;
     if (!fs::exists(folder)) return includes;
     for (const auto& file : fs::recursive_directory_iterator(folder)) {
@@ -38,7 +40,7 @@ std::vector<Include> includes_in(const fs::path& folder) {
         std::ifstream text(file.path());
         for (std::string line; std::getline(text, line);) {
             std::smatch match;
-            if (!std::regex_match(line, match, quoted)) continue;
+            if (!std::regex_match(line, match, form)) continue;
             std::string target = match[1];
             const bool is_public = target.starts_with("controlspace/");
             if (is_public) target.erase(0, sizeof "controlspace/" - 1);
@@ -87,4 +89,26 @@ TEST_CASE("public headers include public headers alone") {
         CHECK(fs::exists(headers / include.target));
     }
     CHECK(includes.size() > 30);
+}
+
+TEST_CASE("spdlog, CLI11, JSON and TOML are of studies and programs alone") {
+    const fs::path root = data_folder().parent_path();
+    int seen = 0;
+    for (const auto& [folder, layer] : layers) {
+        const fs::path place = folder == "baselines" ? root / folder : root / "src" / folder;
+        const bool may_include = folder == "study" || folder == "cli" || folder == "mpi";
+        for (const fs::path& part : {place, root / "src/include/controlspace" / folder}) {
+            for (const Include& include : includes_in(part, in_brackets)) {
+                const std::string library = first_folder(include.target);
+                if (library != "spdlog" && library != "CLI" && library != "nlohmann" &&
+                    library != "toml++") {
+                    continue;
+                }
+                CAPTURE(include.file.string(), include.line);
+                CHECK((may_include && part == place));
+                ++seen;
+            }
+        }
+    }
+    CHECK(seen > 10);
 }

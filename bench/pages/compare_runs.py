@@ -5,7 +5,7 @@ from collections import namedtuple
 
 from .figures import Spec, height_of, legend_below, lines_axis, log_axis
 from .results import grouped
-from .table import table_of
+from .table import shown, table_of
 
 # What is compared: the name, what less and more of it are called, the measure, and how it is drawn.
 Measure = namedtuple("Measure", "name less more key mark colour full", defaults=[True])
@@ -53,12 +53,6 @@ def differing_settings(before, after):
     return "; ".join(
         f"{key} {shown(before.settings.get(key))}, then {shown(after.settings.get(key))}"
         for key in sorted(differing_keys(before, after)))
-
-
-def shown(value):
-    if value in (None, [], ""):
-        return "not set"
-    return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
 
 
 def ratio_of(measure, pair):

@@ -15,6 +15,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator, StrMethodFormatter
 
+from .fronts import COSTS, FRONT_ERRORS, front_of, fronts
 from .results import grouped, plain
 from .table import TEXTS
 
@@ -172,29 +173,6 @@ def structure_of(row):
 
 
 # ---- Fronts
-
-COSTS = [("memory", "memory [MB]", "memory_MB"),
-         ("access time", "access at random places [ns/query]", "t_access_ns_random")]
-FRONT_ERRORS = [("Largest", "largest δ_R at the finer probes", "delta_R_fine_max"),
-                ("Mean", "mean δ_R at the finer probes", "delta_R_fine_mean")]
-
-
-def fronts(rows):
-    """Rows of the same work, each with at least two rows."""
-    rows = [row for row in rows if math.isfinite(row["delta_R_fine_max"])]
-    return {work: found for work, found in grouped(rows, lambda r: r.work).items()
-            if len(found) > 1}
-
-
-def front_of(rows, cost, error):
-    """The rows that no other beats, as in pareto.json: none of at most this error has a smaller
-    cost, beyond the quartiles of times, and none of equal cost a smaller error. Rows that a limit
-    stopped are not compared."""
-    points = [(row, row[cost], *row.spread(cost), row[error]) for row in rows
-              if not row.measures.get("stopped")]
-    return [row for row, at, low, _, e in points
-            if not any(y <= e and high < low or y < e and x == at for _, x, _, high, y in points)]
-
 
 def draw_front(ax, rows, cost, error, name_of, style_of):
     """Rows by a cost and an error, each (key, label), and a line along their front. Those of the same

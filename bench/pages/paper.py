@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .ranks import average_ranks
 from .results import InputError, grouped, plain
 
 HERE = Path(__file__).resolve().parent
@@ -416,18 +417,3 @@ def judge_claims(evidence):
                                   papers.count(True), len(papers),
                                   f"{shown[0]}: {shown[1][1]}" if shown else ""))
     return judged
-
-
-# ---- Ranks
-
-def average_ranks(values):
-    """From 1 for the smallest; equal values share the mean of their ranks."""
-    _, place, count = np.unique(values, return_inverse=True, return_counts=True)
-    return (np.cumsum(count) - (count - 1) / 2)[place].tolist()
-
-
-def spearman(a, b):
-    """Spearman's rho; None where there is nothing to order."""
-    if len(a) < 3 or len(set(a)) == 1 or len(set(b)) == 1:
-        return None
-    return float(np.corrcoef(average_ranks(a), average_ranks(b))[0, 1])

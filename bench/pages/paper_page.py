@@ -3,6 +3,7 @@
 import json
 
 from . import paper as p
+from .ranks import spearman
 from .results import InputError, described, plain
 from .table import Table, fixed
 
@@ -123,7 +124,7 @@ def rank_table(evidence):
             rhos = []
             for cells in groups.values():
                 cells = [cell for cell in cells if cell.paper.structure not in left_out]
-                rhos.append(p.spearman([cell.row[ours] for cell in cells],
+                rhos.append(spearman([cell.row[ours] for cell in cells],
                                        [getattr(cell.paper, theirs) for cell in cells]))
             known = [rho for rho in rhos if rho is not None]
             mean = sum(known) / len(known) if known else None

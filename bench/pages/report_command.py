@@ -8,11 +8,13 @@ import jinja2
 
 from . import compare_runs, fields, figures, paper_page
 from .command import OK
+from .fronts import COSTS, front_tables
 from .glossary import Glossary, one_spelling
+from .measure_tables import measure_tables
 from .paper import Evidence
 from .paper_command import evidence_in
-from .results import grouped, own_measures, read_results, write_file
-from .table import fixed, table_of
+from .results import read_results, write_file
+from .table import fixed, shown, table_of
 
 # parts: (kind, item) as report.html.j2 shows them; a part "fold" holds parts that may be opened.
 Section = namedtuple("Section", "title parts")
@@ -45,7 +47,7 @@ def origin_table(results):
         ["program", results.version], *([key, head[key]] for key in ("commit", "compiler", "flags")),
         ["processor", head["cpu"]], ["cores, threads", f"{head['cores']}, {head['threads']}"],
         ["date (UTC)", head["date"]], ["command", head["command_line"]],
-        ["sources, seed", f"{compare_runs.shown(settings.get('sources'))}, {settings.get('seed')}"],
+        ["sources, seed", f"{shown(settings.get('sources'))}, {settings.get('seed')}"],
         ["rows", f"{len(results.rows)}, {failed} failed"
          f"{'' if results.complete else '; not complete: cases are missing'}"]])
 
@@ -65,7 +67,7 @@ def compared(results):
     failed = len(rows) - len(results.measured)
     return (f"{counted(structures, 'structure')} in {counted(len(rows), 'row')}"
             f"{f', of which {failed} failed' if failed else ''}, on {sources} "
-            f"({compare_runs.shown(settings.get('sources'))}) under {counted(works, 'requested field')}: memory, "
+            f"({shown(settings.get('sources'))}) under {counted(works, 'requested field')}: memory, "
             f"creation and access times, and the error at {settings.get('probe_grid')}³ and "
             f"{settings.get('fine_probe_grid')}³ probes. Measured with controlspace "
             f"{results.version} on {head['cpu']}, {head['date']}."
@@ -92,57 +94,10 @@ def front_page(results):
     return parts + [("fold", Fold("Where it is from", tables([origin_table(results)]), False))]
 
 
-def front_tables(rows):
-    """A table for each work."""
-    for work, members in figures.fronts(rows).items():
-        fronts = [(name, figures.front_of(members, cost, "delta_R_fine_max"))
-                  for name, (_, _, cost) in zip(("memory", "access"), figures.COSTS)]
-        lines = [[row.method, fixed(row["memory_MB"]), fixed(row["t_access_ns_random"], 1),
-                  fixed(row["delta_R_fine_max"], 4),
-                  ", ".join(name for name, front in fronts if row in front)]
-                 for row in sorted(members, key=lambda r: r["delta_R_fine_max"])
-                 if any(row in front for _, front in fronts)]
-        yield work, table_of("front", lines)
-
-
-def measure_cells(row):
-    if row.measures is None:
-        return ["–"] * 13  # as many as below
-    # Older results do not have these.
-    share = row.measures.get("coarser_fine_share")
-    within = row.measures.get("within_fine_max")
-    times = [row.measures.get(f"t_access_ns_{order}") for order in ("near", "single")]
-    costs = [("memory_MB", 2), ("creation_s", 3), ("t_access_ns_random", 1)]
-    errors = [(key, 4) for key in ("delta_R_max", "delta_R_mean", "delta_R_p99", "delta_R_fine_max")]
-    return [str(row["cells"] or "–"), *(fixed(row[key], digits) for key, digits in costs),
-            *("–" if time is None else fixed(time, 1) for time in times),
-            *(fixed(row[key], digits) for key, digits in errors),
-            "–" if share is None else f"{100 * share:.2f} %",
-            "–" if within is None else f"{fixed(within, 3)}x", fixed(row["gradation_max_left"], 4)]
-
-
-def remark_on(row):
-    return f"failed: {row.error}" if row.measures is None else row["remark"]
-
-
-def measure_tables(rows):
-    """For each group a table of all measures; those that texts.toml does not know have columns of
-    their own."""
-    more = own_measures(rows)
-
-    def own(row):
-        values = (row.measures.get(key) if row.measures else None for key in more)
-        return ["–" if value is None else f"{value:.4g}" for value in values]
-
-    return {group: table_of("measures", [[row.label, *measure_cells(row), *own(row), remark_on(row)]
-                                         for row in members], [*more, "<remark"])
-            for group, members in grouped(rows, lambda r: r.group).items()}
-
-
 def front_parts(rows, styles, prefix):
     """For each work its figures and its table; figures of a kind are numbered through."""
     found = figures.draw(figures.pareto_figures(rows, styles), prefix)
-    each = len(figures.COSTS)
+    each = len(COSTS)
     parts = []
     for i, (work, table) in enumerate(front_tables(rows)):
         largest, mean = (found[each * k:each * (k + 1)] for k in (2 * i, 2 * i + 1))

@@ -22,9 +22,12 @@ NUMBERS = """sources_inserted tree_nodes cells control_nodes depth bytes_total b
         time + quartile for time in TIMES for quartile in ("", "_q1", "_q3")]
 ERRORS = """delta_S_max delta_R_max delta_R_mean delta_R_p95 delta_R_p99 delta_R_fine_max
     delta_R_fine_mean delta_R_fine_p95 delta_R_fine_p99 delta_metric_R_max""".split()
-KNOWN = {*NUMBERS, *ERRORS, "access_batch", "bytes_published_accounting", *(
-    f"coarser_{key}" for key in ("max", "share", "fine_max", "fine_share")), "finer_max",
-    "finer_share", "finer_fine_max", "finer_fine_share", "within_max", "within_fine_max", *(
+# Of newer programs; null where one is infinite, too.
+FACTORS = [*(f"{side}_{key}" for side in ("coarser", "finer", "within") for key in ("max", "fine_max")),
+           "G_det", "G_dir"]
+KNOWN = {*NUMBERS, *ERRORS, *FACTORS, "access_batch", "bytes_published_accounting", *(
+    f"{side}_{key}" for side in ("coarser", "finer") for key in ("share", "fine_share")),
+    "t_creation_known_s", *(
     f"{time}{quartile}" for time in ("t_insert_s", "t_gradation_s", "t_access_ns_single",
                                      "t_access_ns_near", "t_access_ns_walk", *METRIC_TIMES)
     for quartile in ("", "_q1", "_q3")), "size_MB", "memory_MB", "metrics_MB", "creation_s", "access_us"}
@@ -126,7 +129,7 @@ def size_in_table_1(setting, m):
 
 def checked(m, setting):
     """The measures of a row, with those that follow from them under the names of the paper's."""
-    for key in ERRORS:
+    for key in [*ERRORS, *(key for key in FACTORS if key in m)]:
         m[key] = math.inf if m[key] is None else m[key]
     for key in NUMBERS + ERRORS:
         if isinstance(m[key], bool) or not isinstance(m[key], (int, float)):

@@ -49,3 +49,10 @@ def cell(text):
 
 def fixed(x, digits=2):
     return f"{x:.{digits}f}"
+
+
+def shown(value):
+    """A setting of a study."""
+    if value in (None, [], ""):
+        return "not set"
+    return ", ".join(map(str, value)) if isinstance(value, list) else str(value)

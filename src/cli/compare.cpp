@@ -153,7 +153,7 @@ int run(const Compare& job, const std::string& command_line) {
             });
         run_into(folder, std::move(prepared), progress, interruption);
     }
-    print(tables_text(folder.rows(), rows, /*markdown=*/false));
+    print(tables_text(folder.rows(), rows));
     print(fmt::format("\nResults: {}\n", folder.path().string()));
     return std::ranges::all_of(folder.rows(), &Row::is_as_requested) ? 0 : some_failed;
 }

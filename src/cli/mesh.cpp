@@ -176,7 +176,7 @@ int mesh(const Job& job, const std::string& command_line) {
             mesh_study(study, {job.input, given}, folder);
         }
     }
-    print(mesh_tables(folder.rows(), TableStyle::terminal));
+    print(mesh_tables(folder.rows()));
     print(fmt::format("\nMeshes: {}\n", folder.path().string()));
     const bool as_requested = std::ranges::all_of(folder.rows(), [](const MeshRow& row) {
         return row.error.empty() && row.shortfall.empty();

@@ -70,12 +70,7 @@ void MeshFolder::add(MeshRow row, const Box& domain, const ControlSpace& referen
     }
 }
 
-void MeshFolder::end() {
-    record(true);
-    const std::string head =
-        fmt::format("# {}\n\n{}\n\n", study_.name, origin_text(provenance_, /*complete=*/true));
-    replace_file(path_ / "summary.md", head + mesh_tables(rows_, TableStyle::markdown));
-}
+void MeshFolder::end() { record(true); }
 
 void MeshFolder::remove_files_of_meshers() const {
     std::error_code ignored;

@@ -18,7 +18,7 @@
 
 namespace controlspace {
 
-/// Makes meshes one after the other into a folder of results, whose tables are kept up to date.
+/// Makes meshes one after the other into a folder of results, whose meshes.json is kept up to date.
 class MeshFolder {
 public:
     /// The folder is that of the study; it is not made yet. Progress goes to standard error unless
@@ -34,7 +34,7 @@ public:
     /// the row.
     void add(MeshRow row, const Box& domain, const ControlSpace& reference,
              const std::function<const ControlSpace&(MeshRow&)>& field = {});
-    /// Writes the summary.
+    /// Marks the results as complete.
     void end();
 
     /// Removes what meshers that are interrupted leave.

@@ -38,8 +38,7 @@ AnisotropicCones::AnisotropicCones(std::span<const PointSource> sources, double 
     : AnisotropicCones(undominated_sources(sources, g, cap)) {}
 
 AnisotropicCones::AnisotropicCones(UndominatedSources sources)
-    : least_length_(sources.least_length),
-      dropped_(sources.dropped),
+    : dropped_(sources.dropped),
       uncertainty_(sources.uncertainty),
       tree_(std::move(sources.tree)) {}
 
@@ -49,7 +48,20 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double
     const double certain = 1 - uncertainty_;
     const double enough = certain * (1 + tolerance);
     RunningIntersection found(largest);
-    auto& [queue, cones, batch] = search;
+    auto& [queue, cones] = search;
+    constexpr auto comes_after = [](const Waiting& a, const Waiting& b) {
+        return a.comes_after(b);
+    };
+    const auto push = [&](double length, std::uint32_t rank, std::uint32_t place) {
+        queue.push_back({length, rank, place});
+        std::push_heap(queue.begin(), queue.end(), comes_after);
+    };
+    const auto pop = [&] {
+        std::pop_heap(queue.begin(), queue.end(), comes_after);
+        const Waiting first = queue.back();
+        queue.pop_back();
+        return first;
+    };
 
     // Lanes where what has been found may be longer than `factors` times the metrics.
     const auto may_matter = [&](const Lanes& factors, const TensorLanes& squares,
@@ -71,7 +83,7 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double
         for (unsigned lanes = may_matter(factor, node.square, shortest); lanes != 0;
              lanes &= lanes - 1) {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-            queue.push(shortest[lane], 0, first_child + lane);
+            push(shortest[lane], 0, first_child + lane);
         }
     };
     const auto open_leaf = [&](std::uint32_t n) {
@@ -85,44 +97,31 @@ Metric AnisotropicCones::intersect(const Point& p, const Metric& largest, double
             // As the definition computes it: of like cones the last bit decides which comes first.
             const double exactly =
                 is_axis_aligned(source.metric) ? cone_factor(source, 1, p) : factor[lane];
-            queue.push(exactly * leaf.length[lane],
-                       1 + tree_.indices()[first_item + static_cast<std::size_t>(lane)],
-                       static_cast<std::uint32_t>(cones.size()));
+            push(exactly * leaf.length[lane],
+                 1 + tree_.indices()[first_item + static_cast<std::size_t>(lane)],
+                 static_cast<std::uint32_t>(cones.size()));
             cones.push_back(exactly * source.metric);
         }
     };
-    const auto changes_nothing = [&](const LengthQueue::Waiting& cone) {
-        return enough * cone.length >= found.longest() ||
-               is_below(found.square(), enough * enough, square(cones[cone.place]));
-    };
-
+    queue.clear();
     cones.clear();
-    const double least = certain * std::min(least_length_, found.longest());
-    queue.reset(least, found.longest());
-    queue.push(least, 0, 0);
-    while (queue.advance()) {
-        // The cones of a node are in its bucket or a later one: with all nodes of the bucket
-        // opened, all cones of the bucket are known.
-        batch.clear();
-        while (queue.has_more()) {
-            const LengthQueue::Waiting next = queue.take();
-            if (next.rank > 0) {
-                if (!changes_nothing(next)) batch.push_back(next);
-            } else if (enough * next.length >= found.longest()) {
-                continue;
-            } else if (tree_.is_leaf(next.place)) {
+    push(0, 0, 0);
+    // The cones of a node come after it: where a cone is the first of all that waits, those met
+    // later are longer.
+    while (!queue.empty()) {
+        const Waiting next = pop();
+        if (enough * next.length >= found.longest()) break;
+        if (next.rank == 0) {
+            if (tree_.is_leaf(next.place)) {
                 open_leaf(next.place);
             } else {
                 open_node(next.place);
             }
+            continue;
         }
-        std::sort(batch.begin(), batch.end());
-        for (const LengthQueue::Waiting& next : batch) {
-            if (changes_nothing(next)) continue;
-            if (found.shorten_to(cones[next.place]) && governing != nullptr) {
-                governing->push_back(next.rank - 1);
-            }
-        }
+        const Metric& cone = cones[next.place];
+        if (is_below(found.square(), enough * enough, square(cone))) continue;
+        if (found.shorten_to(cone) && governing != nullptr) governing->push_back(next.rank - 1);
     }
     return found.metric();
 }

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "cones/length_queue.h"
 #include "cones/tensor_tree.h"
 #include "cones/undominated.h"
 #include "controlspace/metric/metric.h"
@@ -21,13 +20,20 @@ public:
     /// g >= 1, the ratio of sources that have none. Lengths of `cap` or more do not matter.
     AnisotropicCones(std::span<const PointSource> sources, double g, double cap);
 
+    /// A cone, with its smallest length, or a node, with a length below that of all its cones.
+    struct Waiting {
+        double length;
+        std::uint32_t rank;   ///< of a node 0, of a cone 1 + the index of its source
+        std::uint32_t place;  ///< number of the node; of the cone among the cones met
+
+        bool comes_after(const Waiting& other) const {
+            return length != other.length ? length > other.length : rank > other.rank;
+        }
+    };
     /// Memory of `intersect`, to be kept from one call to the next.
     struct Search {
-        /// Cones, by their smallest length, and nodes, by what is below that of all their cones.
-        /// The rank of a cone is 1 + the index of its source; that of a node is 0.
-        LengthQueue queue;
-        std::vector<Metric> cones;                ///< met so far
-        std::vector<LengthQueue::Waiting> batch;  ///< cones of one bucket
+        std::vector<Waiting> queue;  ///< a heap, whose first comes before all others
+        std::vector<Metric> cones;   ///< met so far
     };
 
     /// `largest`, no longer than the cap, intersected with the cones at `p`, one after the other.
@@ -46,7 +52,6 @@ public:
 private:
     explicit AnisotropicCones(UndominatedSources sources);
 
-    double least_length_;  ///< of all sources
     std::size_t dropped_;
     double uncertainty_;  ///< relative, of lengths computed from the metrics given
     TensorTree tree_;

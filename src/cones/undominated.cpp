@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "controlspace/metric/intersection.h"
@@ -78,7 +79,6 @@ UndominatedSources undominated_sources(std::span<const PointSource> sources, dou
     double anisotropy = 1;
     for (const double a : anisotropies) anisotropy = std::max(anisotropy, a);
     all.uncertainty = std::min(4096 * std::numeric_limits<double>::epsilon() * anisotropy, 1.0);
-    for (const double length : lengths) all.least_length = std::min(all.least_length, length);
 
     const double weight = g > 1 ? 1 / (g - 1) : 1;
     std::vector<ConeTreeItem>& items = all.items;

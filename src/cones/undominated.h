@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -16,9 +15,8 @@ struct UndominatedSources {
     TensorTree tree;
     std::vector<ConeTreeItem> items;  ///< of the tree, in its order
     std::vector<double> lengths;      ///< the smallest of each source given
-    double least_length = std::numeric_limits<double>::infinity();  ///< of all sources
-    double uncertainty = 0;   ///< relative, of lengths computed from the metrics given
-    std::size_t dropped = 0;  ///< sources left out
+    double uncertainty = 0;           ///< relative, of lengths computed from the metrics given
+    std::size_t dropped = 0;          ///< sources left out
 };
 
 /// g >= 1, the ratio of sources that have none. Lengths of `cap` or more do not matter. Runs on all

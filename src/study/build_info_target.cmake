@@ -13,6 +13,6 @@ add_custom_target(controlspace_build_info
         -DVERSION=${PROJECT_VERSION}
         "-DCOMPILER=${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}"
         "-DFLAGS=${build_flags}"
-        -P ${CMAKE_CURRENT_SOURCE_DIR}/study/build_info.cmake
+        -P ${CMAKE_CURRENT_SOURCE_DIR}/build_info.cmake
     VERBATIM COMMENT "")
 set(CONTROLSPACE_BUILD_INFO ${CMAKE_CURRENT_BINARY_DIR}/build_info.cpp)

@@ -150,7 +150,7 @@ std::string forecast_text(const PreparedStudy& prepared,
         most_bytes = std::max(most_bytes, f ? f->bytes : 0);
         unknown += f ? 0 : 1;
     }
-    std::string text = render(table, TableStyle::terminal);
+    std::string text = render(table);
     if (unknown == forecasts.size()) {
         return text +
                fmt::format("\n{}: no trial predicts the cost (–)\n", counted(unknown, "case"));

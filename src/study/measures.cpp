@@ -59,8 +59,7 @@ std::vector<Measure> time_rows() {
                         return quartile(f.creation.known_s, 2);
                     },
                     .may_be_missing = true});
-    add_access("random", &F::access_random,
-               {"random ns", "{:.1f}", 1, "fastest access at random places"});
+    add_access("random", &F::access_random, {"random ns", "{:.1f}"});
     add_access("grid", &F::access_grid);
     const auto add_newer = [&](const char* order, AccessTime Finished::*time,
                                const Column& column = {}) {
@@ -68,7 +67,7 @@ std::vector<Measure> time_rows() {
         add_access(order, time, column);
         for (std::size_t i = earlier; i < rows.size(); ++i) rows[i].may_be_missing = true;
     };
-    add_newer("near", &F::access_near, {"near ns", "{:.1f}", 1, "fastest access near the sources"});
+    add_newer("near", &F::access_near, {"near ns", "{:.1f}"});
     add_access("single", &F::access_single, {"single ns", "{:.1f}"});
     add_newer("walk", &F::access_walk);
     add_newer("metric_random", &F::access_metric_random);

@@ -7,7 +7,6 @@
 
 #include "controlspace/study/measure.h"
 #include "study/grouped.h"
-#include "study/rank_correlation.h"
 #include "study/results_json.h"
 #include "study/tables.h"
 
@@ -41,7 +40,7 @@ std::span<const MeasureOf<MeshRow>> mesh_measures() {
                "s"),
         row_of("peak_bytes", &R::cost, &MeshCost::peak_bytes, {"MB", "{:.0f}", 1e-6}, "byte"),
         row_of("L_R", &R::conformity, &Conformity::l_r, {"L_R", "{:.4f}"}),
-        row_of("", &R::beside_exact, std::identity(), {"-exact", "{:+.4f}"}),
+        row_of("L_R_beside_exact", &R::beside_exact, std::identity(), {"-exact", "{:+.4f}"}),
         row_of("L_R_middle", &R::conformity, &Conformity::l_r_middle, {"middle", "{:.4f}"}),
         row_of("unit_share", &R::conformity, &Conformity::unit_share, {"unit", "{:.4f}"}),
         row_of("mean_length", &R::conformity, &Conformity::mean_length, {"length", "{:.3f}"}),
@@ -60,54 +59,25 @@ std::span<const MeasureOf<MeshRow>> mesh_measures() {
     return all;
 }
 
-/// "Rank correlation of L_R with ...", or nothing where there are too few structures.
-std::string correlation_text(const Rows& rows) {
-    std::vector<double> l_r, largest, mean;
-    for (const MeshRow* row : rows) {
-        if (!row->delta_r || !row->error.empty()) continue;
-        l_r.push_back(row->conformity.l_r);
-        largest.push_back(row->delta_r->max);
-        mean.push_back(row->delta_r->mean);
-    }
-    const auto with_largest = spearman(l_r, largest), with_mean = spearman(l_r, mean);
-    if (!with_largest || !with_mean) return "";
-    return fmt::format(
-        " Rank correlation (Spearman) of L_R with the largest δ_R {:.2f}, with the mean one "
-        "{:.2f}.",
-        *with_largest, *with_mean);
-}
-
 TextTable table_of(const std::string& title, const Rows& rows) {
     return measure_table(
         "Meshes: " + title,
         "L_R: share of edges of metric length 0.8 to 1.25; middle: by the metric at their middle "
         "alone; -exact: less that of the mesh of the exact field; unit: share from 1/√2 to √2. "
-        "q: quality in the metric. share: of the processors' time, in the queries of the field." +
-            correlation_text(rows),
+        "q: quality in the metric. share: of the processors' time, in the queries of the field.",
         "field", mesh_measures(), rows, mesh_label,
         [](const MeasureOf<MeshRow>& measure, const MeshRow& row) { return measure.value(row); });
 }
 
-TextTable histogram_table(const std::string& title, const Rows& rows) {
-    TextTable table{"Edges by metric length [%]: " + title, "", {{"field", Align::left}}, {}};
-    std::string from = "0";
-    for (const double bound : length_bounds) {
-        const std::string to = fmt::format("{:.3g}", bound);
-        table.columns.push_back({fmt::format("{}–{}", from, to)});
-        from = to;
-    }
-    table.columns.push_back({from + "–"});
-    for (const MeshRow* row : rows) {
-        if (!row->error.empty()) continue;
-        auto& cells = table.rows.emplace_back();
-        cells.push_back(mesh_label(*row));
-        for (const std::size_t count : row->conformity.histogram) {
-            const double share =
-                static_cast<double>(count) / static_cast<double>(row->conformity.edges);
-            cells.push_back(fmt::format("{:.2f}", 100 * share));
+/// The rows, with what they are beside the meshes of the exact fields.
+std::vector<MeshRow> compared(std::span<const MeshRow> rows) {
+    std::vector<MeshRow> found(rows.begin(), rows.end());
+    for (MeshRow& row : found) {
+        if (const MeshRow* exact = exact_beside(row, rows)) {
+            row.beside_exact = row.conformity.l_r - exact->conformity.l_r;
         }
     }
-    return table;
+    return found;
 }
 
 Json json_of(const MeshRow& row) {
@@ -115,6 +85,7 @@ Json json_of(const MeshRow& row) {
     const Case& c = row.setting;
     json["field"] = row.exact ? "exact" : c.structure;
     json["split"] = row.exact || !c.split ? "" : std::string(name_of(*c.split));
+    json["label"] = mesh_label(row);
     json["setting"] = mesh_setting(row);
     if (row.saved.empty()) json["case"] = to_json(c, case_parameters());
     json["mesher"] = name_of(row.mesher);
@@ -139,22 +110,16 @@ std::string mesh_setting(const MeshRow& row) {
     return row.saved.empty() ? setting_label(row.setting) : row.saved.string();
 }
 
-std::string mesh_tables(std::span<const MeshRow> rows, TableStyle style) {
+std::string mesh_tables(std::span<const MeshRow> rows) {
     std::vector<TextTable> tables;
-    std::vector<MeshRow> compared(rows.begin(), rows.end());
-    for (MeshRow& row : compared) {
-        if (const MeshRow* exact = exact_beside(row, rows)) {
-            row.beside_exact = row.conformity.l_r - exact->conformity.l_r;
-        }
-    }
+    const std::vector<MeshRow> all = compared(rows);
     for (const auto& [title, members] :
-         grouped(std::span<const MeshRow>(compared), [](const MeshRow& row) {
+         grouped(std::span<const MeshRow>(all), [](const MeshRow& row) {
              return fmt::format("{}, {}", name_of(row.mesher), mesh_setting(row));
          })) {
         tables.push_back(table_of(title, members));
-        tables.push_back(histogram_table(title, members));
     }
-    return render(tables, style);
+    return render(tables);
 }
 
 std::string mesh_json(const Provenance& provenance, const Study& study,
@@ -171,7 +136,7 @@ std::string mesh_json(const Provenance& provenance, const Study& study,
     json["length_bounds"] = length_bounds;
     json["complete"] = complete;
     json["rows"] = Json::array();
-    for (const MeshRow& row : rows) json["rows"].push_back(json_of(row));
+    for (const MeshRow& row : compared(rows)) json["rows"].push_back(json_of(row));
     return dump(json, 1) + "\n";
 }
 

@@ -14,7 +14,6 @@
 #include "controlspace/study/provenance.h"
 #include "controlspace/study/study.h"
 #include "study/mesh_settings.h"
-#include "study/text_table.h"
 
 namespace controlspace {
 
@@ -33,9 +32,9 @@ struct MeshRow {
     std::optional<double> beside_exact = {};  ///< L_R less that of the mesh of the exact field
 };
 
-/// All tables: the measures and the histogram for each setting, with the rank correlation of L_R
-/// and δ_R.
-std::string mesh_tables(std::span<const MeshRow> rows, TableStyle style);
+/// For the terminal: the measures for each setting. bench/tables adds the lengths of edges and the
+/// rank correlation of L_R and δ_R.
+std::string mesh_tables(std::span<const MeshRow> rows);
 
 /// meshes.json: provenance, settings of the study (but its runs) and of the meshing, and rows.
 std::string mesh_json(const Provenance& provenance, const Study& study,

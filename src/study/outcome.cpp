@@ -111,6 +111,24 @@ void add_stopped(Outcome& o, const Rows& measured, const StudyRows& columns) {
     if (!text.empty()) o.sentences.push_back(fmt::format("Not ranked: {}.", text));
 }
 
+/// Of `timed`: those whose quartiles of the access time overlap with those of the smallest median;
+/// empty where not all of them were timed in turns.
+Rows fastest_of(const Rows& timed) {
+    const auto in_batch = [](const Row* row) { return row->number("access_batch"); };
+    if (std::ranges::any_of(
+            timed, [&](const Row* row) { return in_batch(row) != in_batch(timed.front()); })) {
+        return {};
+    }
+    const std::string key = access_key;
+    const Row* fastest =
+        *std::ranges::min_element(timed, {}, [&](const Row* row) { return row->number(key); });
+    Rows found = timed;
+    std::erase_if(found, [&](const Row* row) {
+        return row->number(key + "_q1") > fastest->number(key + "_q3");
+    });
+    return found;
+}
+
 /// Of the rows of a work that were measured, of `rows`.
 Outcome outcome_of(const std::string& work, const Rows& measured, const Asked& asked, bool is_asked,
                    std::span<const Row> rows, const StudyRows& columns) {
@@ -136,7 +154,7 @@ Outcome outcome_of(const std::string& work, const Rows& measured, const Asked& a
         return o;
     }
     const Rows smallest = least(within, [](const Row& row) { return row.number("bytes_total"); });
-    Rows fastest = fastest_of(within, access_key);
+    Rows fastest = fastest_of(within);
     std::ranges::stable_sort(fastest, {}, [](const Row* row) { return row->number(access_key); });
     const Rows accurate = least(within, factor_of, rounding);
     o.smallest = indices(smallest);
@@ -162,22 +180,6 @@ Outcome outcome_of(const std::string& work, const Rows& measured, const Asked& a
 }
 
 }  // namespace
-
-std::vector<const Row*> fastest_of(std::span<const Row* const> timed, const std::string& key) {
-    if (timed.empty()) return {};
-    const auto in_batch = [](const Row* row) { return row->number("access_batch"); };
-    if (std::ranges::any_of(
-            timed, [&](const Row* row) { return in_batch(row) != in_batch(timed.front()); })) {
-        return {};
-    }
-    const Row* least =
-        *std::ranges::min_element(timed, {}, [&](const Row* row) { return row->number(key); });
-    Rows found{timed.begin(), timed.end()};
-    std::erase_if(found, [&](const Row* row) {
-        return row->number(key + "_q1") > least->number(key + "_q3");
-    });
-    return found;
-}
 
 std::vector<Outcome> outcomes(std::span<const Row> rows, const StudyRows& columns) {
     std::vector<Outcome> all;
@@ -209,17 +211,14 @@ std::vector<Outcome> outcomes(std::span<const Row> rows, const StudyRows& column
     return all;
 }
 
-std::string outcome_text(std::span<const Row> rows, const StudyRows& columns, TableStyle style) {
-    const bool markdown = style == TableStyle::markdown;
+std::string outcome_text(std::span<const Row> rows, const StudyRows& columns) {
     const std::vector<Outcome> all = outcomes(rows, columns);
     std::string text;
     for (const Outcome& outcome : all) {
-        text += markdown ? "\n## Which structure to take" : "\nWhich structure to take";
+        text += "\nWhich structure to take";
         if (all.front().work != all.back().work) text.append(": ").append(outcome.work);
-        text += markdown ? "\n\n" : "\n";
-        for (const std::string& sentence : outcome.sentences) {
-            text.append(markdown ? "- " : "").append(sentence).append("\n");
-        }
+        text += '\n';
+        for (const std::string& sentence : outcome.sentences) text.append(sentence).append("\n");
     }
     return text;
 }

@@ -9,7 +9,6 @@
 #include "controlspace/study/measure.h"
 #include "controlspace/study/study.h"
 #include "study/results_json.h"
-#include "study/text_table.h"
 
 namespace controlspace {
 
@@ -36,12 +35,8 @@ struct Outcome {
 std::vector<Outcome> outcomes(std::span<const Row> rows, const StudyRows& columns);
 
 /// The sentences, under the names of the works where there are several; empty without outcomes.
-std::string outcome_text(std::span<const Row> rows, const StudyRows& columns, TableStyle style);
+std::string outcome_text(std::span<const Row> rows, const StudyRows& columns);
 
 Json to_json(const Outcome& outcome);
-
-/// Of `timed`: those whose quartiles of the sampled measure `key` overlap with those of the
-/// smallest median; empty where not all of them were timed in turns.
-std::vector<const Row*> fastest_of(std::span<const Row* const> timed, const std::string& key);
 
 }  // namespace controlspace

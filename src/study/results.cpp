@@ -11,7 +11,6 @@
 #include "files/output_file.h"
 #include "refuse.h"
 #include "study/outcome.h"
-#include "study/pareto.h"
 #include "study/results_json.h"
 #include "study/sampled_fields.h"
 #include "study/tables.h"
@@ -148,31 +147,11 @@ void ResultsFolder::add(const Row& row) {
 }
 
 void ResultsFolder::finish(bool complete) {
-    const Provenance& p = provenance_;
-    replace_file(
-        folder_ / "summary.md",
-        fmt::format("# {}\n\ncontrolspace {}, {}, {} ({} cores, {} threads), {}.\n\nSources: {}. "
-                    "Seed {}.\n\n`{}`\n\n{}",
-                    study_.name, version_text(p), p.compiler, p.cpu, p.cores, p.threads, p.date,
-                    sources_name(study_.sources), study_.seed, p.command_line,
-                    complete ? "" : "Not complete: cases are missing.\n\n") +
-            tables_text(written_, rows_, /*markdown=*/true));
-    replace_file(folder_ / "pareto.json", pareto_json(written_, rows_.parameters));
     json_.append("", json_tail(complete, outcomes(written_, rows_)));
 }
 
-std::string tables_text(std::span<const Row> rows, const StudyRows& columns, bool markdown) {
-    std::vector<TextTable> tables = measure_tables(rows, columns);
-    for (TextTable& table : pareto_tables(rows, columns.parameters)) {
-        tables.push_back(std::move(table));
-    }
-    const TableStyle style = markdown ? TableStyle::markdown : TableStyle::terminal;
-    return render(tables, style) + outcome_text(rows, columns, style);
-}
-
-std::string origin_text(const Provenance& p, bool complete) {
-    return fmt::format("controlspace {}, {}, {}{}: `{}`", version_text(p), p.cpu, p.date,
-                       complete ? "" : ", not complete", p.command_line);
+std::string tables_text(std::span<const Row> rows, const StudyRows& columns) {
+    return render(measure_tables(rows, columns)) + outcome_text(rows, columns);
 }
 
 void replace_file(const std::filesystem::path& path, std::string_view text) {

@@ -2,37 +2,16 @@
 #include "study/tables.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "study/grouped.h"
-#include "study/outcome.h"
 
 namespace controlspace {
 namespace {
 
 using Rows = std::vector<const Row*>;
 
-/// "Fastest access: K_L s_L." where its quartiles are below those of all others; otherwise those
-/// that overlap with the smallest median.
-std::string verdict(const Measure& measure, const Rows& rows, const StudyRows& columns) {
-    Rows timed = rows;
-    std::erase_if(timed, [](const Row* row) { return !row->is_ranked(); });
-    if (timed.size() < 2 || measure.column.least.empty()) return "";
-    std::string what = measure.column.least;
-    what.front() = static_cast<char>(std::toupper(what.front()));
-    std::vector<std::string> labels;
-    for (const Row* row : fastest_of(timed, measure.key)) {
-        labels.push_back(structure_label(row->setting, columns.parameters));
-    }
-    if (labels.empty()) {
-        return fmt::format(" {}: no statement, since the rows were not timed in turns.", what);
-    }
-    return fmt::format(" {}: {}{}.", what, labels.size() > 1 ? "indistinguishable between " : "",
-                       fmt::join(labels, "; "));
-}
-
 TextTable table_of(const std::string& setting, const Rows& rows, const StudyRows& columns) {
-    TextTable table = measure_table(
+    return measure_table(
         "All measures: " + setting,
         "δ of isotropic lengths that differ by a factor k is √3(k + 1/k - 2): 0.02 is 1.11, 0.1 is "
         "1.27. Fine: at the finer probes. Within: largest factor there between a requested length "
@@ -49,8 +28,6 @@ TextTable table_of(const std::string& setting, const Rows& rows, const StudyRows
             const auto value = row.values.find(measure.key);
             return value != row.values.end() ? value->second : MeasuredValue();
         });
-    for (const Measure& measure : columns.measures) table.note += verdict(measure, rows, columns);
-    return table;
 }
 
 }  // namespace

@@ -38,8 +38,7 @@ TextTable measure_table(std::string title, std::string note, std::string header,
     return table;
 }
 
-/// All measures that have columns, one table for each setting. The note names the fastest
-/// structure, where the quartiles of its access times do not overlap with those of others.
+/// All measures that have columns, one table for each setting.
 std::vector<TextTable> measure_tables(std::span<const Row> rows, const StudyRows& columns);
 
 }  // namespace controlspace

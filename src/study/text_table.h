@@ -9,7 +9,8 @@ namespace controlspace {
 
 enum class Align { left, right };
 
-/// A table as text; every row has as many cells as there are columns.
+/// A table for the terminal; every row has as many cells as there are columns. Tables in Markdown
+/// are made from files of results by bench/tables.
 struct TextTable {
     struct Column {
         std::string header;
@@ -21,14 +22,12 @@ struct TextTable {
     std::vector<std::vector<std::string>> rows;
 };
 
-enum class TableStyle { terminal, markdown };
-
 /// "1 case", "2 cases".
 std::string counted(std::size_t number, const std::string& what);
 
 /// Title, note and aligned columns; UTF-8 counts by characters.
-std::string render(const TextTable& table, TableStyle style);
+std::string render(const TextTable& table);
 /// One after the other.
-std::string render(const std::vector<TextTable>& tables, TableStyle style);
+std::string render(const std::vector<TextTable>& tables);
 
 }  // namespace controlspace

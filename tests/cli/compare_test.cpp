@@ -30,7 +30,7 @@ TEST_CASE("all structures are compared on sources from a file", "[threads]") {
     INFO(outcome.err);
     REQUIRE(outcome.status == 0);
     CHECK_THAT(outcome.out, Contains("Results: out"));
-    for (const char* file : {"results.json", "results.csv", "summary.md"}) {
+    for (const char* file : {"results.json", "results.csv"}) {
         CHECK(fs::file_size(box / "out" / file) > 0);
     }
     const auto json = nlohmann::json::parse(file_text(box / "out" / "results.json"));
@@ -50,7 +50,6 @@ TEST_CASE("all structures are compared on sources from a file", "[threads]") {
         words.append(sentence.get<std::string>()).append("\n");
     }
     CHECK_THAT(outcome.out, Contains(words + "\nResults: out"));
-    CHECK_THAT(file_text(box / "out" / "summary.md"), Contains("\n## Which structure to take\n"));
     // One line of progress for each case, as standard error is no terminal.
     CHECK(lines(outcome.err) == json["rows"].size());
 }
@@ -284,7 +283,7 @@ TEST_CASE("Ctrl-C leaves whole files and status 130") {
                  "--resume out"));
     const auto json = nlohmann::json::parse(file_text(box / "out" / "results.json"));
     CHECK(json["complete"] == false);
-    CHECK(std::distance(fs::directory_iterator(box / "out"), fs::directory_iterator()) == 4);
+    CHECK(std::distance(fs::directory_iterator(box / "out"), fs::directory_iterator()) == 2);
 }
 
 TEST_CASE("Ctrl-C, where the folder of results is gone, ends in an error and status 130") {
@@ -292,7 +291,7 @@ TEST_CASE("Ctrl-C, where the folder of results is gone, ends in an error and sta
     const Outcome outcome = interrupted_after(box, "rm -r out");
     INFO(outcome.err);
     CHECK(outcome.status == 130);
-    CHECK_THAT(outcome.err, Contains("controlspace: error: ") && Contains("out/summary.md"));
+    CHECK_THAT(outcome.err, Contains("controlspace: error: ") && Contains("out/results.json"));
 }
 
 TEST_CASE("an interrupted study goes on where it was") {

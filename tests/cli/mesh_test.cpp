@@ -28,13 +28,12 @@ TEST_CASE("one command makes meshes, and says how they conform") {
     REQUIRE(outcome.status == 0);
     CHECK(lines(outcome.err) == 3);
     CHECK_THAT(outcome.out, Contains("exact") && Contains("K_oV") && Contains("L_R") &&
-                                Contains("1.25–1.41") && Contains("Meshes: out"));
+                                Contains("Meshes: delaunay") && Contains("Meshes: out"));
     for (const char* name : {"00-exact", "01-K_oV", "02-uniform-trilinear"}) {
         for (const char* ending : {".msh", ".mesh", ".sol", ".vtu"}) {
             CHECK(fs::file_size(box / "out" / (std::string(name) + ending)) > 1000);
         }
     }
-    CHECK_THAT(file_text(box / "out" / "summary.md"), Contains("## Meshes: delaunay"));
     const auto json = nlohmann::json::parse(file_text(box / "out" / "meshes.json"));
     CHECK(json["complete"] == true);
     REQUIRE(json["rows"].size() == 3);
@@ -161,7 +160,7 @@ TEST_CASE("Gmsh has a limit of time, and its crash is a row with its last words"
         "--time-limit 0.01 --output late");
     CHECK(late.status == 3);
     CHECK_THAT(late.err, Contains("Gmsh took longer than 0.01 s (--time-limit)"));
-    CHECK(std::distance(fs::directory_iterator(box / "late"), {}) == 2);  // no file of the child
+    CHECK(std::distance(fs::directory_iterator(box / "late"), {}) == 1);  // no file of the child
 
     // Triangles whose edges Gmsh 4.8 cannot recover: it throws where nobody catches.
     fs::copy_file(data_folder() / "../tests/data/bipyramid-of-ten.stl", box / "part.stl");
@@ -200,7 +199,7 @@ TEST_CASE("a study's cases are meshed as its options say") {
     REQUIRE(outcome.status == 0);
     CHECK(outcome.err.empty());
     CHECK_THAT(outcome.out, !Contains("exact ") || Contains("K_L s_L"));
-    CHECK(std::distance(fs::directory_iterator(box / "out"), fs::directory_iterator()) == 2);
+    CHECK(std::distance(fs::directory_iterator(box / "out"), fs::directory_iterator()) == 1);
     const auto json = nlohmann::json::parse(file_text(box / "out" / "meshes.json"));
     REQUIRE(json["rows"].size() == 2);
     CHECK(json["rows"][1]["mesher"] == "hxt");

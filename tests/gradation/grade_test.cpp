@@ -7,7 +7,6 @@
 
 #include "controlspace/error.h"
 #include "controlspace/metric/intersection.h"
-#include "gradation/schedules.h"
 #include "metric/draw.h"
 
 namespace controlspace::grade_test {
@@ -193,33 +192,6 @@ TEST_CASE("the isotropic cone law has one fixed point, to the bit, whatever the 
         grade(renamed(lattice, names), metrics, {});
         for (NodeIndex i = 0; i < names.size(); ++i) CHECK(metrics[names[i]] == reference[i]);
     }
-}
-
-TEST_CASE("sizes in rounds end as one queue of metrics does, to the bit") {
-    Lattice lattice{Point::Zero(), Vector(0.1, 0.23, 0.07), {13, 17, 15}};
-    lattice.neighbourhood = GENERATE(Neighbourhood::faces, Neighbourhood::all);
-    const double g = GENERATE(1.0, 1.1, 2.0);
-    std::vector<Metric> queued = random_isotropic(lattice.size(), 11);
-    std::vector<double> sizes;
-    for (const Metric& m : queued) sizes.push_back(m.xx);
-    grade_by_queue(Grading<Lattice>{lattice, queued, GradationLaw::cone, g});
-    grade_in_rounds(lattice, std::span(sizes), g);
-    for (std::size_t i = 0; i < sizes.size(); ++i) CHECK(Metric::isotropic(sizes[i]) == queued[i]);
-}
-
-TEST_CASE("a lattice is graded as by one queue, to the bit, isotropic or not") {
-    Lattice lattice{Point::Zero(), Vector(0.1, 0.23, 0.07), {9, 12, 10}};
-    lattice.neighbourhood = GENERATE(Neighbourhood::faces, Neighbourhood::all);
-    const bool isotropic = GENERATE(true, false);
-    Draw draw(3);
-    std::vector<Metric> queued = random_isotropic(lattice.size(), 7);
-    for (Metric& m : queued) {
-        if (!isotropic) m = draw.metric(m.xx, 20);
-    }
-    std::vector<Metric> graded = queued;
-    grade_by_queue(Grading<Lattice>{lattice, queued, GradationLaw::cone, 1.25});
-    grade(lattice, graded, {});
-    CHECK(graded == queued);
 }
 
 TEST_CASE("passes stop at ten, and say what they left") {

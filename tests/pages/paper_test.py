@@ -206,14 +206,6 @@ class Claims(unittest.TestCase):
                  for depth, delta in ((200, 2.0), (100, 7.0))]
         self.assertEqual(self.judged(rows, sentence)[1:5], (paper.DOES_NOT_STAND, 0, 0, 6))
 
-    def test_spearman_by_hand(self):
-        # Without ties rho = 1 - 6 sum d^2 / (n (n^2 - 1)); here d = 0, -1, 1, -1, 1.
-        self.assertAlmostEqual(paper.spearman([1, 2, 3, 4, 5], [10, 30, 20, 50, 40]), 1 - 6 * 4 / (5 * 24))
-        # Ranks 1 2 3 4 5 and 1 2 3.5 5 3.5: covariance 8, variances 10 and 9.5.
-        self.assertAlmostEqual(paper.spearman([1, 2, 3, 4, 5], [5, 6, 7, 8, 7]), 8 / 95 ** 0.5)
-        for a, b in (([], []), ([1, 2], [1, 2]), ([1, 2, 3], [4, 4, 4])):
-            self.assertIsNone(paper.spearman(a, b))
-
     def test_ours_beside_the_papers(self):
         def cell(rows, number, structure, split, column):
             table = paper_page.side_by_side(evidence_of(rows))[number]

@@ -2,18 +2,18 @@
 # report.html: the numbers of its figures and tables are those of rows; it is well-formed, needs no
 # other file, and is written whole or not at all.
 import base64
-import json
 import os
 import re
 import unittest
 from xml.etree import ElementTree
 
 import numpy as np
-from samples import (KEPT, QUICK, InFolder, failed_row, json_row, outcome, paper_json_rows, results_of, run,
+from samples import (QUICK, InFolder, failed_row, json_row, outcome, paper_json_rows, results_of, run,
                      times, with_fields, write_results)
 
 from pages import compare_runs, fields, figures
 from pages import report_command as report
+from pages.measure_tables import MEASURES, measure_tables
 from pages.results import InputError, read_results
 from pages.table import Table
 
@@ -82,25 +82,6 @@ class Results(InFolder):
 
 
 class Figures(InFolder):
-    def test_fronts_are_those_that_the_program_found(self):
-        checked = 0
-        for file in sorted(KEPT.glob("*/pareto.json")):
-            rows = figures.fronts(read_results(file.parent).measured)
-            for plot in json.loads(file.read_text()):
-                front = figures.front_of(rows[plot["work"]], plot["cost"], plot["error"])
-                self.assertEqual(sorted(row.method for row in front),
-                                 sorted(p["label"] for p in plot["points"] if p["front"]), file)
-                checked += 1
-        self.assertGreater(checked, 30)
-
-    def test_a_row_that_a_limit_stopped_is_on_no_front(self):
-        first, second, _ = three_rows()
-        stopped = {**first, "stopped": "stopped at 60 s, 9 leaves, δ 2.78 reached"}
-        before, after = (figures.front_of(results_of(rows).rows, "memory_MB", "delta_R_fine_max")
-                         for rows in ([first, second], [stopped, second]))
-        self.assertEqual([row.method for row in before], ["K_oL"])
-        self.assertEqual([row.method for row in after], [results_of([second]).rows[0].method])
-
     def test_70_structures_look_different(self):
         styles = figures.Styles(results_of([json_row(f"K_{i}") for i in range(70)]).rows)
         splits = [None, "s_G", "s_Gx", "s_M"]
@@ -276,7 +257,7 @@ class Page(InFolder):
 
     def test_failed_rows_and_measures_of_the_programs_own(self):
         own = json_row("K_V", "s_L") | {"node_share": 0.25}
-        table, = report.measure_tables(results_of(
+        table, = measure_tables(results_of(
             [json_row("K_oL"), own, failed_row("no memory", structure="direct")]).rows).values()
         self.assertEqual([(line[-1], line[table.columns.index("node_share")]) for line in table.rows],
                          [("", "–"), ("", "0.25"), ("failed: no memory", "–")])
@@ -319,6 +300,7 @@ class Page(InFolder):
         # Measures of the tables: their heads, but for words of plain English.
         for kind in ("measures", "front", "outcome", "delta"):
             used |= {c for c in figures.TEXTS["tables"][kind]["columns"] if not c.startswith("<")}
+        used |= {measure["column"] for measure in MEASURES}
         # Symbols anywhere, in figures too: words joined by "_", and Greek letters.
         svgs = (base64.b64decode(image.get("src").split(",")[1]).decode() for image in
                 tree.iter("img") if image.get("src").startswith("data:image/svg"))

@@ -153,7 +153,7 @@ TEST_CASE("it is said when nothing is within the error, and what is closest") {
     rows[0].values.clear();
     rows[0].error = "failed";
     CHECK(outcomes(rows, tree_rows()).empty());
-    CHECK(outcome_text(rows, tree_rows(), TableStyle::terminal).empty());
+    CHECK(outcome_text(rows, tree_rows()).empty());
 }
 
 TEST_CASE("each work has an outcome of its own, under its name") {
@@ -163,9 +163,9 @@ TEST_CASE("each work has an outcome of its own, under its name") {
     REQUIRE(all.size() == 2);
     CHECK(all[0].within == Indices{1, 2});
     CHECK(all[1].within == Indices{3});
-    const std::string text = outcome_text(rows, tree_rows(), TableStyle::markdown);
-    CHECK_THAT(text, Contains("\n## Which structure to take: rho 1, ") && Contains("g_r 1.5") &&
-                         Contains("\n- Smallest: exact (5 MB"));
+    const std::string text = outcome_text(rows, tree_rows());
+    CHECK_THAT(text, Contains("\nWhich structure to take: rho 1, ") && Contains("g_r 1.5") &&
+                         Contains("\nSmallest: exact (5 MB"));
     const auto json = to_json(all[0]);
     CHECK(json["smallest"] == Json{2});
     CHECK(json["measured"] == 3);

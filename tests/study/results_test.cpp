@@ -183,10 +183,8 @@ TEST_CASE("a folder of results is whole after each row, and is not written over"
         CHECK(stored()["rows"].size() == 2);
         CHECK(stored()["complete"] == true);
     }
-    CHECK_THAT(file_text(path / "summary.md"), Contains("| K_L s_L"));
     CHECK_THAT(file_text(path / "results.csv"), Contains("K_L,none,regular,1.0,"));
-    CHECK(names_in(path) ==
-          std::vector<std::string>{"pareto.json", "results.csv", "results.json", "summary.md"});
+    CHECK(names_in(path) == std::vector<std::string>{"results.csv", "results.json"});
     const auto again = [&](const std::filesystem::path& folder) {
         ResultsFolder(folder, {}, Study{}, rows_of_trees);
     };

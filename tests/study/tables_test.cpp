@@ -22,21 +22,6 @@ std::string cell(const TextTable& table, const std::string& structure, const std
     return "no such cell";
 }
 
-Row timed_row(const char* structure, std::vector<double> samples_ns, std::size_t batch = 0) {
-    Case c{.structure = structure};
-    Finished finished = sample_finished(c);
-    finished.access_random.samples_ns = std::move(samples_ns);
-    finished.access_batch = batch;
-    Row row;
-    row.setting = c;
-    for (const Measure& measure : measures()) row.values[measure.key] = measure.value(finished);
-    return row;
-}
-
-std::string note_of(const std::vector<Row>& rows) {
-    return measure_tables(rows, tree_rows()).front().note;
-}
-
 }  // namespace
 
 TEST_CASE("every row is in one table of measures that names its mode") {
@@ -74,17 +59,6 @@ TEST_CASE("every row is in one table of measures that names its mode") {
     for (const auto& table : tables) {
         for (const auto& row : table.rows) CHECK(row.size() == table.columns.size());
     }
-}
-
-TEST_CASE("the fastest is named only where quartiles do not overlap, in one batch") {
-    const Row slow = timed_row("slow", {50, 51, 52}), fast = timed_row("fast", {40, 41, 42});
-    const Row middle = timed_row("middle", {40.5, 41.4, 60});
-    const std::string place = "Fastest access at random places: ";
-    CHECK_THAT(note_of({slow, fast}), Contains(place + "fast."));
-    CHECK_THAT(note_of({slow, middle, fast}),
-               Contains(place + "indistinguishable between middle; fast."));
-    CHECK_THAT(note_of({slow, timed_row("later", {1, 1, 1}, 1)}), Contains(place + "no statement"));
-    CHECK_THAT(note_of({fast}), !Contains("Fastest"));
 }
 
 }  // namespace controlspace::tables_test

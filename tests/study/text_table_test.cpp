@@ -12,7 +12,7 @@ const TextTable table{
 }  // namespace
 
 TEST_CASE("terminal tables align by characters") {
-    CHECK(render(table, TableStyle::terminal) ==
+    CHECK(render(table) ==
           "Title\nNote.\n"
           "name    ρ\n"
           "----  ---\n"
@@ -20,18 +20,9 @@ TEST_CASE("terminal tables align by characters") {
           "µ       –\n");
 }
 
-TEST_CASE("Markdown tables mark the alignment and guard column marks") {
-    CHECK(render(table, TableStyle::markdown) ==
-          "## Title\n\nNote.\n\n"
-          "| name |   ρ |\n"
-          "| ---- | --: |\n"
-          "| a\\|b | 1.5 |\n"
-          "| µ    |   – |\n");
-}
-
 TEST_CASE("line breaks do not break a table") {
     const TextTable broken{"T", "", {{"c", Align::left}}, {{"a\nb"}}};
-    CHECK(render(broken, TableStyle::terminal) == "T\nc\n---\na b\n");
+    CHECK(render(broken) == "T\nc\n---\na b\n");
 }
 
 }  // namespace controlspace::text_table_test

@@ -39,8 +39,7 @@ struct GradationOptions {
 };
 
 struct GradationReport {
-    /// Metrics made smaller, each counted every time; but once for isotropic metrics under the cone
-    /// law and the queue schedule. By the sources: once each.
+    /// Metrics made smaller, each counted every time. By the sources: once each.
     std::uint64_t operations = 0;
     /// Largest gradation ratio over all neighbours, under the law that was applied. By the sources
     /// it is not evaluated, and stays 1: see largest_gradation.
@@ -64,9 +63,8 @@ double largest_gradation(const ControlGraph& graph, std::span<const Metric> metr
                          GradationLaw law);
 
 /// Gradation (paper §3.2): limits the growth of the control nodes' metrics to the ratio, in place;
-/// no metric gets larger. Runs on all of TBB's threads; the result does not depend on their number.
-/// `metrics.size()` must be the graph's size; for the queue, neighbours must be mutual. Throws as
-/// require_valid does.
+/// no metric gets larger. Runs on one thread. `metrics.size()` must be the graph's size; for the
+/// queue, neighbours must be mutual. Throws as require_valid does.
 GradationReport grade(const ControlGraph& graph, OrderedMetrics metrics,
                       const GradationOptions& options);
 

@@ -79,9 +79,6 @@ struct Column {
     std::string header;  ///< empty: not in tables
     std::string format;  ///< of the number times `scale`: "{:.2f} %"; of others "{}"
     double scale = 1;
-    /// "fastest", for times whose smallest value is worth a statement; there are measures with
-    /// `_q1` and `_q3` after their key then.
-    std::string least = {};
 };
 
 /// One measure of a `Subject`: the row that drives its files (results.json in both directions and

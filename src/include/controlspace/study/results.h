@@ -54,7 +54,7 @@ private:
 
 /// The folder of a study's results, a sink for its rows. Each row is appended to results.json and
 /// results.csv, which are complete at any time; the sampled fields of the first setting are written
-/// to fields/; summary.md and pareto.json are written at the end.
+/// to fields/. bench/tables makes tables in Markdown and Pareto fronts from it.
 class ResultsFolder {
 public:
     /// Makes the folder with its parents. Throws InputError if that fails, if results are in it
@@ -73,7 +73,7 @@ public:
     void sample_fields(const Finished& finished, Row& row);
     /// Throws InputError, naming the file, if it cannot be written.
     void add(const Row& row);
-    /// Writes the tables; `complete` is false where cases are missing.
+    /// Adds which structures to take; `complete` is false where cases are missing.
     void finish(bool complete);
 
 private:
@@ -87,11 +87,8 @@ private:
     GrowingFile csv_;
 };
 
-/// All tables: measures for each setting, and the Pareto fronts; then which structures to take.
-std::string tables_text(std::span<const Row> rows, const StudyRows& columns, bool markdown);
-
-/// One line: program, machine, command line and date of results.
-std::string origin_text(const Provenance& provenance, bool complete);
+/// For the terminal: the measures for each setting, then which structures to take.
+std::string tables_text(std::span<const Row> rows, const StudyRows& columns);
 
 /// Makes a folder for results with its parents. Throws InputError if that fails, or if `file`,
 /// which marks results, is in it already.
