@@ -16,6 +16,7 @@
 #include "controlspace/space/detail/until_late.h"
 #include "controlspace/space/sample_parallel.h"
 #include "controlspace/trees/detail/nearby_field.h"
+#include "trees/adaptation/fit_lengths.h"
 
 namespace controlspace {
 
@@ -50,7 +51,7 @@ Box with_margin(const Box& cell, const Box& domain) {
 
 LatticeFit::LatticeFit(const GoalField& field, const AdaptationGoal& goal, const Box& domain,
                        const GridKind& kind, int* stop)
-    : field_(field), domain_(domain), kind_(kind), stop_{.stop = stop} {
+    : field_(field), domain_(domain), kind_(kind), values_(goal.values), stop_{.stop = stop} {
     constexpr std::size_t most_suspects = 4096;
     const auto sources = goal.sources;
     const std::size_t step = sources.size() / most_suspects + 1;
@@ -66,7 +67,8 @@ LatticeFit::LatticeFit(const GoalField& field, const AdaptationGoal& goal, const
 }
 
 template <Interpolation interpolation>
-FittedLattice LatticeFit::fitted(const Voxels& voxels, const GrowthLimit* trial) const {
+FittedLattice LatticeFit::fitted(const Voxels& voxels, NodeValues values,
+                                 const GrowthLimit* trial) const {
     const Stencil<interpolation> stencil(domain_, voxels.cells);
     const Lattice lattice = stencil.lattice();
     FittedLattice fit{.voxels = voxels, .nodes = {}};
@@ -129,24 +131,51 @@ FittedLattice LatticeFit::fitted(const Voxels& voxels, const GrowthLimit* trial)
         }
         return true;
     };
-    if (trial != nullptr && !all_of_parts(suspects_.size(), trial, may_be_met)) return fit;
+    if (trial != nullptr && values == NodeValues::field &&
+        !all_of_parts(suspects_.size(), trial, may_be_met)) {
+        return fit;
+    }
 
     const auto nx = static_cast<std::size_t>(voxels.cells.x()),
                ny = static_cast<std::size_t>(voxels.cells.y());
     const auto count = static_cast<std::size_t>(voxels.cells.prod());
+    const auto cell_number = [&](std::size_t n) {
+        return Cell{static_cast<std::int32_t>(n % nx), static_cast<std::int32_t>(n / nx % ny),
+                    static_cast<std::int32_t>(n / nx / ny)};
+    };
     if constexpr (interpolation == Interpolation::nearest) {
         fit.nodes.resize(count);
     } else {
+        if (trial != nullptr && values == NodeValues::fitted && count > most_cells_to_fit) {
+            return fit;
+        }
         set_to_field();
+        if (values == NodeValues::fitted && count <= most_cells_to_fit) {
+            std::vector<FittedCell> cells(count);
+            for (std::size_t n = 0; n < count; ++n) {
+                const Cell cell = cell_number(n);
+                cells[n].box = stencil.box_of(cell);
+                for (std::size_t c = 0; c < 8; ++c) {
+                    cells[n].nodes[c] = static_cast<std::uint32_t>(stencil.at_corner(
+                        cell, c, [&](auto i, auto j, auto k) { return lattice.index(i, j, k); }));
+                }
+            }
+            std::vector<double> lengths(fit.nodes.size());
+            std::ranges::transform(fit.nodes, lengths.begin(), &Metric::xx);
+            const double factor = fit_lengths(field_, cells, lengths);
+            // What is missed at its samples needs no proof.
+            if (trial != nullptr && factor > largest_factor_within(target)) return fit;
+            std::ranges::transform(lengths, fit.nodes.begin(), [&](double length) {
+                return kind_.kept(Metric::isotropic(length));
+            });
+        }
     }
     std::vector<double> of_cell(interpolation == Interpolation::nearest ? count : 0);
     fit.met = all_of_parts(count, trial, [&](std::size_t first, std::size_t end) {
         NearbyField nearby(field_);
         bool holds = true;
         for (std::size_t n = first; n < end && (holds || trial == nullptr); ++n) {
-            const Cell cell{static_cast<std::int32_t>(n % nx),
-                            static_cast<std::int32_t>(n / nx % ny),
-                            static_cast<std::int32_t>(n / nx / ny)};
+            const Cell cell = cell_number(n);
             const Box box = stencil.box_of(cell);
             if constexpr (interpolation == Interpolation::nearest) {
                 std::tie(fit.nodes[n], of_cell[n]) = constant_in(box, nearby);
@@ -195,13 +224,19 @@ bool LatticeFit::may_keep_probes(const Stencil& stencil, const GrowthLimit& limi
     });
 }
 
-FittedLattice LatticeFit::fitted(const Voxels& voxels, const GrowthLimit* trial) const {
+FittedLattice LatticeFit::fitted(const Voxels& voxels, NodeValues values,
+                                 const GrowthLimit* trial) const {
     return kind_.interpolation == Interpolation::nearest
-               ? fitted<Interpolation::nearest>(voxels, trial)
-               : fitted<Interpolation::trilinear>(voxels, trial);
+               ? fitted<Interpolation::nearest>(voxels, values, trial)
+               : fitted<Interpolation::trilinear>(voxels, values, trial);
 }
 
-FittedLattice LatticeFit::at(const Voxels& voxels) const { return fitted(voxels, nullptr); }
+FittedLattice LatticeFit::at(const Voxels& voxels) const {
+    FittedLattice fit = fitted(voxels, values_, nullptr);
+    if (fit.met || values_ == NodeValues::field) return fit;
+    FittedLattice of_field = fitted(voxels, NodeValues::field, nullptr);
+    return of_field.reached < fit.reached ? of_field : fit;
+}
 
 FittedLattice LatticeFit::coarsest(
     const std::function<std::optional<Voxels>(double edge)>& voxels_of,
@@ -214,37 +249,54 @@ FittedLattice LatticeFit::coarsest(
         }
         return voxels;
     };
-    // Cells along the longest edge that are too few, and those that will do or outgrow a limit.
-    std::int64_t refused = 0, most = 1;
     std::optional<FittedLattice> best;
     bool is_stopped = false;
     Voxels finest = *with(1);
-    const auto is_enough = [&](std::int64_t n) {
+    std::int64_t most_tried = std::numeric_limits<std::int64_t>::max();
+    const auto is_enough = [&](std::int64_t n, NodeValues values) {
+        if (n >= most_tried) return true;
         auto voxels = with(n);
         if (!voxels) return true;
-        FittedLattice fit = fitted(*voxels, &limit);
+        FittedLattice fit = fitted(*voxels, values, &limit);
         if (!fit.met) {
-            finest = std::move(*voxels);
+            if (!best) finest = std::move(*voxels);
             return false;
         }
         best = std::move(fit);
         return true;
     };
-    try {
-        while (!is_enough(most)) {
-            refused = most;
-            most *= 2;
+    // The fewest cells along the longest edge that will do or outgrow a limit: in steps that double
+    // from a guess, then by bisection, to about a hundredth; larger voxels that are no multiple may
+    // do by chance.
+    const auto fewest = [&](NodeValues values, std::int64_t guess) {
+        std::int64_t refused = 0, enough = guess;
+        for (std::int64_t step = 1; !is_enough(enough, values); step *= 2) {
+            refused = enough;
+            enough += step;
         }
-        // To about a hundredth: larger voxels that are no multiple may do by chance.
-        while (most - refused > 1 + refused / 100) {
-            const std::int64_t middle = refused + (most - refused) / 2;
-            (is_enough(middle) ? most : refused) = middle;
+        for (std::int64_t step = 1; refused == 0 && enough > 1; step *= 2) {
+            const std::int64_t fewer = std::max(enough - step, std::int64_t{1});
+            (is_enough(fewer, values) ? enough : refused) = fewer;
+        }
+        while (enough - refused > 1 + refused / 100) {
+            const std::int64_t middle = refused + (enough - refused) / 2;
+            (is_enough(middle, values) ? enough : refused) = middle;
+        }
+        return enough;
+    };
+    try {
+        const std::int64_t enough = fewest(NodeValues::field, 1);
+        // Of most works fitted values take a little more than half as many; none that takes more
+        // than the field's own is looked for.
+        if (values_ == NodeValues::fitted && best) {
+            most_tried = enough;
+            fewest(NodeValues::fitted, std::max(enough * 11 / 20, std::int64_t{1}));
         }
     } catch (const GrowthStopped&) {
         require_in_time(stop_);
-        is_stopped = true;
+        is_stopped = !best;
     }
-    if (!best) best = at(finest);
+    if (!best) best = fitted(finest, NodeValues::field, nullptr);
     best->is_stopped = is_stopped;
     return std::move(*best);
 }

@@ -36,12 +36,13 @@ public:
     /// search of its own.
     static constexpr double most_cells_by_probes = 1 << 21;
 
-    /// With these voxels.
+    /// With these voxels; values of the goal's kind.
     FittedLattice at(const Voxels& voxels) const;
     /// With about the largest that keep the field's target, found by halving, then bisection, until
     /// the limit's deadline; `voxels_of(edge)` are those with such edges, none where they would
     /// outgrow the memory, but for one cell along the longest edge. Where none keep it, with the
-    /// finest that was tried to its end.
+    /// finest that was tried to its end. Fitted values take at most as many cells as the field's
+    /// own.
     FittedLattice coarsest(const std::function<std::optional<Voxels>(double edge)>& voxels_of,
                            const GrowthLimit& limit) const;
 
@@ -50,12 +51,13 @@ private:
     bool may_keep_probes(const Stencil& stencil, const GrowthLimit& limit) const;
     /// A `trial` ends, not met, as soon as it is known to miss the target.
     template <Interpolation interpolation>
-    FittedLattice fitted(const Voxels& voxels, const GrowthLimit* trial) const;
-    FittedLattice fitted(const Voxels& voxels, const GrowthLimit* trial) const;
+    FittedLattice fitted(const Voxels& voxels, NodeValues values, const GrowthLimit* trial) const;
+    FittedLattice fitted(const Voxels& voxels, NodeValues values, const GrowthLimit* trial) const;
 
     const GoalField& field_;
     Box domain_;
     GridKind kind_;
+    NodeValues values_;
     GrowthLimit stop_;             ///< no deadline
     std::vector<Point> suspects_;  ///< where lattices that are too coarse mostly show it
     std::vector<Point> probes_;    ///< where there are no bounds, and the field there

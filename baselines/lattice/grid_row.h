@@ -16,6 +16,7 @@ CatalogueEntry grid_row(std::string id, std::string description) {
     row.description = std::move(description);
     row.order = interpolation == Interpolation::nearest ? 0 : 1;
     row.capabilities = {MetricNodes(), CompactForm(), VoxelSize()};
+    if (interpolation == Interpolation::trilinear) row.capabilities.push_back(FittedValues());
     row.construct = [](const SpaceOptions& options) { return make(options, interpolation); };
     return row;
 }

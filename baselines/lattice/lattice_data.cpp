@@ -89,7 +89,18 @@ AdaptationReport LatticeData::adapt(const AdaptationGoal& goal) {
         }
         own.target = nonconformity_of_factor(allowed / joined);
     }
+    own.values = NodeValues::field;
     const GoalField field(own, domain());
+    if (goal.values == NodeValues::fitted) {
+        if (kind_.interpolation == Interpolation::nearest) {
+            refuse("cells of one value are set by bounds of the field: give values `field`");
+        }
+        if (!field.has_ranges()) {
+            refuse(
+                "values are fitted to lengths alone, of sources without a continuous field: give "
+                "values `field`");
+        }
+    }
     if (joined > 1 && chooses_voxels_ && !field.has_ranges()) {
         refuse(
             "voxels are joined by what bounds nothing along each direction of a tensor: give "

@@ -30,7 +30,7 @@ std::vector<CatalogueEntry> openvdb_rows() {
                     .description = "two of OpenVDB's Vec3S trees, dense, in floats, trilinear",
                     .order = 1,
                     .construct = make_openvdb_vec3s,
-                    .capabilities = {MetricNodes{.rounding = 1e-6}, VoxelSize()},
+                    .capabilities = {MetricNodes{.rounding = 1e-6}, VoxelSize(), FittedValues()},
                     .own_precision = "metrics in floats, of lengths too"});
     return rows;
 }

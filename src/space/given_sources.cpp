@@ -107,6 +107,7 @@ constexpr std::string_view sources_name = "given";
 constexpr std::string_view base_name = "given.base";
 constexpr std::string_view is_inserted_name = "given.is_inserted";
 constexpr std::string_view places_name = "goal.places";
+constexpr std::string_view values_name = "goal.values";
 
 template <class Goal, class State>
 void exchange(Goal& goal, State& state) {
@@ -128,6 +129,9 @@ void save(StateWriter& state, const Given& given, bool takes_later) {
     if (given.base) state(base_name, *given.base);
     if (!given.goal) return;
     exchange(*given.goal, state);
+    if (given.goal->values != NodeValues::field) {
+        state(values_name, given.goal->values, NodeValues::fitted);
+    }
     state(places_name, given.places);
 }
 
@@ -144,6 +148,9 @@ Given load_given(const StateReader& state) {
     }
     if (state.has(places_name)) {
         exchange(given.goal.emplace(), state);
+        if (state.has(values_name)) {
+            state(values_name, given.goal->values, NodeValues::fitted);
+        }
         state(places_name, given.places);
         require_valid(GradationOptions{.ratio = given.goal->ratio});
         state.require(given.goal->target > 0, "goal.target", "is no target");

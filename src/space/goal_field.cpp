@@ -28,6 +28,13 @@ const AdaptationGoal& require_valid(const AdaptationGoal& goal, const Box& domai
     require_valid(GradationOptions{.ratio = goal.ratio});
     require_known("intersection", goal.intersection, IntersectionRule::in_turn);
     controlspace::require_valid(goal.precision);
+    require_known("values", goal.values, NodeValues::fitted);
+    // Structures that fit values take a goal's field without them.
+    if (goal.values == NodeValues::fitted) {
+        throw InputError(
+            "this structure takes the field's own values at its nodes and fits none: give values "
+            "`field`, or take uniform-trilinear");
+    }
     if (!(goal.target > 0) || !std::isfinite(goal.target)) {
         throw InputError(
             fmt::format("target_delta is {}: give a positive non-conformity", goal.target));

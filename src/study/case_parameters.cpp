@@ -44,6 +44,9 @@ bool is_sized_by_tau(const CatalogueEntry& entry, const Case& c) {
 bool is_adapted_tree(const CatalogueEntry& entry, const Case& c) {
     return entry.has<SourceLeaves>() && (c.target_delta || has_field(c.sources));
 }
+bool is_fitted(const CatalogueEntry& entry, const Case& c) {
+    return entry.has<FittedValues>() && c.target_delta;
+}
 /// Adapted trees are the same with all rules.
 bool is_cut_by_rule(const CatalogueEntry& entry, const Case& c) {
     return entry.has<SplitRules>() && !c.target_delta;
@@ -151,8 +154,8 @@ CaseParameter form_of_g_r(const char* key, const char* help, double (*convert)(d
 Topic topic_of(const CaseParameter& row) {
     static const std::map<Topic, std::set<std::string>> others{
         {Topic::accuracy,
-         {"within", "target_delta", "max_leaves", "equal_delta", "equal_memory", "epsilon", "tau",
-          "reference"}},
+         {"within", "target_delta", "values", "max_leaves", "equal_delta", "equal_memory",
+          "epsilon", "tau", "reference"}},
         {Topic::fields, {"field"}},
         {Topic::paper, {"law", "schedule", "intersection", "interpolation", "neighbourhood"}}};
     for (const auto& [topic, keys] : others) {
@@ -246,6 +249,10 @@ std::vector<CaseParameter> case_parameters_with(std::span<const ReferenceKind* c
             "The same as the largest factor by which a length may differ from the exact field in "
             "any direction: 1.1 is target_delta = 0.01575, with tensors 0.00909; 0: not given",
             target_factor(), {0}, {"within {:.4g}x"}, is_adapted_to),
+        row(structure, "values", "",
+            "What adapted structures that can do so hold at their nodes: the field's own lengths, "
+            "or fitted ones, with which fewer nodes keep the same target",
+            word<Case>(&Case::values), {"field"}, unless_default("{} values"), is_fitted),
         row(structure, "max_leaves", "",
             "Leaves at which the adaptation of trees stops, though it misses its target; 0: no "
             "limit",

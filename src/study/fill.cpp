@@ -49,6 +49,7 @@ void adapt(Filled& filled, const Case& c, const Workload& workload,
                         .ratio = c.g_r,
                         .intersection = c.intersection,
                         .h_max = c.sources.h_max,
+                        .values = c.values,
                         .places = workload.field.places};
     if (c.target_delta) goal.target = *c.target_delta;
     if (c.max_leaves) goal.max_leaves = *c.max_leaves;

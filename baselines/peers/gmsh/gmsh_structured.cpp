@@ -107,7 +107,7 @@ std::unique_ptr<ControlSpaceBuilder> make(const SpaceOptions& options,
 CatalogueEntry gmsh_structured_row() {
     CatalogueEntry row = grid_row<make, Interpolation::trilinear>(
         "gmsh-structured", "Gmsh's field Structured: a grid of sizes, trilinear; isotropic only");
-    row.capabilities = {MetricNodes(), VoxelSize()};
+    row.capabilities = {MetricNodes(), VoxelSize(), FittedValues()};
     return row;
 }
 

@@ -160,6 +160,7 @@ template <Interpolation interpolation>
 CatalogueEntry row(std::string id, std::string description) {
     CatalogueEntry row = grid_row<make, interpolation>(std::move(id), std::move(description));
     row.capabilities = {MetricNodes{.rounding = 1e-6}, VoxelSize()};
+    if (interpolation == Interpolation::trilinear) row.capabilities.push_back(FittedValues());
     row.own_precision = "floats";
     return row;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <span>
@@ -16,6 +17,13 @@
 
 namespace controlspace {
 
+/// What a structure that interpolates between its nodes gives them.
+enum class NodeValues : std::uint8_t {
+    field,  ///< the field's own values
+    /// Lengths that are fitted to the field around each node, so that fewer nodes keep the same
+    /// target. Between nodes they may grow faster than the field does.
+    fitted
+};
 /// The field that a structure is to follow, and how closely.
 ///
 /// The field is exact: the intersection of M_max, the cones of `sources` (paper §5.2) and, taken as
@@ -35,6 +43,9 @@ struct AdaptationGoal {
     /// reads back, not only by those before they are rounded. Refused, by InputError, are codes
     /// whose rounding takes more than a third of what the target allows, as the ratio of lengths.
     Precision precision = Precision::doubles;
+    /// Fitted, by structures that can alone (the capability FittedValues), and of isotropic sources
+    /// without a continuous field; others refuse it, by InputError.
+    NodeValues values = NodeValues::field;
     /// Further places where trees are compared with the field, such as the middle of what is small
     /// in `continuous`; they may be outside the domain.
     std::span<const Point> places = {};

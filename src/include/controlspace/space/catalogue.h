@@ -34,6 +34,8 @@ struct QuadraticLeaves {};
 struct CompactForm {};
 /// A grid: voxel.
 struct VoxelSize {};
+/// Can be given lengths that are fitted: AdaptationGoal::values.
+struct FittedValues {};
 /// Joins voxels that are alike: prune_delta.
 struct Pruning {};
 /// What it holds in floats can be saved to a file of OpenVDB (.vdb), too, which other programs
@@ -44,7 +46,7 @@ struct VdbFiles {
 };
 
 using Capability = std::variant<SourceLeaves, SplitRules, MetricNodes, KeptSources, QuadraticLeaves,
-                                CompactForm, VoxelSize, Pruning, VdbFiles>;
+                                CompactForm, VoxelSize, FittedValues, Pruning, VdbFiles>;
 
 /// One structure of the study.
 struct CatalogueEntry {

@@ -9,6 +9,7 @@
 
 #include "controlspace/gradation/grade.h"
 #include "controlspace/metric/stored_metric.h"
+#include "controlspace/space/adaptation.h"
 #include "controlspace/space/space_options.h"
 #include "controlspace/space/split_words.h"
 #include "controlspace/study/sources_choice.h"
@@ -73,6 +74,7 @@ struct Case {
     std::optional<double> equal_memory = {};
     std::optional<QuadraticForm> interpolation = {};  ///< trees with quadratic leaves only
     std::optional<StoredIn> precision = {};           ///< structures with a choice of it only
+    NodeValues values = NodeValues::field;            ///< adapted structures that can fit them only
     GradationLaw law = GradationLaw::cone;
     GradationSchedule schedule = GradationSchedule::sources;
     Neighbourhood neighbourhood = Neighbourhood::faces;  ///< structures that hold metrics only
@@ -117,6 +119,13 @@ struct Words<QuadraticForm> {
     static constexpr Word<QuadraticForm> table[] = {
         {QuadraticForm::corrected, "corrected", "paper §3.1 with its coordinates put right"},
         {QuadraticForm::published, "published", "with the two errors of the paper's program"}};
+};
+template <>
+struct Words<NodeValues> {
+    static constexpr Word<NodeValues> table[] = {
+        {NodeValues::field, "field", "the field's own values at the nodes"},
+        {NodeValues::fitted, "fitted",
+         "lengths fitted to the field around each node: fewer nodes keep the same target"}};
 };
 template <>
 struct Words<StoredIn> {
