@@ -8,8 +8,8 @@
 #include <functional>
 
 #include "controlspace/error.h"
-#include "controlspace/geometry/detail/large_pages.h"
 #include "controlspace/geometry/point.h"
+#include "geometry/large_pages.h"
 #include "geometry/threads.h"
 #include "gradation/schedules.h"
 #include "require_known.h"
