@@ -80,8 +80,11 @@ TEST_CASE("no folder includes from one to its right") {
     CHECK(seen > 300);
 }
 
-TEST_CASE("public headers include public headers alone") {
+TEST_CASE("public headers include public headers alone, and are what users call") {
     const fs::path headers = data_folder().parent_path() / "src/include/controlspace";
+    for (const auto& entry : fs::recursive_directory_iterator(headers)) {
+        CHECK(entry.path().filename() != "detail");
+    }
     const std::vector<Include> includes = includes_in(headers);
     for (const Include& include : includes) {
         CAPTURE(include.file.string(), include.line);

@@ -9,14 +9,14 @@
 
 #include "baselines/rows.h"
 #include "cones/cone_field.h"
-#include "controlspace/space/detail/given_sources.h"
-#include "controlspace/space/detail/goal_field.h"
-#include "controlspace/space/detail/saved.h"
-#include "controlspace/space/detail/shared_builder.h"
-#include "controlspace/space/detail/state.h"
-#include "controlspace/space/detail/until_late.h"
 #include "controlspace/space/sample_parallel.h"
 #include "refuse.h"
+#include "space/given_sources.h"
+#include "space/goal_field.h"
+#include "space/saved.h"
+#include "space/shared_builder.h"
+#include "space/state.h"
+#include "space/until_late.h"
 
 namespace controlspace {
 

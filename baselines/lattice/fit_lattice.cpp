@@ -13,10 +13,10 @@
 
 #include "baselines/lattice/stencil.h"
 #include "controlspace/metric/nonconformity.h"
-#include "controlspace/space/detail/until_late.h"
 #include "controlspace/space/sample_parallel.h"
-#include "controlspace/trees/detail/nearby_field.h"
+#include "space/until_late.h"
 #include "trees/adaptation/fit_lengths.h"
+#include "trees/adaptation/nearby_field.h"
 
 namespace controlspace {
 

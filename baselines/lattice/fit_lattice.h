@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "baselines/lattice/lattice_data.h"
-#include "controlspace/space/detail/goal_field.h"
+#include "space/goal_field.h"
 
 namespace controlspace {
 

@@ -14,8 +14,8 @@
 #include "controlspace/metric/stored_metrics.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/control_space.h"
-#include "controlspace/space/detail/saved.h"
-#include "controlspace/space/detail/shared_builder.h"
+#include "space/saved.h"
+#include "space/shared_builder.h"
 
 namespace controlspace {
 

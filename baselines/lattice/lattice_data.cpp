@@ -8,9 +8,9 @@
 
 #include "baselines/lattice/fit_lattice.h"
 #include "baselines/lattice/stencil.h"
-#include "controlspace/geometry/detail/large_pages.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
+#include "geometry/large_pages.h"
 #include "refuse.h"
 
 namespace controlspace {

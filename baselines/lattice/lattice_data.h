@@ -11,9 +11,9 @@
 #include "controlspace/gradation/node_graph.h"
 #include "controlspace/metric/stored_metric.h"
 #include "controlspace/space/control_space_builder.h"
-#include "controlspace/space/detail/given_sources.h"
-#include "controlspace/space/detail/state.h"
 #include "controlspace/space/space_options.h"
+#include "space/given_sources.h"
+#include "space/state.h"
 
 namespace controlspace {
 
@@ -66,7 +66,7 @@ public:
 
     const Box& domain() const { return options_.domain; }
     const SpaceOptions& options() const { return options_; }
-    static constexpr int order = 1;  // of interpolation, at most
+    static constexpr int order() { return 1; }  // of interpolation, at most
     const Vector& cells() const { return voxels_.cells; }
     Lattice lattice(Neighbourhood neighbourhood = Neighbourhood::faces) const;
     /// What the memory cap has cost, see Footprint::remark.

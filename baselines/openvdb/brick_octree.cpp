@@ -80,7 +80,7 @@ void Bricks::list(const Octants& tree, const std::vector<std::uint8_t>& below, R
 BrickMetrics metrics_of_brick(const BrickOctree& octree, Ref brick, const BrickLattice& lattice) {
     BrickMetrics vertices;
     const auto enter = [&](LeafIndex leaf, const Cell& low, const Cell& edges) {
-        const Corners& corners = octree.values().nodes_of(leaf);
+        const Corners& corners = octree.corners()[leaf];
         Cell i;
         for (i[0] = 0; i[0] <= edges[0]; ++i[0]) {
             for (i[1] = 0; i[1] <= edges[1]; ++i[1]) {

@@ -11,8 +11,8 @@
 
 #include "baselines/openvdb/brick_codes.h"
 #include "baselines/openvdb/octree_voxels.h"
-#include "controlspace/trees/detail/adjacency.h"
-#include "controlspace/trees/detail/metric_tree.h"
+#include "trees/metric_tree.h"
+#include "trees/topology/adjacency.h"
 #include "trees/values/vertex_values.h"
 
 namespace controlspace {
@@ -20,18 +20,22 @@ namespace controlspace {
 inline constexpr int levels_of_brick = 2;
 
 /// K_oV's tree, its leaves cut together as bricks.
-class BrickOctree : public MetricTree<OctreeNode, VertexValues> {
-    using Base = MetricTree<OctreeNode, VertexValues>;
+class BrickOctree : public MetricTree<OctreeNode> {
+    using Base = MetricTree<OctreeNode>;
 
 public:
-    explicit BrickOctree(const SpaceOptions& options) : Base(options) {
+    explicit BrickOctree(const SpaceOptions& options)
+        : Base(options, [](const SpaceOptions& of) -> std::unique_ptr<LeafModel<OctreeNode>> {
+              return std::make_unique<VertexValues<OctreeNode>>(of);
+          }) {
         brick_levels_ = levels_of_brick;
         deepest_ = 16 + levels_of_brick;  // of bricks, as that of leaves in openvdb-tiles
     }
 
     const Octants& octants() const { return topology_; }
-    const VertexValues& values() const { return storage_; }
-    std::span<const Metric> metrics() const { return storage_.metrics().field(); }
+    /// The vertices of its leaves.
+    std::span<const Corners> corners() const { return model_->corners(); }
+    std::span<const Metric> metrics() const { return model().metrics().field(); }
     /// Of a form that is only read, which is kept as it was loaded.
     const std::optional<SavedBricks>& saved() const { return saved_; }
 

@@ -20,11 +20,11 @@
 #include "baselines/openvdb/catalogue.h"
 #include "baselines/openvdb/voxel_boxes_tree.h"
 #include "controlspace/metric/stored_metrics.h"
-#include "controlspace/trees/detail/topology_state.h"
 #include "controlspace/trees/node_metrics.h"
 #include "controlspace/version.h"
 #include "refuse.h"
 #include "space/sealed_vdb.h"
+#include "trees/topology/topology_state.h"
 
 namespace controlspace {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "baselines/openvdb/octree_voxels.h"
 #include "controlspace/metric/metric.h"
-#include "controlspace/space/detail/state.h"
+#include "space/state.h"
 
 namespace controlspace {
 

@@ -12,10 +12,10 @@
 #include "controlspace/input_errors.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/control_space.h"
-#include "controlspace/space/detail/given_sources.h"
-#include "controlspace/space/detail/saved.h"
-#include "controlspace/trees/detail/growing_tree.h"
-#include "controlspace/trees/detail/topology_state.h"
+#include "space/given_sources.h"
+#include "space/saved.h"
+#include "trees/growing_tree.h"
+#include "trees/topology/topology_state.h"
 
 namespace controlspace {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "baselines/lattice/stencil.h"
-#include "controlspace/trees/topology.h"
+#include "trees/topology/topology.h"
 
 namespace controlspace {
 

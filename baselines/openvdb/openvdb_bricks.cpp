@@ -20,9 +20,9 @@
 #include "baselines/openvdb/octree_form.h"
 #include "baselines/openvdb/openvdb_value.h"
 #include "baselines/openvdb/voxel_boxes_tree.h"
-#include "controlspace/space/detail/plain_cursor.h"
-#include "controlspace/space/detail/shared_builder.h"
 #include "refuse.h"
+#include "space/plain_cursor.h"
+#include "space/shared_builder.h"
 #include "trees/topology/leaf_vertices.h"
 
 namespace controlspace {

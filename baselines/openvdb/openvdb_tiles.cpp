@@ -12,30 +12,34 @@
 #include "baselines/openvdb/octree_form.h"
 #include "baselines/openvdb/stored_value.h"
 #include "baselines/openvdb/voxel_boxes_tree.h"
-#include "controlspace/space/detail/plain_cursor.h"
-#include "controlspace/space/detail/shared_builder.h"
-#include "controlspace/trees/detail/leaf_graph.h"
-#include "controlspace/trees/detail/metric_tree.h"
-#include "controlspace/trees/leaf_metrics.h"
 #include "refuse.h"
+#include "space/plain_cursor.h"
+#include "space/shared_builder.h"
+#include "trees/metric_tree.h"
+#include "trees/packing/packed_tree.h"
+#include "trees/topology/leaf_graph.h"
+#include "trees/values/constant_values.h"
 
 namespace controlspace {
 
 namespace {
 
 /// K_oL's tree: its leaves become voxels and tiles.
-class Octree : public MetricTree<OctreeNode, LeafMetrics> {
-    using Base = MetricTree<OctreeNode, LeafMetrics>;
+class Octree : public MetricTree<OctreeNode> {
+    using Base = MetricTree<OctreeNode>;
 
 public:
-    explicit Octree(const SpaceOptions& options) : Base(options) {
+    explicit Octree(const SpaceOptions& options)
+        : Base(options, [](const SpaceOptions& of) -> std::unique_ptr<LeafModel<OctreeNode>> {
+              return std::make_unique<ConstantValues<OctreeNode>>(of);
+          }) {
         // The root holds what is outside of its children as tiles of the same size, however large a
         // leaf is: 16 along each axis of the standard tree then.
         deepest_ = 16;
     }
 
     const Octants& octants() const { return topology_; }
-    std::span<const Metric> metrics() const { return storage_.metrics().field(); }
+    std::span<const Metric> metrics() const { return model().metrics().field(); }
 
     static std::unique_ptr<ControlSpace> finished(const std::shared_ptr<const Octree>& octree,
                                                   std::optional<Precision> precision);

@@ -11,8 +11,8 @@
 #include "controlspace/input_errors.h"
 #include "controlspace/space/catalogue.h"
 #include "controlspace/space/control_space_builder.h"
-#include "controlspace/space/detail/goal_field.h"
 #include "refuse.h"
+#include "space/goal_field.h"
 
 namespace controlspace {
 

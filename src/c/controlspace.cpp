@@ -16,11 +16,11 @@
 #include "c/option_text.h"
 #include "controlspace/baselines/catalogue.h"
 #include "controlspace/space/control_space_file.h"
-#include "controlspace/space/detail/until_late.h"
 #include "controlspace/space/make_control_space.h"
 #include "controlspace/trees/octree_pieces.h"
 #include "controlspace/version.h"
 #include "refuse.h"
+#include "space/until_late.h"
 
 namespace {
 

@@ -58,7 +58,7 @@ void require_places(std::size_t n, const double* positions, const void* answers,
     if (wrong < n) throw IndexedError(wrong, fmt::format("position {} is NaN", wrong));
 }
 
-// Point and Metric are three and six numbers without gaps (space/detail/state.h).
+// Point and Metric are three and six numbers without gaps (controlspace/space/number_kind.h).
 std::span<const Point> points_in(const double* positions, std::size_t begin, std::size_t end) {
     return {reinterpret_cast<const Point*>(positions) + begin, end - begin};
 }

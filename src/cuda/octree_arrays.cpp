@@ -5,10 +5,10 @@
 #include <string>
 
 #include "controlspace/space/control_space_file.h"
-#include "controlspace/space/detail/saved.h"
-#include "controlspace/trees/detail/corners.h"
-#include "controlspace/trees/detail/topology_state.h"
 #include "refuse.h"
+#include "space/saved.h"
+#include "trees/topology/corners.h"
+#include "trees/topology/topology_state.h"
 
 namespace controlspace {
 

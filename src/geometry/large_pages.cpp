@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "controlspace/geometry/detail/large_pages.h"
+#include "geometry/large_pages.h"
 
 #include <sys/mman.h>
 

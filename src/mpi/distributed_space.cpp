@@ -8,16 +8,12 @@
 #include <ctime>
 #include <optional>
 #include <ranges>
-#include <type_traits>
 #include <utility>
 
 #include "cones/isotropic_cones.h"
 #include "controlspace/measure/access_time.h"
 #include "controlspace/metric/order_free_intersection.h"
 #include "controlspace/sources/cone.h"
-#include "controlspace/space/detail/saved.h"
-#include "controlspace/trees/detail/leaves_where.h"
-#include "controlspace/trees/leaf_metrics.h"
 #include "mpi/exchange.h"
 #include "mpi/octants.h"
 #include "mpi/pieces.h"
@@ -25,6 +21,9 @@
 #include "mpi/record.h"
 #include "mpi/shared_sources.h"
 #include "refuse.h"
+#include "space/saved.h"
+#include "trees/topology/leaves_where.h"
+#include "trees/values/constant_values.h"
 #include "trees/values/vertex_values.h"
 
 // Why the answers do not depend on the ranks: octants are cut as in the serial octree (octants.h),
@@ -165,16 +164,8 @@ struct DistributedSpace::Impl {
                 boxes.push_back(octants.box(leaf));
                 is_wanted[leaf] = 1;
             }
-            const auto make = [&](auto storage) {
-                using Storage = typename decltype(storage)::type;
-                made = options.target ? adapted<Storage>(sources, is_wanted, boxes, about)
-                                      : inserted<Storage>(sources, is_wanted, boxes, about);
-            };
-            if (options.structure != "K_oV") {
-                make(std::type_identity<LeafMetrics>());
-            } else {
-                make(std::type_identity<VertexValues>());
-            }
+            made = options.target ? adapted(sources, is_wanted, boxes, about)
+                                  : inserted(sources, is_wanted, boxes, about);
         });
         return made;
     }
@@ -206,13 +197,20 @@ struct DistributedSpace::Impl {
         return all;
     }
 
-    template <class Storage>
+    MakeLeafModel<OctreeNode> model() const {
+        return options.structure == "K_oV" ? new_model<VertexValues> : new_model<ConstantValues>;
+    }
+    template <template <class> class Model>
+    static std::unique_ptr<LeafModel<OctreeNode>> new_model(const SpaceOptions& space) {
+        return std::make_unique<Model<OctreeNode>>(space);
+    }
+
     std::unique_ptr<ControlSpace> adapted(std::vector<PointSource>& sources,
                                           std::span<const char> is_wanted,
                                           std::span<const Box> boxes, RankReport& about) const {
         const SpaceOptions& space = options.space;
         const auto made =
-            std::make_shared<AdaptedPart<Storage>>(space, options.structure == "K_oLB", boxes);
+            std::make_shared<AdaptedPart>(space, model(), options.structure == "K_oLB", boxes);
         if (steepest) sources.push_back(steepest->source());
         // A share for each rank would be too few where there are many.
         const std::size_t most_answers = ranks.size() == 1 ? GoalField::many_answers : 75'000;
@@ -227,15 +225,14 @@ struct DistributedSpace::Impl {
         about.met = outcome.met;
         about.remark = outcome.shortfall;
         about.leaves = made->footprint().cells;
-        return std::make_unique<SharedSpace<AdaptedPart<Storage>>>(made);
+        return std::make_unique<SharedSpace<AdaptedPart>>(made);
     }
 
-    template <class Storage>
     std::unique_ptr<ControlSpace> inserted(std::vector<PointSource>& sources,
                                            std::span<const char> is_wanted,
                                            std::span<const Box> boxes, RankReport& about) const {
-        const auto made = std::make_shared<InsertedPart<Storage>>(
-            options.space, options.structure == "K_oLB", boxes);
+        const auto made = std::make_shared<InsertedPart>(options.space, model(),
+                                                         options.structure == "K_oLB", boxes);
         // Lengths as columns: 32 bytes in place of 80.
         SourceColumns lengths;
         if (!has_tensors) lengths = columns_of(std::exchange(sources, {}));
@@ -247,8 +244,7 @@ struct DistributedSpace::Impl {
         made->grade(by_sources);
         made->finish();
         about.leaves = made->footprint().cells;
-        using Tree = MetricTree<OctreeNode, Storage>;
-        return std::make_unique<SharedSpace<Tree>>(made);
+        return std::make_unique<SharedSpace<MetricTree<OctreeNode>>>(made);
     }
 
     /// Those in octants that are wanted.

@@ -11,7 +11,7 @@
 
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/insertion.h"
-#include "controlspace/trees/detail/source_cuts.h"
+#include "trees/insertion/source_cuts.h"
 
 namespace controlspace {
 

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "cones/isotropic_cones.h"
-#include "controlspace/trees/topology.h"
 #include "mpi/distributed_space.h"
 #include "mpi/exchange.h"
 #include "mpi/record.h"
 #include "mpi/shared_octants.h"
+#include "trees/topology/topology.h"
 
 namespace controlspace {
 

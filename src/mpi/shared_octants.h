@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "controlspace/trees/topology.h"
+#include "trees/topology/topology.h"
 
 namespace controlspace {
 

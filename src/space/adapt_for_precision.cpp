@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "controlspace/space/detail/adapt_for_precision.h"
+#include "space/adapt_for_precision.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "controlspace/space/detail/saved.h"
+#include "space/saved.h"
 
 namespace controlspace {
 

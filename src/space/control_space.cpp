@@ -7,7 +7,7 @@
 
 #include "controlspace/gradation/grade.h"
 #include "controlspace/space/control_nodes.h"
-#include "controlspace/space/detail/plain_cursor.h"
+#include "space/plain_cursor.h"
 
 namespace controlspace {
 

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "controlspace/input_errors.h"
-#include "controlspace/space/detail/goal_field.h"
 #include "controlspace/space/sample_parallel.h"
+#include "space/goal_field.h"
 
 namespace controlspace {
 

@@ -15,12 +15,12 @@
 #include <utility>
 
 #include "controlspace/error.h"
-#include "controlspace/space/detail/saved.h"
-#include "controlspace/space/detail/state.h"
 #include "controlspace/version.h"
 #include "files/output_file.h"
 #include "files/text_file.h"
+#include "space/saved.h"
 #include "space/sealed_vdb.h"
+#include "space/state.h"
 
 namespace controlspace {
 

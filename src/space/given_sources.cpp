@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "controlspace/space/detail/given_sources.h"
+#include "space/given_sources.h"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "controlspace/space/detail/goal_field.h"
+#include "space/goal_field.h"
 
 #include <fmt/format.h>
 
@@ -9,16 +9,16 @@
 
 #include "cones/cone_field.h"
 #include "controlspace/error.h"
-#include "controlspace/geometry/detail/place_sequence.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/metric/stored_metrics.h"
 #include "controlspace/sources/cone.h"
 #include "controlspace/space/control_space_builder.h"
-#include "controlspace/space/detail/until_late.h"
 #include "controlspace/space/sample_parallel.h"
 #include "controlspace/space/space_options.h"
+#include "geometry/place_sequence.h"
 #include "require_known.h"
 #include "space/goal_cache.h"
+#include "space/until_late.h"
 
 namespace controlspace {
 

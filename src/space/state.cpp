@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "controlspace/space/detail/state.h"
+#include "space/state.h"
 
 #include <blosc.h>
 #include <fmt/format.h>

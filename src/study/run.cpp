@@ -13,10 +13,10 @@
 #include <utility>
 
 #include "controlspace/space/control_space_file.h"
-#include "controlspace/space/detail/until_late.h"
 #include "controlspace/space/sample_parallel.h"
 #include "measure/stopwatch.h"
 #include "refuse.h"
+#include "space/until_late.h"
 #include "study/equal_setting.h"
 
 namespace controlspace {

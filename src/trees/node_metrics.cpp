@@ -2,7 +2,8 @@
 #include "controlspace/trees/node_metrics.h"
 
 #include "controlspace/metric/intersection.h"
-#include "controlspace/trees/detail/make_room.h"
+#include "space/state.h"
+#include "trees/make_room.h"
 
 namespace controlspace {
 

@@ -16,9 +16,9 @@
 #include "controlspace/error.h"
 #include "controlspace/geometry/extent.h"
 #include "controlspace/space/control_space_file.h"
-#include "controlspace/trees/topology.h"
 #include "files/output_file.h"
 #include "files/text_file.h"
+#include "trees/topology/topology.h"
 
 namespace controlspace {
 namespace {

@@ -6,9 +6,9 @@
 #include "baselines/fixtures.h"
 #include "controlspace/error.h"
 #include "controlspace/measure/reference.h"
-#include "controlspace/space/detail/until_late.h"
 #include "counting_allocator.h"
 #include "editable_space.h"
+#include "space/until_late.h"
 
 using Catch::Matchers::Contains;
 

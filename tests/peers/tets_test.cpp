@@ -11,8 +11,8 @@
 #include "controlspace/measure/reference.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/sampled_surfaces.h"
-#include "controlspace/space/detail/saved.h"
 #include "peers/places.h"
+#include "space/saved.h"
 
 namespace controlspace {
 std::vector<CatalogueEntry> tets_rows();

@@ -19,8 +19,8 @@
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/cone.h"
 #include "controlspace/sources/sampled_surfaces.h"
-#include "controlspace/space/detail/goal_field.h"
 #include "editable_space.h"
+#include "space/goal_field.h"
 
 namespace controlspace::adaptation_test {
 namespace {

@@ -18,10 +18,10 @@
 #include "controlspace/fields/formula_field.h"
 #include "controlspace/measure/access_time.h"
 #include "controlspace/sources/sampled_surfaces.h"
-#include "controlspace/space/detail/state.h"
 #include "damaged_files.h"
 #include "editable_space.h"
 #include "sources/files.h"
+#include "space/state.h"
 
 namespace controlspace::control_space_file_test {
 

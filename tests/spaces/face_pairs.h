@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "controlspace/trees/detail/face_pairs.h"
+#include "trees/topology/face_pairs.h"
 
 namespace controlspace {
 

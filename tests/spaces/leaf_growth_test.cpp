@@ -12,9 +12,9 @@
 #include "controlspace/error.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
-#include "controlspace/space/detail/saved.h"
-#include "controlspace/space/detail/state.h"
 #include "editable_space.h"
+#include "space/saved.h"
+#include "space/state.h"
 
 namespace controlspace::leaf_growth_test {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "controlspace/trees/detail/leaves_where.h"
+#include "trees/topology/leaves_where.h"
 
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
 
-#include "controlspace/trees/detail/touching_pairs.h"
 #include "spaces/face_pairs.h"
+#include "trees/topology/touching_pairs.h"
 
 namespace controlspace::leaves_where_test {
 namespace {

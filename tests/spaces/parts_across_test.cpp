@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "controlspace/space/split_rule.h"
-#include "controlspace/trees/detail/adjacency.h"
 #include "geometry/random_fractions.h"
+#include "trees/topology/adjacency.h"
 
 namespace controlspace::parts_across_test {
 namespace {

@@ -9,8 +9,8 @@
 #include "controlspace/measure/accuracy.h"
 #include "controlspace/sources/sampled_surfaces.h"
 #include "controlspace/space/catalogue.h"
-#include "controlspace/trees/detail/adjacency.h"
 #include "editable_space.h"
+#include "trees/topology/adjacency.h"
 #include "trees/values/triquadratic.h"
 
 namespace controlspace::quadratic_values_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "controlspace/trees/detail/single_cones.h"
+#include "trees/adaptation/single_cones.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

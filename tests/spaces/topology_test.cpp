@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "controlspace/trees/topology.h"
+#include "trees/topology/topology.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -10,8 +10,8 @@
 
 #include "controlspace/geometry/extent.h"
 #include "controlspace/space/split_rule.h"
-#include "controlspace/trees/detail/adjacency.h"
 #include "spaces/face_pairs.h"
+#include "trees/topology/adjacency.h"
 
 namespace controlspace::topology_test {
 namespace {

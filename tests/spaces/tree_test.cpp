@@ -8,11 +8,12 @@
 
 #include "case_of_each.h"
 #include "controlspace/metric/nonconformity.h"
-#include "controlspace/trees/detail/control_nodes.h"
-#include "controlspace/trees/detail/sample_leaves.h"
 #include "editable_space.h"
 #include "geometry/random_fractions.h"
 #include "spaces/face_pairs.h"
+#include "trees/control_nodes.h"
+#include "trees/sample_leaves.h"
+#include "trees/values/constant_values.h"
 #include "trees/values/quadratic_values.h"
 #include "trees/values/vertex_values.h"
 
@@ -65,36 +66,35 @@ std::vector<CatalogueEntry> linear_trees() {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a split alone changes nothing in a leaf storage", "", LeafMetrics,
-                   QuadraticValues) {
+TEMPLATE_TEST_CASE("a split alone changes no metric of a leaf", "", ConstantValues<OctreeNode>,
+                   QuadraticValues<OctreeNode>) {
     Topology<OctreeNode> tree(domain);
-    TestType storage({.domain = domain});
+    TestType model({.domain = domain});
     std::mt19937 engine(3);
     for (int i = 0; i < 30; ++i) {
         const PointSource source = scattered(1, static_cast<unsigned>(i))[0];
         const LeafPlace place = tree.locate(source.position);
         const std::vector<Point> x = places(50, 99);
         std::vector<Metric> before;
-        for (const Point& p : x)
-            before.push_back(value_at(tree, field_of(LeafMetrics(storage)), p));
+        for (const Point& p : x) before.push_back(model.metrics()[tree.find(p)]);
         const auto first_new = static_cast<LeafIndex>(tree.leaves());
         const Subdivision s = octants(place.box);
         tree.split(place, s);
-        storage.split(s, place.leaf, first_new);
+        model.split(s, place.leaf, first_new);
         for (std::size_t k = 0; k < x.size(); ++k) {
-            CHECK(value_at(tree, field_of(LeafMetrics(storage)), x[k]) == before[k]);
+            CHECK(model.metrics()[tree.find(x[k])] == before[k]);
         }
-        lower_nodes(storage, tree.locate(source.position), source.metric);
+        model.lower(tree.locate(source.position).cell(), source.metric);
     }
 }
 
-TEST_CASE("a split alone changes nothing in a vertex storage, but for hanging vertices") {
+TEST_CASE("a split alone changes nothing between vertices, but for hanging ones") {
     Topology<OctreeNode> tree(domain);
-    VertexValues storage({.domain = domain});
+    VertexValues<OctreeNode> model({.domain = domain});
     const std::vector<Point> x = places(200, 99);
     const auto field = [&] {
         std::vector<double> values;
-        for (const Point& p : x) values.push_back(value_at(tree, field_of(storage), p).xx);
+        for (const Point& p : x) values.push_back(value_at(tree, model, p).xx);
         return values;
     };
     const auto split = [&](const Point& at) {
@@ -102,11 +102,11 @@ TEST_CASE("a split alone changes nothing in a vertex storage, but for hanging ve
         const auto first_new = static_cast<LeafIndex>(tree.leaves());
         const Subdivision s = octants(place.box);
         tree.split(place, s);
-        storage.split(s, place.leaf, first_new);
+        model.split(s, place.leaf, first_new);
     };
     split(Point::Zero());
     for (const Point& corner_of : {Point(-0.5, -0.5, -0.5), Point(0.5, 0.5, 0.5)}) {
-        lower_nodes(storage, tree.locate(corner_of), Metric::isotropic(0.3));
+        model.lower(tree.locate(corner_of).cell(), Metric::isotropic(0.3));
     }
     SECTION("where no neighbour is finer, the field stays") {
         const std::vector<double> before = field();
@@ -118,7 +118,7 @@ TEST_CASE("a split alone changes nothing in a vertex storage, but for hanging ve
     SECTION("a finer neighbour's vertices begin to count: never larger") {
         split(Point(-0.5, -0.5, -0.5));
         const Point inner(-0.1, -0.1, -0.1);
-        lower_nodes(storage, tree.locate(inner), Metric::isotropic(0.1));
+        model.lower(tree.locate(inner).cell(), Metric::isotropic(0.1));
         const std::vector<double> before = field();
         split(Point(0.5, -0.5, -0.5));
         const std::vector<double> after = field();
@@ -229,13 +229,13 @@ TEST_CASE("vertex neighbours are joined by an edge of a leaf: along one axis") {
 TEMPLATE_TEST_CASE("with all neighbours, any two vertices of a leaf are neighbours", "", KdNode,
                    OctreeNode) {
     Topology<TestType> tree(domain);
-    VertexValues storage({.domain = domain});
+    VertexValues<TestType> model({.domain = domain});
     for (const Point& x : places(60, 8)) {
         const LeafPlace place = tree.locate(x);
         const auto first_new = static_cast<LeafIndex>(tree.leaves());
         const Subdivision s = TestType::even_subdivision(domain, place.level, place.box);
         tree.split(place, s);
-        storage.split(s, place.leaf, first_new);
+        model.split(s, place.leaf, first_new);
     }
     using Place = std::array<double, 3>;
     const auto key = [](const Point& p) { return Place{p.x(), p.y(), p.z()}; };
@@ -247,7 +247,7 @@ TEMPLATE_TEST_CASE("with all neighbours, any two vertices of a leaf are neighbou
             }
         }
     });
-    const ControlNodes nodes = nodes_of_tree(tree, storage, Neighbourhood::all);
+    const ControlNodes nodes = nodes_of_tree(tree, model, Neighbourhood::all);
     const auto& graph = std::get<NodeGraph>(nodes.graph);
     for (NodeIndex i = 0; i < graph.size(); ++i) {
         graph.for_each_neighbour(i, [&](NodeIndex j) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "controlspace/trees/detail/work_through.h"
+#include "trees/topology/work_through.h"
 
 #include <algorithm>
 #include <atomic>

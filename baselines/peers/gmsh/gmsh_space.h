@@ -6,7 +6,7 @@
 
 #include "controlspace/space/catalogue.h"
 #include "controlspace/space/control_space.h"
-#include "controlspace/space/detail/saved.h"
+#include "space/saved.h"
 
 class Field;
 class GModel;

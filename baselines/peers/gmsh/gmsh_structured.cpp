@@ -13,9 +13,9 @@
 #include "baselines/lattice/grid_row.h"
 #include "baselines/lattice/lattice_data.h"
 #include "baselines/peers/gmsh/gmsh_space.h"
-#include "controlspace/space/detail/shared_builder.h"
 #include "files/output_file.h"
 #include "refuse.h"
+#include "space/shared_builder.h"
 
 namespace controlspace {
 

@@ -6,7 +6,7 @@
 #include "baselines/peers/gmsh/gmsh_space.h"
 #include "baselines/peers/tets/background_tets.h"
 #include "controlspace/sources/riemannian.h"
-#include "controlspace/space/detail/shared_builder.h"
+#include "space/shared_builder.h"
 
 namespace controlspace {
 

@@ -21,10 +21,10 @@
 #include "baselines/peers/nanovdb/dense_grid.h"
 #include "baselines/peers/peer_builder.h"
 #include "controlspace/space/control_space_file.h"
-#include "controlspace/space/detail/saved.h"
-#include "controlspace/trees/detail/topology_state.h"
 #include "controlspace/trees/node_metrics.h"
 #include "refuse.h"
+#include "space/saved.h"
+#include "trees/topology/topology_state.h"
 
 namespace controlspace {
 

@@ -7,8 +7,8 @@
 #include "baselines/peers/tets/background_tets.h"
 #include "cones/spatial_order.h"
 #include "controlspace/metric/nonconformity.h"
-#include "controlspace/space/detail/goal_field.h"
 #include "controlspace/space/sample_parallel.h"
+#include "space/goal_field.h"
 
 namespace controlspace {
 

@@ -14,8 +14,8 @@
 #include "controlspace/metric/blend.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/sources/riemannian.h"
-#include "controlspace/trees/detail/adjacency.h"
 #include "refuse.h"
+#include "trees/topology/adjacency.h"
 
 namespace controlspace {
 

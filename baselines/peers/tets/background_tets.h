@@ -12,9 +12,9 @@
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/control_space.h"
 #include "controlspace/space/control_space_builder.h"
-#include "controlspace/space/detail/given_sources.h"
-#include "controlspace/space/detail/state.h"
 #include "controlspace/space/space_options.h"
+#include "space/given_sources.h"
+#include "space/state.h"
 
 namespace controlspace {
 
@@ -38,7 +38,7 @@ public:
     GradationReport grade(const NodeGradation& gradation);
     /// adapt.cpp
     AdaptationReport adapt(const AdaptationGoal& goal);
-    static constexpr int order = 1;  // of interpolation
+    static constexpr int order() { return 1; }  // of interpolation
     void assign(std::span<const Metric> metrics);
     ControlNodes control_nodes(Neighbourhood) const;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "baselines/peers/tets/background_tets.h"
 #include "controlspace/space/catalogue.h"
-#include "controlspace/space/detail/shared_builder.h"
+#include "space/shared_builder.h"
 
 namespace controlspace {
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "controlspace/trees/detail/in_parallel.h"
-#include "controlspace/trees/detail/nearby_field.h"
+#include "trees/adaptation/nearby_field.h"
+#include "trees/in_parallel.h"
 
 namespace controlspace {
 
@@ -63,8 +63,7 @@ struct Range {
 // Sweeps over all nodes at once. A node is divided by the middle of the range of factors in the
 // cells around it, or by most of it: neighbours move too, and together they would overshoot. A
 // sweep may make things worse in a cell that several nodes correct; the best one counts, so that
-// the number of sweeps decides about time alone. Twelve leave 0.1 % of the factor on the paper's
-// sphere and the layers; more change no number of cells.
+// the number of sweeps, which is chosen, decides about time alone.
 double fit_lengths(const GoalField& field, std::span<const FittedCell> cells,
                    std::span<double> lengths) {
     constexpr int sweeps = 12;

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "controlspace/geometry/box.h"
-#include "controlspace/space/detail/goal_field.h"
+#include "space/goal_field.h"
 
 namespace controlspace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "controlspace/trees/detail/leaf_places.h"
+#include "trees/adaptation/leaf_places.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "controlspace/trees/detail/nearby_field.h"
+#include "trees/adaptation/nearby_field.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -14,11 +14,20 @@
 #include "cones/cone_field.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/metric/nonconformity.h"
-#include "controlspace/trees/detail/in_parallel.h"
-#include "controlspace/trees/detail/leaf_places.h"
 #include "space/goal_cache.h"
+#include "trees/adaptation/leaf_places.h"
+#include "trees/in_parallel.h"
 
 namespace controlspace {
+
+// The field at the places of one box. Of lengths, the cones that matter in the box are gathered
+// once, if they are few, and each place compares them; otherwise a search starts from the source
+// that was found last. Of tensors without an order, each place is an optimization: it starts from
+// the solution at the nearest place, in that one's own metric, and is rough where there are many
+// sources: first with the sources alone that mattered there. Sources that it misses would make the
+// field shorter; every 16th place searches all, and where it finds such, the next 16 do. So a rough
+// value is an estimate, and whoever compares it evaluates anew what may be above the target. Places
+// that cells share are evaluated once, with all sources (GoalCache).
 
 namespace {
 
@@ -83,17 +92,17 @@ struct NearbyField::Search {
         are_few = !takes_long() && field.cones().isotropic().gather(box, cones, memory.hint);
     }
     void by_memory(std::span<const Point> x, std::span<Metric> out) {
-        const std::vector<Metric> further = field.continuous_at(x);
+        const std::vector<Metric> continuous = field.continuous_at(x);
         if (!field.cones().has_starts()) {
-            field.cones().evaluate(x, out, memory, further);
+            field.cones().evaluate(x, out, memory, continuous);
             return;
         }
         const double tolerance = std::min(0.01 * field.target(), 0.1);
         for (std::size_t i = 0; i < x.size(); ++i) {
-            const Metric* own_further = further.empty() ? nullptr : &further[i];
+            const Metric* continuous_here = continuous.empty() ? nullptr : &continuous[i];
             const auto known = std::ranges::find(close, x[i], &decltype(close)::value_type::first);
             const auto* near = known != close.end() ? &known->second : trail.nearest(x[i]);
-            out[i] = answer(x[i], own_further, near, tolerance).metric;
+            out[i] = answer(x[i], continuous_here, near, tolerance).metric;
         }
     }
     // A search of all sources takes most of the time, and where the field is known at some places
@@ -101,38 +110,39 @@ struct NearbyField::Search {
     // at the first of every few places, and, where one of them finds more, at the few that follow.
     void by_close_cones(std::span<const Point> x, std::span<Metric> out) {
         constexpr std::size_t few = 16;
-        const std::vector<Metric> further = field.continuous_at(x);
+        const std::vector<Metric> continuous = field.continuous_at(x);
         close.clear();
         for (std::size_t i = 0; i < x.size(); ++i) {
-            const Metric* own_further = further.empty() ? nullptr : &further[i];
+            const Metric* continuous_here = continuous.empty() ? nullptr : &continuous[i];
             const OrderFreeCones::Start* near = trail.nearest(x[i]);
             if (near == nullptr || until_close > 0) {
-                out[i] = answer(x[i], own_further, near).metric;
+                out[i] = answer(x[i], continuous_here, near).metric;
                 if (until_close > 0) --until_close;
                 continue;
             }
             OrderFreeCones::Start& start = close.emplace_back(x[i], *near).second;
-            out[i] = field.cones().evaluate_close(x[i], own_further, *near, start);
+            out[i] = field.cones().evaluate_close(x[i], continuous_here, *near, start);
             if (until_check-- > 0) continue;
             until_check = few - 1;
             const Metric found = out[i];
-            out[i] = answer(x[i], own_further, &start).metric;
+            out[i] = answer(x[i], continuous_here, &start).metric;
             if (nonconformity(out[i], found) < 0.1 * field.target()) continue;
             until_close = few;
             until_check = 0;
         }
     }
-    GoalCache::Answer answer(const Point& x, const Metric* further,
+    GoalCache::Answer answer(const Point& x, const Metric* continuous,
                              const OrderFreeCones::Start* near,
                              std::optional<double> tolerance = {}) {
         GoalCache::Answer answer;
-        answer.metric = field.cones().evaluate(x, further, memory, near, answer.start, tolerance);
+        answer.metric =
+            field.cones().evaluate(x, continuous, memory, near, answer.start, tolerance);
         trail.add(x, answer.start);
         return answer;
     }
     GoalCache::Answer answer_near(const Point& x) {
-        const std::vector<Metric> further = field.continuous_at({&x, 1});
-        return answer(x, further.empty() ? nullptr : further.data(), trail.nearest(x));
+        const std::vector<Metric> continuous = field.continuous_at({&x, 1});
+        return answer(x, continuous.empty() ? nullptr : continuous.data(), trail.nearest(x));
     }
     std::optional<GoalCache::Answer> recall(const Point& x) {
         GoalCache::Answer known;
@@ -144,16 +154,16 @@ struct NearbyField::Search {
     Metric shared(const Point& x) {
         if (const auto known = recall(x)) return known->metric;
         GoalCache::Answer known;
-        const std::vector<Metric> further = field.continuous_at({&x, 1});
-        known = answer(x, further.empty() ? nullptr : further.data(), nullptr);
+        const std::vector<Metric> continuous = field.continuous_at({&x, 1});
+        known = answer(x, continuous.empty() ? nullptr : continuous.data(), nullptr);
         field.cache().remember(x, known);
         return known.metric;
     }
     void by_few(std::span<const Point> x, std::span<Metric> out) const {
-        const std::vector<Metric> further = field.continuous_at(x);
+        const std::vector<Metric> continuous = field.continuous_at(x);
         for (std::size_t i = 0; i < x.size(); ++i) {
             out[i] = Metric::isotropic(cones.smallest_length(x[i], field.largest().xx));
-            if (!further.empty()) out[i] = intersection(out[i], further[i]);
+            if (!continuous.empty()) out[i] = intersection(out[i], continuous[i]);
         }
     }
 };
@@ -182,12 +192,14 @@ void NearbyField::evaluate(std::span<const Point> x, std::span<Metric> out) {
     }
 }
 
-double NearbyField::evaluate_roughly(std::span<const Point> x, Cones cones, std::span<Metric> out) {
+NearbyField::Accuracy NearbyField::evaluate_roughly(std::span<const Point> x, Cones cones,
+                                                    std::span<Metric> out) {
+    using Kind = Accuracy::Kind;
     const GoalField& field = search_->field;
     const bool is_rough = field.is_order_free() && !field.has_few_sources();
     if (cones == Cones::shared && search_->takes_long()) {
         for (std::size_t i = 0; i < x.size(); ++i) out[i] = at(x[i]);
-        return is_rough ? std::numeric_limits<double>::infinity() : 1;
+        return {is_rough ? Kind::estimate : Kind::exact};
     }
     if (is_rough) {
         if (cones == Cones::all) {
@@ -195,19 +207,19 @@ double NearbyField::evaluate_roughly(std::span<const Point> x, Cones cones, std:
         } else {
             search_->by_close_cones(x, out);
         }
-        return std::numeric_limits<double>::infinity();
+        return {Kind::estimate};
     }
     search_->gather();
     if (search_->are_few || !field.has_ranges()) {
         evaluate(x, out);
-        return 1;
+        return {};
     }
     const double tolerance = field.negligible();
     for (std::size_t i = 0; i < x.size(); ++i) {
         out[i] = Metric::isotropic(
             field.cones().isotropic().smallest_length(x[i], search_->memory.hint, tolerance));
     }
-    return 1 + tolerance;
+    return {Kind::at_most_longer, 1 + tolerance};
 }
 
 Metric NearbyField::governed(const Point& x, double tolerance,
@@ -240,51 +252,52 @@ std::optional<NearbyField::Doubt> NearbyField::doubt_of(const std::array<double,
     return Doubt{doubt->where, doubt->is_certain};
 }
 
-void evaluate_shared(const GoalField& field, std::span<const LeafBox> leaves, std::size_t from,
+void evaluate_shared(const GoalField& field, std::span<const CellBox> leaves, std::size_t from,
                      std::size_t to) {
     if (!field.cones().has_starts()) return;
-    struct Ask {
+    struct Query {
         std::array<double, 3> place;
         std::size_t leaf;
     };
-    std::vector<Ask> asks;
+    std::vector<Query> queries;
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         constexpr std::size_t most_sharing = 8;
-        if (!field.cache().has_room_for(asks.size() / most_sharing)) return;
+        if (!field.cache().has_room_for(queries.size() / most_sharing)) return;
         for (std::size_t k = from; k < to; ++k) {
             const Point x = leaf_places().in(leaves[i].box, k);
-            if (!field.cache().has(x)) asks.push_back({{x.x(), x.y(), x.z()}, i});
+            if (!field.cache().has(x)) queries.push_back({{x.x(), x.y(), x.z()}, i});
         }
     }
-    std::ranges::sort(asks, {}, [](const Ask& ask) { return std::tie(ask.place, ask.leaf); });
-    const auto repeated = std::ranges::unique(asks, {}, &Ask::place);
-    asks.erase(repeated.begin(), repeated.end());
-    if (!field.cache().has_room_for(asks.size())) return;
-    std::ranges::stable_sort(asks, {}, &Ask::leaf);
-    std::vector<std::span<const Ask>> of_leaves;
-    for (auto first = asks.cbegin(); first != asks.cend();) {
-        const auto end = std::find_if(first, asks.cend(),
-                                      [&](const Ask& ask) { return ask.leaf != first->leaf; });
+    std::ranges::sort(queries, {},
+                      [](const Query& query) { return std::tie(query.place, query.leaf); });
+    const auto repeated = std::ranges::unique(queries, {}, &Query::place);
+    queries.erase(repeated.begin(), repeated.end());
+    if (!field.cache().has_room_for(queries.size())) return;
+    std::ranges::stable_sort(queries, {}, &Query::leaf);
+    std::vector<std::span<const Query>> of_leaves;
+    for (auto first = queries.cbegin(); first != queries.cend();) {
+        const auto end = std::find_if(
+            first, queries.cend(), [&](const Query& query) { return query.leaf != first->leaf; });
         of_leaves.emplace_back(first, end);
         first = end;
     }
     // They become known together, so that none starts from what another thread happens to have.
-    std::vector<GoalCache::Answer> answers(asks.size());
+    std::vector<GoalCache::Answer> answers(queries.size());
     in_parallel(of_leaves.size(), [&, nearby = NearbyField(field)](std::size_t i) mutable {
-        const std::span<const Ask> own = of_leaves[i];
-        const Box& box = leaves[own.front().leaf].box;
+        const std::span<const Query> of_leaf = of_leaves[i];
+        const Box& box = leaves[of_leaf.front().leaf].box;
         NearbyField::Search& search = *nearby.search_;
         nearby.enter(box, true);
         for (std::size_t k = LeafPlaces::corners; k < LeafPlaces::centre; ++k) {
             search.recall(leaf_places().in(box, k));
         }
-        for (const Ask& ask : own) {
-            const Point x(ask.place[0], ask.place[1], ask.place[2]);
-            answers[static_cast<std::size_t>(&ask - asks.data())] = search.answer_near(x);
+        for (const Query& query : of_leaf) {
+            const Point x(query.place[0], query.place[1], query.place[2]);
+            answers[static_cast<std::size_t>(&query - queries.data())] = search.answer_near(x);
         }
     });
-    for (std::size_t i = 0; i < asks.size(); ++i) {
-        const auto& [x, y, z] = asks[i].place;
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        const auto& [x, y, z] = queries[i].place;
         field.cache().remember({x, y, z}, answers[i]);
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "controlspace/trees/detail/single_cones.h"
+#include "trees/adaptation/single_cones.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,10 +9,19 @@
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/sources/cone.h"
 #include "controlspace/sources/riemannian.h"
-#include "controlspace/trees/detail/in_parallel.h"
 #include "metric/tensor_lanes.h"
+#include "trees/adaptation/parameters.h"
+#include "trees/in_parallel.h"
 
 namespace controlspace {
+
+// A cone M (1 + (g-1) |x - Q|) that a cell exceeds is exceeded most near its tip, which may lie
+// outside of the cell: at the place of the box that is nearest to the source in its metric the cone
+// is smallest. A metric that varies in the cell may exceed it elsewhere. Where it is trilinear, it
+// is nowhere longer than k times the cone if it is not at the corners (doubtful_corners), so parts
+// of the cell are ruled out, or halved, until a corner of a part exceeds it, or none is left. Where
+// several cones are touched, their intersection may be shorter than each: such places are reported
+// as contacts, and compared with the field itself.
 
 /// Metrics of a box, trilinear between its corners.
 struct SingleCones::Part {
@@ -41,8 +50,6 @@ struct SingleCones::Part {
 
 namespace {
 
-constexpr double share_of_interest = 0.25;
-
 // Of the box: three at its corners, two on its edges.
 std::ptrdiff_t faces_at(const Box& box, const Point& x) {
     return ((x.array() == box.low.array()) || (x.array() == box.high.array())).count();
@@ -61,7 +68,7 @@ SingleCones::SingleCones(std::span<const PointSource> sources, double ratio, dou
     : sources_(sources),
       ratio_(ratio),
       target_(target),
-      of_interest_(largest_factor_within(share_of_interest * target)),
+      of_interest_(largest_factor_within(single_cones::share_of_interest * target)),
       most_(largest_factor_within(target)),
       most_along_(largest_factor_along(target)),
       inverse_squares_(sources.size()) {
@@ -122,7 +129,7 @@ Departure SingleCones::worst_in(const Box& box, const std::array<Metric, 8>& at_
 
 void SingleCones::append_around_tips(const Box& box, std::ptrdiff_t most_faces,
                                      std::vector<Point>& places) const {
-    constexpr double near = 0.25;  // as a share of the box
+    constexpr double near = single_cones::near_tip;
     for (std::size_t k = 0; k < size(); ++k) {
         const Metric& metric = sources_[k].metric;
         const double reach = near * std::ranges::max(metric_edge_lengths(metric, box.edges()));
@@ -190,9 +197,8 @@ unsigned SingleCones::doubtful_corners(std::size_t source, const Part& part, dou
 // source's metric, as long as the cone may be exceeded by the factor in them.
 void SingleCones::find_exceeded(std::size_t source, const Part& leaf, double most,
                                 Departure& departure) const {
-    constexpr std::size_t most_parts = 256;
     std::vector<Part> parts{leaf};
-    for (std::size_t k = 0; !parts.empty() && k < most_parts; ++k) {
+    for (std::size_t k = 0; !parts.empty() && k < single_cones::parts_of_cell; ++k) {
         Part part = parts.back();
         parts.pop_back();
         const unsigned doubtful = doubtful_corners(source, part, most);

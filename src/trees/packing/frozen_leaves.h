@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "controlspace/trees/detail/packed_tree.h"
+#include "trees/packing/packed_tree.h"
 #include "trees/topology/leaf_faces.h"
 
 namespace controlspace {
 
-// What the leaves of compact forms hold (PackedTree), and save(tree, state): as the storage does
+// What the leaves of compact forms hold (PackedTree), and save(tree, state): as the model does
 // whose compact form it is. `M` is what metrics are stored as, `Plane` the type of the numbers of
 // planes.
 

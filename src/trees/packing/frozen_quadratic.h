@@ -56,6 +56,10 @@ public:
     QuadraticForm form() const { return rule_.form; }
 
     template <class Node>
+    std::unique_ptr<Cursor> cursor(const Topology<Node>&) const {
+        return nullptr;
+    }
+    template <class Node>
     ControlNodes control_nodes(const Topology<Node>& tree, Neighbourhood neighbourhood) const {
         return {leaf_graph(tree, neighbourhood).graph, metrics_.metrics()};
     }

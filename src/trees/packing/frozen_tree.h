@@ -7,12 +7,12 @@
 #include "controlspace/metric/stored_metric.h"
 #include "controlspace/space/control_nodes.h"
 #include "controlspace/space/space_options.h"
-#include "controlspace/trees/detail/corners.h"
-#include "controlspace/trees/topology.h"
+#include "trees/topology/corners.h"
+#include "trees/topology/topology.h"
 
 namespace controlspace {
 
-// Compact forms (packed_tree.h) of storages whose queries need the boxes of leaves: these are kept
+// Compact forms (packed_tree.h) of models whose queries need the boxes of leaves: these are kept
 // as numbers of planes. For KdNode and OctreeNode.
 
 /// How QuadraticValues interpolates.

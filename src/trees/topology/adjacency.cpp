@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "controlspace/trees/detail/adjacency.h"
+#include "trees/topology/adjacency.h"
 
 #include <tbb/parallel_for.h>
 

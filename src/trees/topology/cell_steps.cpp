@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "controlspace/trees/detail/cell_steps.h"
+#include "trees/topology/cell_steps.h"
 
 #include <algorithm>
 #include <bit>

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "controlspace/geometry/subdivision.h"
-#include "controlspace/trees/detail/corners.h"
+#include "trees/topology/corners.h"
 
 namespace controlspace {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "controlspace/trees/topology.h"
+#include "trees/topology/topology.h"
 
 namespace controlspace {
 

@@ -9,11 +9,11 @@
 #include <span>
 #include <vector>
 
-#include "controlspace/trees/detail/corners.h"
-#include "controlspace/trees/detail/work_through.h"
-#include "controlspace/trees/topology.h"
+#include "trees/topology/corners.h"
 #include "trees/topology/cut_lattice.h"
 #include "trees/topology/place_index.h"
+#include "trees/topology/topology.h"
+#include "trees/topology/work_through.h"
 
 namespace controlspace {
 

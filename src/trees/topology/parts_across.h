@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "controlspace/trees/detail/work_through.h"
-#include "controlspace/trees/topology.h"
+#include "trees/topology/topology.h"
+#include "trees/topology/work_through.h"
 
 namespace controlspace {
 

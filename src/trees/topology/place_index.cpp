@@ -10,8 +10,8 @@
 #include <bit>
 #include <cmath>
 
-#include "controlspace/trees/detail/make_room.h"
 #include "geometry/hash_of_words.h"
+#include "trees/make_room.h"
 
 namespace controlspace {
 

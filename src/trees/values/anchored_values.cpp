@@ -16,10 +16,10 @@
 #include "controlspace/error.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/metric/order_free_intersection.h"
-#include "controlspace/trees/detail/in_parallel.h"
-#include "controlspace/trees/detail/nearby_field.h"
 #include "metric/decompose.h"
 #include "metric/interior_point.h"
+#include "trees/adaptation/nearby_field.h"
+#include "trees/in_parallel.h"
 
 namespace controlspace {
 
@@ -112,7 +112,7 @@ Metric AnchoredValues::value(const Box& domain, LeafIndex leaf, const Point& pla
     return intersection(cones_at(x, anchors), further);
 }
 
-void AnchoredValues::split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex) {
+void AnchoredValues::split(const Subdivision& subdivision, LeafIndex leaf) {
     anchors_.repeat(leaf, static_cast<std::size_t>(subdivision.children() - 1));
 }
 
@@ -198,7 +198,7 @@ Metric AnchoredValues::own_at(const Known& known, std::span<const SourceIndex> a
 
 bool AnchoredValues::add_most_exceeded(const Known& at, const Metric& own,
                                        std::vector<SourceIndex>& list) const {
-    if (list.size() >= most_learned()) return false;
+    if (list.size() >= most_improved()) return false;
     double greatest = 1;
     std::optional<SourceIndex> worst;
     for (const SourceIndex s : at.governing) {
@@ -240,7 +240,7 @@ std::vector<SourceIndex> AnchoredValues::fitted(std::span<const Known> places,
     }
 }
 
-void AnchoredValues::fit_closely(std::span<const LeafBox> leaves, const GoalField& field) {
+void AnchoredValues::fit_closely(std::span<const CellBox> leaves, const GoalField& field) {
     evaluate_shared(field, leaves, LeafPlaces::corners, LeafPlaces::all);
     std::vector<std::vector<SourceIndex>> lists(leaves.size());
     in_parallel(leaves.size(), [&, nearby = NearbyField(field)](std::size_t i) mutable {
@@ -251,10 +251,10 @@ void AnchoredValues::fit_closely(std::span<const LeafBox> leaves, const GoalFiel
         }
         lists[i] = fitted(places, well_within * field.target());
     });
-    for (std::size_t i = 0; i < leaves.size(); ++i) anchors_.set(leaves[i].leaf, lists[i]);
+    for (std::size_t i = 0; i < leaves.size(); ++i) anchors_.set(leaves[i].cell, lists[i]);
 }
 
-void AnchoredValues::fit(std::span<const LeafBox> leaves, const GoalField& field,
+void AnchoredValues::fit(std::span<const CellBox> leaves, const GoalField& field,
                          std::size_t places, bool beside_old) {
     const double close = well_within * field.target();
     const double negligible = negligible_shortening(field.target());
@@ -291,7 +291,7 @@ void AnchoredValues::fit(std::span<const LeafBox> leaves, const GoalField& field
     in_parallel(kept.size(), [&](std::size_t i) {
         const auto fitted = std::span<const SourceIndex>(chosen).subspan(i * most, count[i]);
         constexpr int halvings = 2;
-        for (const SourceIndex s : anchors_.of(leaves[i].leaf)) {
+        for (const SourceIndex s : anchors_.of(leaves[i].cell)) {
             if (std::ranges::find(fitted, s) == fitted.end() &&
                 !is_covered(s, fitted, leaves[i].box, halvings)) {
                 kept[i].push_back(s);
@@ -301,16 +301,17 @@ void AnchoredValues::fit(std::span<const LeafBox> leaves, const GoalField& field
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         const auto fitted = std::span<const SourceIndex>(chosen).subspan(i * most, count[i]);
         if (kept.empty() || kept[i].empty()) {
-            anchors_.set(leaves[i].leaf, fitted);
+            anchors_.set(leaves[i].cell, fitted);
         } else {
             kept[i].insert(kept[i].end(), fitted.begin(), fitted.end());
-            anchors_.set(leaves[i].leaf, kept[i]);
+            anchors_.set(leaves[i].cell, kept[i]);
         }
     }
 }
 
-void AnchoredValues::cover(std::span<const LeafBox> leaves, const GoalField& field,
-                           std::span<std::uint8_t> is_kept) {
+std::vector<std::uint8_t> AnchoredValues::cover(std::span<const CellBox> leaves,
+                                                const GoalField& field) {
+    std::vector<std::uint8_t> is_kept(leaves.size(), 0);
     const double tolerance = largest_factor_within(field.target()) - 1;
     std::vector<SourceIndex> chosen(leaves.size() * most);
     std::vector<std::size_t> count(leaves.size());
@@ -324,14 +325,16 @@ void AnchoredValues::cover(std::span<const LeafBox> leaves, const GoalField& fie
         count[i] = sources.size();
     });
     for (std::size_t i = 0; i < leaves.size(); ++i) {
-        anchors_.set(leaves[i].leaf, std::span(chosen).subspan(i * most, count[i]));
+        anchors_.set(leaves[i].cell, std::span(chosen).subspan(i * most, count[i]));
     }
+    return is_kept;
 }
 
-std::vector<SourceIndex> AnchoredValues::lesson(LeafIndex leaf, const Point& x, NearbyField& nearby,
-                                                const GoalField& field) const {
+std::vector<SourceIndex> AnchoredValues::lacking(LeafIndex leaf, const Point& x,
+                                                 NearbyField& nearby,
+                                                 const GoalField& field) const {
     const auto old = anchors_.of(leaf);
-    if (old.size() >= most_learned()) return {};
+    if (old.size() >= most_improved()) return {};
     std::vector<SourceIndex> list(old.begin(), old.end());
     const Known known = known_at(x, nearby, field);
     if (are_order_free()) {
@@ -346,7 +349,7 @@ std::vector<SourceIndex> AnchoredValues::lesson(LeafIndex leaf, const Point& x, 
         std::ranges::copy_if(known.governing, std::back_inserter(list),
                              [&](SourceIndex s) { return std::ranges::find(old, s) == old.end(); });
     }
-    if (list.size() == old.size() || list.size() > most_learned()) return {};
+    if (list.size() == old.size() || list.size() > most_improved()) return {};
     return list;
 }
 

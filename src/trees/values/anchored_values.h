@@ -9,12 +9,11 @@
 #include "cones/cone_cover.h"
 #include "controlspace/metric/intersection.h"
 #include "controlspace/space/control_space.h"
-#include "controlspace/space/detail/state.h"
 #include "controlspace/space/space_options.h"
-#include "controlspace/trees/detail/leaf_judge.h"
-#include "controlspace/trees/detail/nearby_field.h"
-#include "controlspace/trees/topology.h"
 #include "metric/interior_point.h"
+#include "space/state.h"
+#include "trees/adaptation/leaf_places.h"
+#include "trees/adaptation/nearby_field.h"
 #include "trees/values/anchors.h"
 #include "trees/values/growing_cones.h"
 #include "trees/values/source_table.h"
@@ -29,18 +28,13 @@ namespace controlspace {
 /// always the cone law. A continuous source is kept as it is and evaluated with the cones.
 class AnchoredValues {
 public:
-    static constexpr int order = 0;
-    static constexpr CutBy cut_by = CutBy::longest_edge;
-
     explicit AnchoredValues(const SpaceOptions& options);
 
-    template <class Node>
-    void values_in(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
-                   std::span<const Point> x, std::span<Metric> out) const {
-        for (std::size_t i = 0; i < x.size(); ++i) out[i] = value(tree.domain(), leaves[i], x[i]);
-    }
+    /// At the nearest point of the domain.
+    Metric value(const Box& domain, LeafIndex leaf, const Point& place) const;
     void prefetch(LeafIndex leaf) const { anchors_.prefetch(leaf); }
-    void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex);
+    /// The parts of a leaf that is cut have its anchors.
+    void split(const Subdivision& subdivision, LeafIndex leaf);
     /// The source becomes an anchor of its leaf.
     SourceIndex add(LeafIndex leaf, const PointSource& source);
     /// What finds the smallest cones of leaves to which many sources are added.
@@ -55,38 +49,35 @@ public:
     const std::shared_ptr<const ControlSpace>& continuous() const { return continuous_; }
     /// Anchors are from now on taken from the sources of `goal`, with its ratio.
     void take_over(const AdaptationGoal& goal);
-    /// Anchors for these leaves, out of the sources of `field`'s goal; if it will not be proved,
-    /// beside those that may shorten the field somewhere in the leaf: so it never gets longer.
-    template <class Node>
-    void fit(const Topology<Node>&, std::span<const LeafBox> leaves, const GoalField& field,
-             bool proved) {
+    /// Anchors for these leaves, out of the sources of `field`'s goal; if leaves will not be
+    /// searched, beside those that may shorten the field somewhere in the leaf: so it never gets
+    /// longer.
+    void fit(std::span<const CellBox> leaves, const GoalField& field, bool is_searched) {
         // Of tensors hundreds may each cut a little: what governs the centre has to do.
-        fits_tensors_loosely_ = !proved;
-        if (proved && are_order_free()) return fit_closely(leaves, field);
-        fit(leaves, field, sources_.all_isotropic() || proved ? LeafPlaces::all : 1, !proved);
+        fits_tensors_loosely_ = !is_searched;
+        if (is_searched && are_order_free()) return fit_closely(leaves, field);
+        fit(leaves, field, sources_.all_isotropic() || is_searched ? LeafPlaces::all : 1,
+            !is_searched);
     }
     /// Anchors for these leaves that keep within the target everywhere in them, of an isotropic
-    /// field; `is_kept` is 0 where so many are not enough.
-    void cover(std::span<const LeafBox> leaves, const GoalField& field,
-               std::span<std::uint8_t> is_kept);
+    /// field. Of each: 0 where so many are not enough.
+    std::vector<std::uint8_t> cover(std::span<const CellBox> leaves, const GoalField& field);
     bool is_fitted(LeafIndex leaf) const {
         if (fits_tensors_loosely_) return !sources_.all_isotropic();
         return !are_order_free() && anchors_.of(leaf).size() < most_anchors();
     }
     /// The anchors of a leaf and those that it lacks at `x`; empty if it lacks none, or more than
     /// there is room for.
-    std::vector<SourceIndex> lesson(LeafIndex leaf, const Point& x, NearbyField& nearby,
-                                    const GoalField& field) const;
-    void learn(LeafIndex leaf, std::span<const SourceIndex> lesson) { anchors_.set(leaf, lesson); }
+    std::vector<SourceIndex> lacking(LeafIndex leaf, const Point& x, NearbyField& nearby,
+                                     const GoalField& field) const;
+    void set(LeafIndex leaf, std::span<const SourceIndex> anchors) { anchors_.set(leaf, anchors); }
     /// Forgets sources that are no leaf's anchor.
     void drop_idle_sources();
 
     /// Throws InputError where a continuous source is kept: it is a program's own.
     void save(StateWriter& state) const;
-    template <class Node>
-    void load(const Topology<Node>& tree, const StateReader& state) {
-        load(tree.leaves(), state);
-    }
+    /// What was saved of a tree of so many leaves.
+    void load(std::size_t leaves, const StateReader& state);
 
     void describe(Footprint& footprint) const;
     void shrink_to_fit();
@@ -101,18 +92,18 @@ private:
         return intersection_ == IntersectionRule::order_free && !sources_.all_isotropic();
     }
     std::size_t most_anchors() const { return are_order_free() ? most_order_free : most; }
-    // Of leaves that are not proved, all of few tensors.
-    std::size_t most_learned() const { return fits_tensors_loosely_ ? 64 : most_anchors(); }
+    // Of leaves that are not searched, all of few tensors.
+    std::size_t most_improved() const { return fits_tensors_loosely_ ? 64 : most_anchors(); }
 
     // At so many places, the centre first.
-    void fit(std::span<const LeafBox> leaves, const GoalField& field, std::size_t places,
+    void fit(std::span<const CellBox> leaves, const GoalField& field, std::size_t places,
              bool beside_old);
     // Whether the cone of a source is nowhere in the box shorter than those of the others, or than
     // the largest metric, in any direction; as far as parts of the box show.
     bool is_covered(SourceIndex source, std::span<const SourceIndex> others, const Box& box,
                     int halvings) const;
     // Without an order, at all places of the leaves.
-    void fit_closely(std::span<const LeafBox> leaves, const GoalField& field);
+    void fit_closely(std::span<const CellBox> leaves, const GoalField& field);
     struct Known;
     Known known_at(const Point& x, NearbyField& nearby, const GoalField& field) const;
     Metric own_at(const Known& known, std::span<const SourceIndex> anchors) const;
@@ -121,9 +112,6 @@ private:
     // or there is no room.
     bool add_most_exceeded(const Known& at, const Metric& own,
                            std::vector<SourceIndex>& list) const;
-    void load(std::size_t leaves, const StateReader& state);
-    // At the nearest point of the domain.
-    Metric value(const Box& domain, LeafIndex leaf, const Point& place) const;
     Metric cones_at(const Point& x, std::span<const SourceIndex> anchors) const;
     Metric largest_within_cones(const Point& x, std::span<const SourceIndex> anchors,
                                 const Metric* further) const;

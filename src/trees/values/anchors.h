@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "controlspace/space/detail/state.h"
-#include "controlspace/trees/topology.h"
+#include "controlspace/trees/cell_model.h"
+#include "space/state.h"
 #include "trees/values/source_table.h"
 
 namespace controlspace {

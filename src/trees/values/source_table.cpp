@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "controlspace/space/detail/given_sources.h"
+#include "space/given_sources.h"
 
 namespace controlspace {
 

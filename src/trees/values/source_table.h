@@ -8,7 +8,7 @@
 #include "controlspace/sources/cone.h"
 #include "controlspace/sources/own_growths.h"
 #include "controlspace/sources/point_source.h"
-#include "controlspace/space/detail/state.h"
+#include "space/state.h"
 
 namespace controlspace {
 

@@ -9,8 +9,8 @@
 
 #include "controlspace/geometry/extent.h"
 #include "controlspace/metric/blend.h"
-#include "controlspace/trees/detail/corners.h"
-#include "controlspace/trees/topology.h"
+#include "trees/topology/corners.h"
+#include "trees/topology/topology.h"
 
 namespace controlspace {
 

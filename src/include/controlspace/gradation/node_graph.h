@@ -15,7 +15,7 @@ using NodeIndex = std::uint32_t;
 
 /// Which control nodes gradation compares with which.
 ///
-/// | neighbourhood     | leaf storages                         | vertex storages           |
+/// | neighbourhood     | one node a leaf                       | a node a vertex           |
 /// |-------------------|---------------------------------------|---------------------------|
 /// | faces             | all leaves across the six faces       | vertices joined by an     |
 /// |                   |                                       | edge of a leaf            |

@@ -1,40 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
+#include <memory>
+#include <span>
 
-#include "controlspace/gradation/node_graph.h"
 #include "controlspace/space/space_options.h"
-#include "controlspace/trees/node_metrics.h"
-#include "controlspace/trees/topology.h"
+#include "controlspace/trees/leaf_model.h"
 
 namespace controlspace {
 
-/// The simplest storage (storage.h): one metric a leaf, constant over it (K_L, K_oL); the control
-/// node is the leaf's centre. A base for storages that keep more beside the metric.
-class LeafMetrics {
+/// One metric a leaf, at its centre: a base for models that vary it in the leaf. Of these only
+/// `clone` and `vary` must be written; `split`, `lower`, `assigned`, `fit` and `arrays` where they
+/// hold more than the metric.
+template <class Node>
+class LeafMetrics : public LeafModel<Node> {
 public:
-    static constexpr int order = 0;
-    static constexpr CutBy cut_by = CutBy::corners;
-    using constant_leaves = LeafMetrics;
+    void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex first_new) override;
+    /// The metric of the leaf, as `vary` changes it.
+    void values(const Topology<Node>& tree, std::span<const LeafIndex> leaves,
+                std::span<const Point> x, std::span<Metric> out) const override;
+    std::unique_ptr<ControlSpace> compact(const Topology<Node>& tree,
+                                          Precision precision) const override;
 
-    explicit LeafMetrics(const SpaceOptions& options) : metrics_(1, largest_metric(options)) {}
-
-    NodeMetrics& metrics() { return metrics_; }
-    const NodeMetrics& metrics() const { return metrics_; }
-    static std::array<NodeIndex, 1> nodes_of(LeafIndex leaf) { return {leaf}; }
-
-    void split(const Subdivision& subdivision, LeafIndex leaf, LeafIndex) {
-        metrics_.repeat(leaf, static_cast<std::size_t>(subdivision.children() - 1));
-    }
-    template <class Node, class M>
-    M value_in(const Topology<Node>&, LeafIndex leaf, const Point&,
-               const NodeView<M>& nodes) const {
-        return nodes[leaf];
-    }
+    /// Makes the metrics of leaves, of which each `metrics[i]` is the one of leaves[i], those at
+    /// x[i]; of a point outside of the domain that of the nearest one inside.
+    virtual void vary(std::span<const LeafIndex> leaves, std::span<const Point> x,
+                      std::span<Metric> metrics) const = 0;
 
 protected:
-    NodeMetrics metrics_;
+    LeafMetrics(const SpaceOptions& options, const ModelTraits& traits)
+        : LeafModel<Node>(traits, NodeMetrics(1, largest_metric(options))) {}
 };
+
+extern template class LeafMetrics<KdNode>;
+extern template class LeafMetrics<OctreeNode>;
 
 }  // namespace controlspace

@@ -7,22 +7,11 @@
 #include <vector>
 
 #include "controlspace/metric/metric.h"
-#include "controlspace/metric/stored_metric.h"
 #include "controlspace/space/control_space.h"
-#include "controlspace/space/detail/state.h"
 
 namespace controlspace {
 
-/// Metrics of control nodes by their numbers, of which a storage makes the value at a point: the
-/// field's, or the requested ones. `M` is Metric, or in compact forms what converts to it.
-template <class M>
-struct NodeView {
-    std::span<const typename Packing<M>::Item> metrics;
-    bool are_requested = false;  ///< by the sources, before gradation
-    [[no_unique_address]] Packing<M> packing = {};
-
-    decltype(auto) operator[](std::size_t node) const { return packing(metrics[node]); }
-};
+class StateReader;
 
 /// Metrics of the control nodes of a structure.
 class NodeMetrics {
@@ -34,9 +23,6 @@ public:
     const Metric& operator[](std::size_t node) const { return field_[node]; }
     std::span<const Metric> field() const { return field_; }
     std::span<Metric> field() { return field_; }
-    NodeView<Metric> values() const { return {field_}; }
-    /// As insertion compares sources with.
-    NodeView<Metric> requested_values() const { return {field_, true}; }
 
     /// Appends `times` copies of a node.
     void repeat(std::size_t node, std::size_t times);

@@ -4,32 +4,37 @@
 #include <memory>
 
 #include "controlspace/space/catalogue.h"
-#include "controlspace/space/detail/shared_builder.h"
-#include "controlspace/trees/detail/metric_tree.h"
+#include "controlspace/trees/leaf_model.h"
 
 namespace controlspace {
 
-/// The catalogue's row of a tree whose control nodes carry metrics: `Node` is the cut, KdNode or
-/// OctreeNode (cut.h), `Storage` what leaves hold (storage.h). With `balanced`, leaves with a
-/// common face differ by one level at most. `id` and `description` are those of CatalogueEntry.
-///
-/// Instantiates all algorithms of the tree: best in a source file of its own.
-template <class Node, class Storage, bool balanced = false>
+template <class Node>
+using MakeLeafModel = std::unique_ptr<LeafModel<Node>> (*)(const SpaceOptions&);
+
+/// A builder of a tree whose leaves hold that model: for KdNode and OctreeNode. With `balanced`,
+/// leaves with a common face differ by one level at most (octrees).
+template <class Node>
+std::unique_ptr<ControlSpaceBuilder> make_tree(const SpaceOptions& options,
+                                               MakeLeafModel<Node> model, bool balanced);
+
+/// What every such row has in common, its `construct` left out.
+template <class Node>
+CatalogueEntry tree_entry(const char* id, const char* description, const ModelTraits& traits);
+
+/// The catalogue's row of a tree: `Node` is how it is cut, KdNode or OctreeNode, `Model` what
+/// leaves hold, a LeafModel<Node> with a constructor from SpaceOptions and its ModelTraits as a
+/// constant `model_traits`. `id` and `description` are those of CatalogueEntry.
+template <class Node, template <class> class Model, bool balanced = false>
 CatalogueEntry tree_row(const char* id, const char* description) {
-    check_cut<Node>();
-    check_node_storage<Node, Storage>();
-    CatalogueEntry row{
-        .id = id,
-        .description = description,
-        .family = "trees",
-        .order = Storage::order,
-        .construct = [](const SpaceOptions& options) -> std::unique_ptr<ControlSpaceBuilder> {
-            require_valid(options);
-            using Data = MetricTree<Node, Storage>;
-            return std::make_unique<SharedBuilder<Data>>(options, balanced);
-        },
-        .capabilities = {SourceLeaves(), MetricNodes(), CompactForm()}};
-    if (Node::arity == 2) row.capabilities.push_back(SplitRules());
+    CatalogueEntry row = tree_entry<Node>(id, description, Model<Node>::model_traits);
+    row.construct = [](const SpaceOptions& options) {
+        return make_tree<Node>(
+            options,
+            [](const SpaceOptions& of) -> std::unique_ptr<LeafModel<Node>> {
+                return std::make_unique<Model<Node>>(of);
+            },
+            balanced);
+    };
     return row;
 }
 
