@@ -149,8 +149,9 @@ FittedLattice LatticeFit::fitted(const Voxels& voxels, NodeValues values,
         if (trial != nullptr && values == NodeValues::fitted && count > most_cells_to_fit) {
             return fit;
         }
-        set_to_field();
-        if (values == NodeValues::fitted && count <= most_cells_to_fit) {
+        if (values == NodeValues::field || count > most_cells_to_fit) {
+            set_to_field();
+        } else {
             std::vector<FittedCell> cells(count);
             for (std::size_t n = 0; n < count; ++n) {
                 const Cell cell = cell_number(n);
@@ -160,11 +161,12 @@ FittedLattice LatticeFit::fitted(const Voxels& voxels, NodeValues values,
                         cell, c, [&](auto i, auto j, auto k) { return lattice.index(i, j, k); }));
                 }
             }
-            std::vector<double> lengths(fit.nodes.size());
-            std::ranges::transform(fit.nodes, lengths.begin(), &Metric::xx);
-            const double factor = fit_lengths(field_, cells, lengths);
+            std::vector<double> lengths(lattice.size());
+            const double factor =
+                fit_lengths(field_, cells, largest_factor_within(target), lengths);
             // What is missed at its samples needs no proof.
             if (trial != nullptr && factor > largest_factor_within(target)) return fit;
+            fit.nodes.resize(lengths.size());
             std::ranges::transform(lengths, fit.nodes.begin(), [&](double length) {
                 return kind_.kept(Metric::isotropic(length));
             });

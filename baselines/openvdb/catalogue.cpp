@@ -24,7 +24,7 @@ std::vector<CatalogueEntry> openvdb_rows() {
                     .description = "OpenVDB tree, sparse, of bricks of 4^3 cells, trilinear",
                     .order = 1,
                     .construct = make_openvdb_bricks,
-                    .capabilities = {SourceLeaves(), MetricNodes(), CompactForm(),
+                    .capabilities = {SourceLeaves(), MetricNodes(), CompactForm(), FittedValues(),
                                      VdbFiles{state_in_octree_file}}});
     rows.push_back({.id = "openvdb-vec3s-trilinear",
                     .description = "two of OpenVDB's Vec3S trees, dense, in floats, trilinear",

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "controlspace/input_errors.h"
+#include "refuse.h"
 #include "space/goal_field.h"
 #include "trees/adaptation/adaptation.h"
 #include "trees/sample_leaves.h"
@@ -138,7 +139,16 @@ template <class Node>
 AdaptationReport GrowingTree<Node>::adapt(const AdaptationGoal& goal,
                                           const std::function<void()>& begin) {
     constexpr std::size_t bytes_of_adaptation = 240;  // for each leaf
-    const GoalField field(goal, domain(), GoalField::many_answers, GoalField::Thinning::allowed);
+    AdaptationGoal of_field = goal;
+    if (model_->traits().is_trilinear) of_field.values = NodeValues::field;
+    const GoalField field(of_field, domain(), GoalField::many_answers,
+                          GoalField::Thinning::allowed);
+    if (goal.values == NodeValues::fitted && !model_->has_bounds(field)) {
+        refuse(
+            "values are fitted to lengths alone, of sources without a continuous field: give "
+            "values "
+            "`field`");
+    }
     bytes_to_come_ = bytes_of_adaptation;
     next_check_ = 0;
     is_adapted_ = true;

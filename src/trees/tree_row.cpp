@@ -21,6 +21,7 @@ CatalogueEntry tree_entry(const char* id, const char* description, const ModelTr
                        .order = traits.order,
                        .capabilities = {SourceLeaves(), MetricNodes(), CompactForm()}};
     if (Node::arity == 2) row.capabilities.push_back(SplitRules());
+    if (traits.is_trilinear) row.capabilities.push_back(FittedValues());
     return row;
 }
 

@@ -11,6 +11,7 @@ namespace {
 
 // A field that is the cone of one source: h + s d, d the distance.
 constexpr double h = 0.1, slope = 0.25;
+constexpr double allowed = 10;
 const Box domain{Point::Constant(-1), Point::Constant(1)};
 
 GoalField cone_of(std::span<const PointSource> source) {
@@ -24,13 +25,24 @@ FittedCell whole() { return {domain, {0, 1, 2, 3, 4, 5, 6, 7}}; }
 TEST_CASE("around a source in its middle a cell takes the geometric mean of both ends") {
     const std::vector<PointSource> source{{Point::Zero(), Metric::isotropic(h)}};
     const double at_corners = h + slope * std::sqrt(3.0);
-    std::vector<double> lengths(8, at_corners);
+    std::vector<double> lengths(8);
     const std::vector<FittedCell> cells{whole()};
-    const double factor = fit_lengths(cone_of(source), cells, lengths);
+    const double factor = fit_lengths(cone_of(source), cells, allowed, lengths);
     for (const double length : lengths) {
         CHECK(length == Approx(std::sqrt(h * at_corners)).epsilon(1e-6));
     }
     CHECK(factor == Approx(std::sqrt(at_corners / h)).epsilon(1e-6));
+}
+
+TEST_CASE("a cell that no fit helps is left out") {
+    const std::vector<PointSource> source{{Point::Zero(), Metric::isotropic(h)}};
+    const double at_corners = h + slope * std::sqrt(3.0);
+    std::vector<double> lengths(8);
+    const std::vector<FittedCell> cells{whole()};
+    const double needed = std::sqrt(at_corners / h);
+    CHECK(fit_lengths(cone_of(source), cells, 1.1 * needed, lengths) < 1.01 * needed);
+    CHECK(std::isinf(fit_lengths(cone_of(source), cells, 0.99 * needed, lengths)));
+    for (const double length : lengths) CHECK(length == Approx(at_corners));
 }
 
 TEST_CASE("a field that cells can hold is left as it is") {
@@ -38,9 +50,9 @@ TEST_CASE("a field that cells can hold is left as it is") {
     const std::vector<PointSource> source{{Point::Zero(), Metric::isotropic(10)}};
     const GoalField field({.sources = source, .continuous = nullptr, .target = 0.1, .h_max = 0.5},
                           domain);
-    std::vector<double> lengths(8, 0.5);
+    std::vector<double> lengths(8);
     const std::vector<FittedCell> cells{whole()};
-    CHECK(fit_lengths(field, cells, lengths) == Approx(1).epsilon(1e-6));
+    CHECK(fit_lengths(field, cells, allowed, lengths) == Approx(1).epsilon(1e-6));
     for (const double length : lengths) CHECK(length == Approx(0.5).epsilon(1e-6));
 }
 
@@ -88,7 +100,7 @@ TEST_CASE("cells that share nodes are fitted together, and none is left worse th
         return most;
     };
     const double before = farthest();
-    const double factor = fit_lengths(cone_of(source), cells, lengths);
+    const double factor = fit_lengths(cone_of(source), cells, allowed, lengths);
     const double after = farthest();
     CHECK(after < std::pow(before, 0.6));  // half of it, as a logarithm, is the least
     CHECK(factor <= after * (1 + 1e-6));

@@ -10,6 +10,7 @@
 #include "controlspace/geometry/extent.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/sample_parallel.h"
+#include "trees/adaptation/fit_lengths.h"
 #include "trees/adaptation/parameters.h"
 #include "trees/in_parallel.h"
 
@@ -30,6 +31,7 @@ Adaptation::Adaptation(AdaptedCells& cells, const GoalField& field, const Adapta
     : cells_(cells),
       field_(field),
       max_cells_(goal.max_leaves),
+      fits_values_(goal.values == NodeValues::fitted),
       limit_(limit),
       next_to_sources_(cells, field, goal.sources) {
     if (field.has_ranges()) {
@@ -76,8 +78,12 @@ double Adaptation::run(bool is_searched, const Cut& cut) {
 // kept. Returns whether some have to be judged again.
 bool Adaptation::round(const Cut& cut) {
     field_.forget_if_full();
+    if (fits_values_) fit_values();
     std::vector<CellBox> open = cells_in(State::changed);
     judge(open);
+    if (fits_values_) {
+        for (const CellBox& c : open) judgements_[c.cell].along = along_by_field_[c.cell];
+    }
     for (const CellBox& c : open) states_[c.cell] = State::settled;
     is_late_ = limit_.is_late();
     if (is_late_) return false;
@@ -150,6 +156,27 @@ std::vector<Judgement> Adaptation::fit(std::span<const CellBox> cells) {
     auto judgements = model.fit(cells, {field_, field_, judge_options_.is_searched});
     model.graded(field_.largest_ratio());
     return judgements;
+}
+
+// Cells share the nodes that are fitted: with each cut all are fitted anew, and are to be judged.
+// Across which axis a cut helps is shown by the field's own values, before they are fitted.
+void Adaptation::fit_values() {
+    const std::vector<CellBox> fresh = cells_in(State::fresh);
+    judge(fresh);
+    along_by_field_.resize(cells_.count());
+    for (const CellBox& c : fresh) along_by_field_[c.cell] = judgements_[c.cell].along;
+    std::ranges::fill(states_, State::changed);
+    CellModel& model = cells_.model();
+    const std::vector<CellBox> all = cells_in(State::settled);
+    std::vector<FittedCell> cells(all.size());
+    std::ranges::transform(all, cells.begin(), [&](const CellBox& c) {
+        return FittedCell{c.box, model.corners()[c.cell]};
+    });
+    std::vector<double> lengths(model.metrics().size());
+    fit_lengths(field_, cells, largest_factor_within(field_.target()), lengths);
+    for (std::size_t n = 0; n < lengths.size(); ++n) {
+        model.metrics().set(n, Metric::isotropic(lengths[n]));
+    }
 }
 
 // At their own places, if fresh, and, if they are searched, at places that none has been fitted to:

@@ -48,6 +48,7 @@ private:
     bool improves_without_cut() const;
     std::vector<CellBox> cells_in(State least) const;
     std::vector<Judgement> fit(std::span<const CellBox> cells);
+    void fit_values();
     void judge(std::span<const CellBox> cells);
     void sample_sources();
     CellJudge judge_of_cells() const { return {cells_, field_, next_to_sources_, judge_options_}; }
@@ -55,6 +56,7 @@ private:
     AdaptedCells& cells_;
     const GoalField& field_;
     const std::size_t max_cells_;
+    const bool fits_values_;
     const GrowthLimit limit_;
     CellJudge::Options judge_options_;
     bool is_late_ = false;
@@ -64,6 +66,7 @@ private:
     std::vector<CellIndex> cell_of_source_;
     std::vector<State> states_;                             // of the cells
     std::vector<Judgement> judgements_;                     // likewise
+    std::vector<std::array<double, 3>> along_by_field_;     // likewise, where values are fitted
     std::vector<std::vector<std::uint32_t>> improvements_;  // likewise
     std::uint64_t places_used_ = 0;
 };

@@ -22,15 +22,16 @@ struct FittedCell {
 constexpr std::size_t bytes_to_fit_a_cell = 512;
 constexpr std::size_t most_cells_to_fit = std::size_t{1} << 18;
 
-/// Fits the lengths of nodes to an isotropic field (GoalField::has_ranges): where the field's own
-/// values at the nodes are too long between them, as those of a convex function are, they get
-/// shorter, so that the largest factors above and below the field in the cells around a node become
-/// alike. `lengths` are the field's at the nodes, and then the fitted ones.
+/// Sets the lengths of nodes to an isotropic field (GoalField::has_ranges), and fits them to it:
+/// where the field's own values at the nodes are too long between them, as those of a convex
+/// function are, they get shorter, so that the largest factors above and below the field in the
+/// cells around a node become alike. Cells where the field's own values are off by more than twice
+/// what is allowed, as a logarithm, are left out: no fit helps them, and they would spoil others.
 ///
 /// Returns the largest factor between the two that is left, either way, at 5 x 5 x 5 places of the
-/// cells, their faces and corners among them. It is sampled; what is kept everywhere has to be
-/// shown by bounds. The same bits on any number of threads.
-double fit_lengths(const GoalField& field, std::span<const FittedCell> cells,
+/// cells, their faces and corners among them; infinite where cells were left out. It is sampled;
+/// what is kept everywhere has to be shown by bounds. The same bits on any number of threads.
+double fit_lengths(const GoalField& field, std::span<const FittedCell> cells, double allowed,
                    std::span<double> lengths);
 
 }  // namespace controlspace
