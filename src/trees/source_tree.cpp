@@ -50,7 +50,7 @@ ControlNodes SourceTree<Node>::control_nodes(Neighbourhood neighbourhood) const 
     LeafGraph leaves = leaf_graph(topology_, neighbourhood);
     std::vector<Metric> metrics;
     metrics.reserve(leaves.order.size());
-    for (const Point& x : leaves.graph.positions) metrics.push_back(Base::metric_at(x));
+    for (const Point& x : leaves.graph.positions) metrics.push_back(metric_at(x));
     return {std::move(leaves.graph), std::move(metrics)};
 }
 
@@ -73,7 +73,7 @@ GradationReport SourceTree<Node>::grade(const GradationOptions& options) {
         field, goal, options_.growth, false,
         [&](const CellBox& leaf, const std::array<double, 3>& along, std::vector<LeafIndex>& cut) {
             ++report.operations;
-            return Base::cuts().is_too_long(Base::metric_at(leaf.box.centre()), leaf.box) &&
+            return Base::cuts().is_too_long(metric_at(leaf.box.centre()), leaf.box) &&
                    Base::split_across(leaf.box, along, cut);
         });
     if (adapted.is_late) Base::require_may_grow();

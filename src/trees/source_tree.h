@@ -21,6 +21,11 @@ class SourceTree : public GrowingTree<Node> {
 public:
     explicit SourceTree(const SpaceOptions& options);
 
+    /// Without the calls by which a model of any kind answers.
+    Metric metric_at(const Point& x) const {
+        return anchored().value(Base::domain(), topology_.find(x), x);
+    }
+
     InsertionReport insert(std::span<const PointSource> sources);
 
     /// Leaf centres with the field there.
