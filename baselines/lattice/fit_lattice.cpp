@@ -146,24 +146,28 @@ FittedLattice LatticeFit::fitted(const Voxels& voxels, NodeValues values,
     if constexpr (interpolation == Interpolation::nearest) {
         fit.nodes.resize(count);
     } else {
-        if (trial != nullptr && values == NodeValues::fitted && count > most_cells_to_fit) {
+        if (trial != nullptr && values == NodeValues::fitted && count > LengthFit::most_cells) {
             return fit;
         }
-        if (values == NodeValues::field || count > most_cells_to_fit) {
+        if (values == NodeValues::field || count > LengthFit::most_cells) {
             set_to_field();
         } else {
-            std::vector<FittedCell> cells(count);
+            std::vector<std::uint32_t> numbers(count);
+            std::vector<Box> boxes(count);
+            std::vector<std::array<std::uint32_t, 8>> nodes(count);
             for (std::size_t n = 0; n < count; ++n) {
                 const Cell cell = cell_number(n);
-                cells[n].box = stencil.box_of(cell);
+                numbers[n] = static_cast<std::uint32_t>(n);
+                boxes[n] = stencil.box_of(cell);
                 for (std::size_t c = 0; c < 8; ++c) {
-                    cells[n].nodes[c] = static_cast<std::uint32_t>(stencil.at_corner(
+                    nodes[n][c] = static_cast<std::uint32_t>(stencil.at_corner(
                         cell, c, [&](auto i, auto j, auto k) { return lattice.index(i, j, k); }));
                 }
             }
+            LengthFit length_fit(field_);
+            length_fit.enter(numbers, boxes);
             std::vector<double> lengths(lattice.size());
-            const double factor =
-                fit_lengths(field_, cells, largest_factor_within(target), lengths);
+            const double factor = length_fit.fit(nodes, largest_factor_within(target), lengths);
             // What is missed at its samples needs no proof.
             if (trial != nullptr && factor > largest_factor_within(target)) return fit;
             fit.nodes.resize(lengths.size());

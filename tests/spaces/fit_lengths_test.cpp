@@ -18,7 +18,26 @@ GoalField cone_of(std::span<const PointSource> source) {
     return {{.sources = source, .continuous = nullptr, .ratio = 1 + slope, .target = 0.1}, domain};
 }
 
+struct FittedCell {
+    Box box;
+    std::array<std::uint32_t, 8> nodes;
+};
 FittedCell whole() { return {domain, {0, 1, 2, 3, 4, 5, 6, 7}}; }
+
+double fit_lengths(const GoalField& field, const std::vector<FittedCell>& cells, double most,
+                   std::vector<double>& lengths) {
+    std::vector<std::uint32_t> numbers;
+    std::vector<Box> boxes;
+    std::vector<std::array<std::uint32_t, 8>> nodes;
+    for (const FittedCell& cell : cells) {
+        numbers.push_back(static_cast<std::uint32_t>(numbers.size()));
+        boxes.push_back(cell.box);
+        nodes.push_back(cell.nodes);
+    }
+    LengthFit fit(field);
+    fit.enter(numbers, boxes);
+    return fit.fit(nodes, most, lengths);
+}
 
 }  // namespace
 

@@ -10,7 +10,6 @@
 #include "controlspace/geometry/extent.h"
 #include "controlspace/metric/nonconformity.h"
 #include "controlspace/space/sample_parallel.h"
-#include "trees/adaptation/fit_lengths.h"
 #include "trees/adaptation/parameters.h"
 #include "trees/in_parallel.h"
 
@@ -32,6 +31,7 @@ Adaptation::Adaptation(AdaptedCells& cells, const GoalField& field, const Adapta
       field_(field),
       max_cells_(goal.max_leaves),
       fits_values_(goal.values == NodeValues::fitted),
+      length_fit_(field),
       limit_(limit),
       next_to_sources_(cells, field, goal.sources) {
     if (field.has_ranges()) {
@@ -164,16 +164,23 @@ void Adaptation::fit_values() {
     const std::vector<CellBox> fresh = cells_in(State::fresh);
     judge(fresh);
     along_by_field_.resize(cells_.count());
-    for (const CellBox& c : fresh) along_by_field_[c.cell] = judgements_[c.cell].along;
+    std::vector<std::uint32_t> numbers;
+    std::vector<Box> boxes;
+    for (const CellBox& c : fresh) {
+        along_by_field_[c.cell] = judgements_[c.cell].along;
+        numbers.push_back(c.cell);
+        boxes.push_back(c.box);
+    }
     std::ranges::fill(states_, State::changed);
     CellModel& model = cells_.model();
-    const std::vector<CellBox> all = cells_in(State::settled);
-    std::vector<FittedCell> cells(all.size());
-    std::ranges::transform(all, cells.begin(), [&](const CellBox& c) {
-        return FittedCell{c.box, model.corners()[c.cell]};
-    });
+    if (cells_.count() > LengthFit::most_cells) {
+        fits_values_ = false;  // from now on: the field's own
+        model.fit(cells_in(State::settled), {field_, field_, judge_options_.is_searched});
+        return;
+    }
+    length_fit_.enter(numbers, boxes);
     std::vector<double> lengths(model.metrics().size());
-    fit_lengths(field_, cells, largest_factor_within(field_.target()), lengths);
+    length_fit_.fit(model.corners(), largest_factor_within(field_.target()), lengths);
     for (std::size_t n = 0; n < lengths.size(); ++n) {
         model.metrics().set(n, Metric::isotropic(lengths[n]));
     }

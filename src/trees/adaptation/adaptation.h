@@ -12,6 +12,7 @@
 #include "space/goal_field.h"
 #include "trees/adaptation/adapted_cells.h"
 #include "trees/adaptation/cell_judge.h"
+#include "trees/adaptation/fit_lengths.h"
 #include "trees/adaptation/next_to_sources.h"
 
 namespace controlspace {
@@ -56,7 +57,8 @@ private:
     AdaptedCells& cells_;
     const GoalField& field_;
     const std::size_t max_cells_;
-    const bool fits_values_;
+    bool fits_values_;
+    LengthFit length_fit_;  // of the cells, where values are fitted
     const GrowthLimit limit_;
     CellJudge::Options judge_options_;
     bool is_late_ = false;
