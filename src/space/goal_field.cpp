@@ -33,7 +33,7 @@ const AdaptationGoal& require_valid(const AdaptationGoal& goal, const Box& domai
     if (goal.values == NodeValues::fitted) {
         throw InputError(
             "this structure takes the field's own values at its nodes and fits none: give values "
-            "`field`, or take uniform-trilinear");
+            "`field`, or take one that is trilinear");
     }
     if (!(goal.target > 0) || !std::isfinite(goal.target)) {
         throw InputError(

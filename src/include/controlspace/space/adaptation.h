@@ -44,7 +44,8 @@ struct AdaptationGoal {
     /// whose rounding takes more than a third of what the target allows, as the ratio of lengths.
     Precision precision = Precision::doubles;
     /// Fitted, by structures that can alone (the capability FittedValues), and of isotropic sources
-    /// without a continuous field; others refuse it, by InputError.
+    /// without a continuous field; others refuse it, by InputError. What takes more than 2^18 cells
+    /// keeps the field's own.
     NodeValues values = NodeValues::field;
     /// Further places where trees are compared with the field, such as the middle of what is small
     /// in `continuous`; they may be outside the domain.
