@@ -41,6 +41,7 @@ std::string render(const TextTable& table) {
         }
     }
     std::vector<std::string> rule;
+    rule.reserve(widths.size());
     for (const std::size_t columns : widths) rule.emplace_back(columns, '-');
     lines.insert(lines.begin() + 1, rule);
 

@@ -270,7 +270,7 @@ void CellJudge::climb(const CellBox& of, double slope, Findings& found) {
         Findings climbed(of);
         climbed.departure.take(start.delta, start.where);
         Departure& best = climbed.departure;
-        Vector reach = climbing::reach * of.box.edges();
+        Vector reach = climbing::first_reach * of.box.edges();
         for (int round = 0; round < (thorough ? rounds + fine_rounds : rounds); ++round) {
             if (is_exceeded(found)) return;
             const double near =

@@ -66,7 +66,7 @@ constexpr int rounds = 16, fine_rounds = 32;  ///< the latter where the search i
 constexpr int tries = 6;                      ///< places of a round
 /// Places lie within this share of the cell's edges, at first and in the first fine round; every
 /// second one much nearer: peaks at sources are far narrower than their cell.
-constexpr double reach = 0.25, fine_reach = 0.1, nearer = 0.15;
+constexpr double first_reach = 0.25, fine_reach = 0.1, nearer = 0.15;
 /// The reach shrinks by this where a round finds nothing higher.
 constexpr double shrink = 0.6, fine_shrink = 0.8;
 /// A climb goes on as long as it is above a share of the target, which rises from the first by the

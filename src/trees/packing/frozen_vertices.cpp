@@ -38,7 +38,8 @@ public:
         : Base(std::move(planes), std::move(metrics)), vertices_(metrics_.size()) {
         leaves_.reserve(tree.leaves());
         for_each_faces<Plane>(tree, planes_, [&](LeafIndex leaf, const Faces<Plane>& faces) {
-            auto& added = leaves_.emplace_back(VertexLeaf<M, Plane>{{}, faces});
+            leaves_.push_back(VertexLeaf<M, Plane>{{}, faces});
+            VertexLeaf<M, Plane>& added = leaves_.back();
             for (std::size_t c = 0; c < 8; ++c) {
                 if constexpr (in_leaves<M>) {
                     added.corners[c] = metrics_.items()[corners[leaf][c]];

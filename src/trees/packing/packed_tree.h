@@ -108,10 +108,10 @@ private:
 };
 
 /// Metrics of leaves, one each, stored as `M`, which are those of the whole leaf.
-template <class M>
+template <class M, bool answers_lengths = is_stored_length<M>>
 class PackedLeaves {
 public:
-    static constexpr bool are_lengths = is_stored_length<M>;
+    static constexpr bool are_lengths = answers_lengths;
 
     explicit PackedLeaves(StoredMetrics<M> metrics) : metrics_(std::move(metrics)) {}
 

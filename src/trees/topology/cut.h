@@ -52,11 +52,7 @@ struct KdNode {
     std::array<Ref, 2> children;
 
     KdNode() = default;
-    KdNode(const Subdivision& s) {
-        const Axis axis = s.cuts[0] ? 0 : s.cuts[1] ? 1 : 2;
-        at = s.at[axis];
-        children = {Ref().with_spare((axis & 1) != 0), Ref().with_spare((axis & 2) != 0)};
-    }
+    KdNode(const Subdivision& s) : KdNode(s, s.cuts[0] ? 0 : s.cuts[1] ? 1 : 2) {}
     Axis axis() const { return (children[0].spare() ? 1 : 0) + (children[1].spare() ? 2 : 0); }
     /// Where the planes stand.
     std::span<const double> planes() const { return {&at, 1}; }
@@ -87,6 +83,11 @@ struct KdNode {
     }
     /// Makes the node's box that of the child in `slot`.
     void narrow(Box& box, std::size_t slot) const { (slot == 1 ? box.low : box.high)[axis()] = at; }
+
+private:
+    KdNode(const Subdivision& s, Axis axis)
+        : at(s.at[axis]),
+          children{Ref().with_spare((axis & 1) != 0), Ref().with_spare((axis & 2) != 0)} {}
 };
 
 /// Inner node of an octree: eight children and the planes, which go through the middle of the box;

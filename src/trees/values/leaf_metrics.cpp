@@ -12,12 +12,10 @@ namespace {
 
 /// The compact form: metrics stored as `M`, and a model without metrics, which varies them.
 template <class Node, class M>
-class VariedLeaves : public PackedLeaves<M> {
-    using Base = PackedLeaves<M>;
+class VariedLeaves : public PackedLeaves<M, false> {
+    using Base = PackedLeaves<M, false>;
 
 public:
-    static constexpr bool are_lengths = false;
-
     VariedLeaves(std::unique_ptr<LeafMetrics<Node>> model, StoredMetrics<M> metrics)
         : Base(std::move(metrics)), model_(std::move(model)) {}
 
