@@ -21,10 +21,11 @@ struct LengthFit::Weights {
         for (std::size_t i = 0; i < padded; ++i) {
             // What pads repeats the last place.
             const std::size_t p = std::min(i, places - 1);
-            const Vector t =
-                Vector(static_cast<double>(p % along), static_cast<double>(p / along % along),
-                       static_cast<double>(p / along / along)) /
-                (along - 1);
+            const std::array numbers{p % along, p / along % along, p / (along * along)};
+            Vector t;
+            for (std::size_t a = 0; a < 3; ++a) {
+                t[static_cast<Axis>(a)] = static_cast<double>(numbers[a]) / (along - 1);
+            }
             at[p] = t;
             for (std::size_t corner = 0; corner < 8; ++corner) {
                 double weight = 1;
