@@ -37,7 +37,7 @@ void LeafModel<Node>::ceilings(const Topology<Node>& tree, std::span<const LeafI
     const std::span<Metric> part = std::span(metrics).first(x.size());
     values(tree, leaves, x, part);
     std::ranges::transform(part, out.begin(),
-                           [](const Metric& m) { return is_isotropic(m) ? m.xx : none; });
+                           [&](const Metric& m) { return is_isotropic(m) ? m.xx : none; });
 }
 
 template <class Node>
