@@ -300,7 +300,7 @@ FittedLattice LatticeFit::coarsest(
         }
     } catch (const GrowthStopped&) {
         require_in_time(stop_);
-        is_stopped = !best;
+        is_stopped = true;
     }
     if (!best) best = fitted(finest, NodeValues::field, nullptr);
     best->is_stopped = is_stopped;

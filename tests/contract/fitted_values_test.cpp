@@ -36,15 +36,6 @@ AdaptationGoal goal(std::span<const PointSource> sources, double target, NodeVal
     return {.sources = sources, .continuous = nullptr, .target = target, .values = values};
 }
 
-// The cones of all sources, one by one.
-double exact_length(const Work& work, const Point& x) {
-    double h = work.domain.half_diagonal();
-    for (const PointSource& s : work.sources) {
-        h = std::min(h, s.metric.xx + 0.25 * (x - s.position).norm());
-    }
-    return h;
-}
-
 }  // namespace
 
 STRUCTURE_CASE(fits_values, "fitted values keep the target by fewer nodes, in every precision") {

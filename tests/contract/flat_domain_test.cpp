@@ -27,15 +27,6 @@ AdaptationGoal goal_of(const Work& work, double target) {
     return {.sources = work.sources, .continuous = nullptr, .ratio = g, .target = target};
 }
 
-// The cones of all sources, searched one by one.
-double exact_length(const Work& work, const Point& x) {
-    double h = work.domain.half_diagonal();
-    for (const auto& [position, metric, own_growth] : work.sources) {
-        h = std::min(h, metric.xx + (g - 1) * (x - position).norm());
-    }
-    return h;
-}
-
 // With the plane across another axis.
 Work turned(Work work, int turns) {
     const auto turn = [turns](const Point& x) {

@@ -47,15 +47,6 @@ bool is_grid(const CatalogueEntry& structure) {
     return has_compact_form(structure) && structure.has<VoxelSize>();
 }
 
-// The cones of all sources, one by one.
-double exact_length(const Work& work, const Point& x) {
-    double h = work.domain.half_diagonal();
-    for (const PointSource& s : work.sources) {
-        h = std::min(h, s.metric.xx + 0.25 * (x - s.position).norm());
-    }
-    return h;
-}
-
 }  // namespace
 
 STRUCTURE_CASE(is_linear, "doubles give the same bits, floats and codes what their steps allow") {

@@ -76,6 +76,15 @@ struct Work {
     }
 };
 
+/// The cones of all isotropic sources, with g_r = 1.25, one by one.
+inline double exact_length(const Work& work, const Point& x) {
+    double h = work.domain.half_diagonal();
+    for (const PointSource& s : work.sources) {
+        h = std::min(h, s.metric.xx + 0.25 * (x - s.position).norm());
+    }
+    return h;
+}
+
 inline Work isotropic_sphere() {
     return {"isotropic", sample_sphere({.h = 0.05, .s_a = 2, .s_n = 1, .rho = 2})};
 }
